@@ -43,7 +43,8 @@ ARM_Z = (0.378, 0.305, 0.225)
 ARM_RADII = (0.029, 0.032, 0.045)
 OMNIDIRECTIONAL = (2.0 * pi, pi)  # field of view of an omnidirectional camera [rad]
 MARGINS = (("pattern", "sole_margin"), ("pattern", "plan_margin"), ("stabilizer", "sole_margin"))
-START_SIGMA = (0.02, 0.02, 0.02)  # standard deviation of the known start pose [m, m, rad]
+# Standard deviation of the known start position in a world of scale 1 [m] and heading [rad].
+START_SIGMA, START_HEADING_SIGMA = 0.02, 0.02
 
 
 def field_of_view(scenario: Scenario, camera: PinholeCamera) -> tuple[float, float]:
@@ -218,11 +219,12 @@ def known_beacons(scenario: Scenario, layout: Layout) -> dict[str, tuple[float, 
 
 def build_estimator(scenario: Scenario, layout: Layout, rng: np.random.Generator) -> Estimator:
     """Return the estimator of `scenario`; `rng` draws its particles."""
+    sigma = START_SIGMA * scenario.world.scale
     return Estimator(
         scenario.belief,
         known_beacons(scenario, layout),
         np.array(layout.start),
-        np.diag(np.square(START_SIGMA)),
+        np.diag(np.square([sigma, sigma, START_HEADING_SIGMA])),
         rng,
     )
 

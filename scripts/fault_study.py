@@ -26,7 +26,7 @@ from hsr8.evaluation.proportion import Proportion
 from hsr8.loop import Simulation
 from hsr8.recorder.record import Listener, TickRecord
 from hsr8.scenario.loader import load_scenario
-from hsr8.scenario.world import ROBOT_RADIUS
+from hsr8.scenario.robot import Robot
 
 import numpy as np
 from study_page import add_seeds, environment
@@ -147,7 +147,7 @@ def settings_of(name: str, size: float, seed: int) -> list[str]:
     fault = ladder.fault.format(float(size))
     if kind == "mover-appears":
         common = [*common[:-1], *STRAIGHT]
-        start = _time_at(MOVER_X - MOVER_RADIUS - ROBOT_RADIUS - size, seed, common)
+        start = _time_at(MOVER_X - MOVER_RADIUS - Robot().radius - size, seed, common)
     if kind == "bump":
         common = [*common[:-1], *STRAIGHT[:-1], "world.mover=[]"]
         fault += f",radius={BUMP_RADIUS},position=[{BUMP_X},0.0]"

@@ -13,7 +13,6 @@ from hsr8.render.plan_view import PlanView
 from hsr8.render.png import write_png
 from hsr8.scenario.loader import load_scenario
 from hsr8.scenario.schema import Scenario
-from hsr8.scenario.world import ROBOT_RADIUS
 from hsr8.world.field.certificate import min_clearance, straight_length
 from hsr8.world.field.encounter import NominalWalk
 from hsr8.world.field.generator import draw_world
@@ -48,7 +47,9 @@ def main() -> None:
         for name in PICTURED.split():
             scenario = load_scenario(name)
             world = draw_world(scenario, scenario.seed)
-            picture = PlanView(world.layout, PICTURE, world.certificate).draw()
+            picture = PlanView(
+                world.layout, scenario.robot.radius, PICTURE, world.certificate
+            ).draw()
             write_png(PICTURES / f"{name}.png", picture)
         PAGE.write_text(page(options.seeds, table))
 
@@ -66,7 +67,7 @@ def row(name: str, seeds: list[int]) -> str:
         hits += hits_blindly(scenario, world.layout)
         certificate, n = world.certificate, world.certificate.points
         straight = straight_length(world.layout, n)
-        clearance = min_clearance(world.layout, certificate.path)
+        clearance = min_clearance(world.layout, certificate.path, scenario.robot.radius)
         ways.append(
             (certificate.length, certificate.length / straight, certificate.time, clearance)
         )
@@ -95,7 +96,7 @@ def hits_blindly(scenario: Scenario, layout: Layout) -> bool:
     places = np.array([walk.at(time)[0] for time in times])
     for o in layout.obstacles:
         at = np.array([o.motion.position(t) for t in times]) if o.motion else o.position
-        if np.hypot(*(places - at).T).min() < o.radius + ROBOT_RADIUS:
+        if np.hypot(*(places - at).T).min() < o.radius + scenario.robot.radius:
             return True
     return False
 

@@ -35,8 +35,10 @@ def main(options: Check) -> int:
         require_file_name("--image", options.image, (".png",))
     world = draw_world(scenario, scenario.seed)
     if options.image is not None:
+        radius = scenario.robot.radius
+        plan = PlanView(world.layout, radius, certificate=world.certificate)
         with writing("--image", options.image):
-            write_png(options.image, PlanView(world.layout, certificate=world.certificate).draw())
+            write_png(options.image, plan.draw())
     summary = summarize(scenario, world)
     if options.json:
         print(atomic.dumps(summary))
@@ -55,7 +57,7 @@ def summarize(scenario: Scenario, world: FairWorld) -> dict[str, Any]:
     layout, certificate, camera = world.layout, world.certificate, scenario.camera
     clearance = None
     if len(certificate.path) and layout.obstacles:
-        clearance = round(min_clearance(layout, certificate.path), 3)
+        clearance = round(min_clearance(layout, certificate.path, scenario.robot.radius), 3)
     fov = [round(camera.horizontal_fov_deg), round(camera.vertical_fov_deg)]
     x, y, heading = layout.start
     goal_heading = layout.goal_heading

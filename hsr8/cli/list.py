@@ -23,7 +23,7 @@ def main(options: List) -> int:
 
 def _entry(scenario: Scenario) -> dict[str, object]:
     world = scenario.world
-    walls = sum(len(wall.positions()) for wall in world.wall)
+    walls = sum(len(wall.positions(scenario.robot.radius)) for wall in world.wall)
     return {
         "name": scenario.name,
         "static": world.n_static + len(world.obstacle) + walls,

@@ -26,6 +26,7 @@ from navigation.angles import wrap
 Array = NDArray[np.float64]
 Sample = tuple[FrameRecord, Truth]  # a camera frame with the truth of that time
 
+# Lengths and speeds are those in a world of scale 1.
 TOLERANCE = 0.10  # added to the radii of via points and goal for the true position [m]
 HEADING_TOLERANCE = 15.0  # of the true heading at the goal [deg]
 MAX_MATCH_DISTANCE = 0.4  # from a track to its obstacle [m]
@@ -78,7 +79,7 @@ class Metrics(Listener):
         self._head: tuple[float, float] | None = None
         self._head_travel = 0.0
         self._walk = WalkMetrics()
-        self._tracks = TrackMetrics(layout.obstacles)
+        self._tracks = TrackMetrics(layout.obstacles, layout.scale)
 
     def on_record(self, record: TickRecord) -> None:
         """Take one record."""
@@ -190,7 +191,7 @@ class Metrics(Listener):
             return
         moved = hypot(x - x0, y - y0)
         self._path += moved
-        if moved < STANDING_SPEED * (truth.time - then):
+        if moved < STANDING_SPEED * self._layout.scale * (truth.time - then):
             self._standing += truth.time - then
         self._anchor = (truth.time, x, y)
 
@@ -234,7 +235,7 @@ class Metrics(Listener):
         offset = obstacles[rows] - np.array([track.position for track in tracks])[:, None]
         distance = np.hypot(offset[..., 0], offset[..., 1])
         nearest = distance.argmin(axis=1)
-        matched = distance.min(axis=1) <= MAX_MATCH_DISTANCE
+        matched = distance.min(axis=1) <= MAX_MATCH_DISTANCE * self._layout.scale
         true = np.array([truth.obstacle_velocities for _, truth in samples])[rows, nearest]
         wrong = (np.array([track.velocity for track in tracks]) - true)[matched]
         ends = np.bincount(rows[matched], minlength=len(samples)).cumsum()
@@ -248,13 +249,13 @@ class Metrics(Listener):
         x, y, heading = truth.robot.tolist()
         while self._via < task.index and len(self._points):
             px, py = self._points[self._via % len(self._points)].tolist()
-            if hypot(px - x, py - y) > self._r_via + TOLERANCE:
+            if hypot(px - x, py - y) > self._r_via + TOLERANCE * self._layout.scale:
                 self._via_missed += 1
             self._via += 1
         if self._has_goal and task.done and self._finish_time is None:
             self._finish_time = frame.time
             px, py = self._points[-1].tolist()
-            self._goal_near = hypot(px - x, py - y) <= self._r_goal + TOLERANCE
+            self._goal_near = hypot(px - x, py - y) <= self._r_goal + TOLERANCE * self._layout.scale
             wanted = self._layout.goal_heading
             error = 0.0 if wanted is None else degrees(abs(wrap(heading - wanted)))
             self._goal_turned = error <= HEADING_TOLERANCE

@@ -14,6 +14,7 @@ from navigation.belief.belief import Motion, Track
 
 Array = NDArray[np.float64]
 
+# Lengths are those in a world of scale 1.
 MAX_MATCH_DISTANCE = 0.3  # from a track to its obstacle [m]
 MAX_RANGE = 3.5  # movers farther away are not in view [m]
 SETTLING_TIME = 1.0  # time in view after which the errors of a moving track count [s]
@@ -24,9 +25,11 @@ class TrackMetrics:
 
     Args:
         obstacles: of the run's world, in the order of the truth.
+        scale: of the world [1].
     """
 
-    def __init__(self, obstacles: Sequence[Obstacle]) -> None:
+    def __init__(self, obstacles: Sequence[Obstacle], scale: float = 1.0) -> None:
+        self._scale = scale
         self._colors = [o.color for o in obstacles]
         self._movers = [_Mover() if o.motion is not None else None for o in obstacles]
         self._static = _Errors()
@@ -40,7 +43,7 @@ class TrackMetrics:
         dt = 0.0 if self._before is None else time - self._before
         self._before = time
         tracks = [t for t in frame.belief.tracks if t.particles is None]
-        owned = owners(tracks, self._colors, truth.obstacle_positions)
+        owned = owners(tracks, self._colors, truth.obstacle_positions, self._scale)
         for i, track in owned.items():
             mover = self._movers[i]
             if mover is not None:
@@ -65,7 +68,7 @@ class TrackMetrics:
 
     def _follow(self, mover: "_Mover", track: Track, truth: Truth, i: int, *, dt: float) -> None:
         offset = truth.obstacle_positions[i] - truth.robot[:2]
-        if not track.visible or hypot(*offset.tolist()) > MAX_RANGE:
+        if not track.visible or hypot(*offset.tolist()) > MAX_RANGE * self._scale:
             return
         if mover.first_seen is None:
             mover.first_seen = truth.time
@@ -120,13 +123,16 @@ class _Errors:
         return self._normalised / self._count if self._count else None
 
 
-def owners(tracks: Sequence[Track], colors: Sequence[str], positions: Array) -> dict[int, Track]:
+def owners(
+    tracks: Sequence[Track], colors: Sequence[str], positions: Array, scale: float = 1.0
+) -> dict[int, Track]:
     """Assign tracks to obstacles of their colour, the nearest pair first.
 
     Args:
         tracks: of a belief.
         colors: of the obstacles (n).
         positions: of the obstacles in W (n, 2) [m].
+        scale: of the world [1].
 
     Returns:
         Track by index of the obstacle.
@@ -139,7 +145,7 @@ def owners(tracks: Sequence[Track], colors: Sequence[str], positions: Array) -> 
         believed_x, believed_y = track.position.tolist()
         for i, x, y in by_color.get(track.label, ()):
             distance = hypot(x - believed_x, y - believed_y)
-            if distance < MAX_MATCH_DISTANCE:
+            if distance < MAX_MATCH_DISTANCE * scale:
                 pairs.append((distance, k, i))
     pairs.sort()
     owned: dict[int, Track] = {}

@@ -15,6 +15,7 @@ Array = NDArray[np.float64]
 Point = Sequence[float] | Array
 Points = Sequence[Point] | Array
 
+# Lengths are those in a world of scale 1.
 MARGIN = 0.55  # shown around the field, with the beacons [m]
 SUBPIXEL = 4  # bits of a pixel that OpenCV draws with
 UNIT = 1 << SUBPIXEL
@@ -29,13 +30,17 @@ class Canvas:
         field_size: extent of the field along x and y, without the margin [m].
         size: width and height [pixel].
         paper: colour of the ground.
+        scale: of the world [1].
 
     Attributes:
         image: (height, width, 3), RGB.
     """
 
-    def __init__(self, field_size: Point, size: tuple[int, int], paper: Color) -> None:
-        width, depth = framed(field_size).tolist()
+    def __init__(
+        self, field_size: Point, size: tuple[int, int], paper: Color, scale: float = 1.0
+    ) -> None:
+        width, depth = framed(field_size, scale).tolist()
+        self._world_scale = scale
         self._scale: float = min(size[0] / width, size[1] / depth)
         self._half = 0.5 * np.array(field_size, dtype=float)
         self._middle = (0.5 * size[0], 0.5 * size[1])
@@ -55,8 +60,8 @@ class Canvas:
 
     def beacon(self, at: Point, top: Color, bottom: Color) -> None:
         """Draw a beacon: the top half on the bottom half."""
-        self.disc(at, BEACON, bottom)
-        self.disc(at, TOP, top)
+        self.disc(at, BEACON * self._world_scale, bottom)
+        self.disc(at, TOP * self._world_scale, top)
 
     def disc(self, at: Point, radius: float, color: Color) -> None:
         """Draw a filled circle; `radius` in [m]."""
@@ -115,7 +120,7 @@ class Canvas:
         return max(1, round(metres * self._scale * UNIT))
 
 
-def framed(field_size: Point) -> Array:
-    """Return the extent of a field with its margin (2,) [m]."""
-    extent: Array = np.asarray(field_size, dtype=float) + 2.0 * MARGIN
+def framed(field_size: Point, scale: float = 1.0) -> Array:
+    """Return the extent of a field in a world of some scale with its margin (2,) [m]."""
+    extent: Array = np.asarray(field_size, dtype=float) + 2.0 * MARGIN * scale
     return extent

@@ -7,7 +7,6 @@ import numpy as np
 
 from hsr8.render.canvas import Canvas, Point, framed
 from hsr8.render.text import Color, Image, draw_text
-from hsr8.scenario.world import ROBOT_RADIUS
 from hsr8.world.field.certificate import Certificate
 from hsr8.world.field.layout import Layout, Obstacle
 from hsr8.world.field.motion import Appearing, Circle, Line, MotionLaw, Passage, Shuttle
@@ -26,6 +25,7 @@ MAX_LABELS = 12  # more waypoints than this are pale and without numbers
 AHEAD = 60.0  # length of the lane of a mover that never turns [s]
 MARK_PERIOD = 10.0  # between two marks on the path of the certificate [s]
 PATH_WIDTH, PATH_DOT = 2, 0.025  # of the path of the certificate [pixel, m]
+POINT, GOAL, HEADING = 0.035, 0.10, 0.12  # sizes of a waypoint, the goal and an arrow [m]
 NUMBER, LABEL = 12, 15  # font sizes of obstacles and waypoints [pixel]
 
 
@@ -34,18 +34,23 @@ class PlanView:
 
     Args:
         layout: to draw.
+        radius: of the robot [m].
         size: of the longer side of the image [pixel].
         certificate: whose path is drawn, if any.
     """
 
     def __init__(
-        self, layout: Layout, size: int = 900, certificate: Certificate | None = None
+        self,
+        layout: Layout,
+        radius: float,
+        size: int = 900,
+        certificate: Certificate | None = None,
     ) -> None:
-        self._layout = layout
+        self._layout, self._radius, self._scale = layout, radius, layout.scale
         self._path = np.zeros((0, 4)) if certificate is None else certificate.path
-        extent = framed(layout.field_size)
+        extent = framed(layout.field_size, layout.scale)
         width, height = np.ceil(extent * (size / extent.max())).astype(int).tolist()
-        self._canvas = Canvas(layout.field_size, (width, height), PAPER)
+        self._canvas = Canvas(layout.field_size, (width, height), PAPER, layout.scale)
 
     def draw(self) -> Image:
         """Return the image (height, width, 3), RGB."""
@@ -90,11 +95,12 @@ class PlanView:
             self._canvas.line(leg, color)
         for k, point in enumerate(points[1:], start=1):
             if k == last and not self._layout.endless:
-                self._canvas.ring(point, 0.10, ROUTE)
+                self._canvas.ring(point, GOAL * self._scale, ROUTE)
                 if self._layout.goal_heading is not None:
-                    heading = self._layout.goal_heading
-                    self._arrow(point, (0.12 * np.cos(heading), 0.12 * np.sin(heading)), ROUTE)
-            self._canvas.disc(point, 0.035, ROUTE)
+                    heading, length = self._layout.goal_heading, HEADING * self._scale
+                    arrow = (length * np.cos(heading), length * np.sin(heading))
+                    self._arrow(point, arrow, ROUTE)
+            self._canvas.disc(point, POINT * self._scale, ROUTE)
 
     def _numbers(self) -> None:
         """Draw the numbers of the waypoints, joined at points visited repeatedly."""
@@ -115,7 +121,7 @@ class PlanView:
         self._canvas.line(self._path[:, 1:3], PATH, PATH_WIDTH)
         marks = [np.interp(times, self._path[:, 0], self._path[:, k]) for k in (1, 2)]
         for mark in np.stack(marks, axis=1):
-            self._canvas.disc(mark, PATH_DOT, PATH)
+            self._canvas.disc(mark, PATH_DOT * self._scale, PATH)
 
     def _lane(self, motion: MotionLaw) -> None:
         if isinstance(motion, Appearing):
@@ -132,9 +138,10 @@ class PlanView:
 
     def _robot(self) -> None:
         x, y, heading = self._layout.start
-        self._canvas.disc((x, y), ROBOT_RADIUS, ROBOT)
-        self._canvas.ring((x, y), ROBOT_RADIUS, INK)
-        self._arrow((x, y), (0.1 * np.cos(heading), 0.1 * np.sin(heading)))
+        self._canvas.disc((x, y), self._radius, ROBOT)
+        self._canvas.ring((x, y), self._radius, INK)
+        length = HEADING * self._scale
+        self._arrow((x, y), (length * np.cos(heading), length * np.sin(heading)))
 
     def _arrow(self, tail: Point, velocity: Point, color: Color = INK) -> None:
         """Draw an arrow of two seconds of `velocity`."""

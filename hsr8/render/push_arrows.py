@@ -12,6 +12,7 @@ Array = NDArray[np.float64]
 Arrow = tuple[Array, Array]
 
 SHOWN = 0.5  # duration of an arrow in video time [s]
+# In a world of scale 1; weights, and with them forces, grow with the cube of lengths.
 LENGTH = 0.02  # of an arrow per newton [m/N]
 MIN_LENGTH, MAX_LENGTH = 0.15, 0.40  # [m]
 GAP = 0.07  # between the tip and the point of action, which is inside the body [m]
@@ -34,8 +35,10 @@ class PushArrow:
     vector: Array
 
 
-def push_arrows(table: WalkingTable, trajectory: Trajectory) -> tuple[PushArrow, ...]:
-    """Return the arrows of all pushes of a run."""
+def push_arrows(
+    table: WalkingTable, trajectory: Trajectory, scale: float = 1.0
+) -> tuple[PushArrow, ...]:
+    """Return the arrows of all pushes of a run in a world of some scale."""
     arrows = []
     pushed = np.flatnonzero(table["push_impulse"] > 0.0)
     firsts = np.unique(table["push_begin"][pushed], return_index=True)[1]
@@ -43,12 +46,12 @@ def push_arrows(table: WalkingTable, trajectory: Trajectory) -> tuple[PushArrow,
         force = np.array([table[f"push_f{axis}"][row] for axis in "xyz"])
         point = np.array([table[f"push_{axis}"][row] for axis in "xyz"])
         newtons = float(np.linalg.norm(force))
-        length = min(MAX_LENGTH, max(MIN_LENGTH, LENGTH * newtons))
+        length = scale * min(MAX_LENGTH, max(MIN_LENGTH, LENGTH * newtons / scale**3))
         arrows.append(
             PushArrow(
                 begin=float(table["push_begin"][row]),
                 impulse=float(table["push_impulse"][row]),
-                tip=point - GAP / newtons * force - trajectory.qpos[row, :3],
+                tip=point - GAP * scale / newtons * force - trajectory.qpos[row, :3],
                 vector=length / newtons * force,
             )
         )

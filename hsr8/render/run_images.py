@@ -56,8 +56,10 @@ class RunImages:
         self._collisions = [e["time"] for e in self._events if e["kind"] == "collision"]
         self._pushes: tuple[PushArrow, ...] = ()
         if any(event["kind"] == "push" for event in self._events):
-            self._pushes = push_arrows(run.walking(), self._trajectory)
-        self._follow = FollowCamera(self._trajectory.qpos[self._rows], fps, speed)
+            self._pushes = push_arrows(run.walking(), self._trajectory, self._layout.scale)
+        self._follow = FollowCamera(
+            self._trajectory.qpos[self._rows], fps, speed, self._layout.scale
+        )
         camera = self._scenario.camera
         self._optics = Optics(
             camera.width, camera.height, camera.vertical_fov, self._scenario.world.brightness

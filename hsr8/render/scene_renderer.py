@@ -18,7 +18,7 @@ Array = NDArray[np.float64]
 Image = NDArray[np.uint8]
 
 ARROW = np.array([0.90, 0.20, 0.45, 1.0], dtype=np.float32)  # colour of arrows
-ARROW_RADIUS = 0.012  # [m]
+ARROW_RADIUS = 0.012  # in a world of scale 1 [m]
 SHADOW_SIZE = {True: 4096, False: 2048}  # of fine and of quick images [texel]
 SHADOW_CONE = 0.48  # fraction of the sun's cone with shadows: up to the rim of the field
 EDGE = 24  # minimum difference of a pixel on an edge to the mean of its neighbours, of 255
@@ -57,6 +57,7 @@ class SceneRenderer:
             [self.model.body(f"mover_{i:02d}").mocapid[0] for i in range(len(layout.movers))],
             dtype=np.intp,
         )
+        self._arrow_radius = ARROW_RADIUS * layout.scale
         visual = self.model.vis
         self._size, self._soft = size, quality == "show"
         oversampling = min(oversampling, MAX_SIDE / max(size))
@@ -91,7 +92,7 @@ class SceneRenderer:
             geom = scene.geoms[scene.ngeom]
             kind = mujoco.mjtGeom.mjGEOM_ARROW
             mujoco.mjv_initGeom(geom, kind, np.zeros(3), np.zeros(3), np.eye(3).ravel(), ARROW)
-            mujoco.mjv_connector(geom, kind, ARROW_RADIUS, tail, tip)
+            mujoco.mjv_connector(geom, kind, self._arrow_radius, tail, tip)
             scene.ngeom += 1
         image: Image = self._renderer.render()
         if image.shape[1::-1] != self._size:

@@ -17,6 +17,7 @@ Array = NDArray[np.float64]
 
 PAPER, FIELD, RIM = (222, 225, 230), (247, 246, 243), (176, 178, 182)
 INK, SHADE, PATH = (44, 46, 52), (212, 211, 208), (146, 148, 154)
+# Lengths are those in a world of scale 1.
 VIEW_RANGE = 1.6  # drawn length of the field of view [m]
 VIEW_OPACITY = 0.35
 NUMBER = (176, 92, 0)  # colour of waypoint numbers
@@ -26,6 +27,7 @@ AHEAD = 3  # waypoints shown
 SIGMAS = 2.0
 VELOCITY = 2.0  # prediction time of velocity lines [s]
 MAX_SIGMA = 0.5  # of a drawn ellipse [m]
+POINT = 0.05  # radius of a waypoint [m]
 OVERSAMPLING = 2  # for smooth small circles
 STROKE = 300  # image height per pixel of line width [pixel]
 
@@ -40,11 +42,14 @@ class TopDown:
 
     def __init__(self, layout: Layout, size: tuple[int, int]) -> None:
         self._layout = layout
-        self._size = size
+        self._size, self._scale = size, layout.scale
         self._width = max(OVERSAMPLING, round(OVERSAMPLING * size[1] / STROKE))
         self._letters = OVERSAMPLING * font_size(size[1] / 27)
         self._ground = Canvas(
-            layout.field_size, (OVERSAMPLING * size[0], OVERSAMPLING * size[1]), PAPER
+            layout.field_size,
+            (OVERSAMPLING * size[0], OVERSAMPLING * size[1]),
+            PAPER,
+            layout.scale,
         )
         self._ground.field(FIELD, RIM, self._width)
         for beacon in layout.beacons:
@@ -66,7 +71,7 @@ class TopDown:
             Image (height, width, 3), RGB.
         """
         canvas, width = self._ground.copy(), self._width
-        canvas.area(_view(frame), palette.VIEW, VIEW_OPACITY)
+        canvas.area(_view(frame, self._scale), palette.VIEW, VIEW_OPACITY)
         if len(trail) > 1:
             canvas.line(trail, PATH, width)
         for track in frame.tracks:
@@ -77,9 +82,9 @@ class TopDown:
             canvas.ring((x, y), radius, palette.VIRTUAL, width)
         self._draw_waypoints(canvas, frame.passed)
         canvas.line((frame.pose[:2], frame.target), palette.TARGET, width)
-        canvas.disc(frame.target, 0.05, palette.TARGET)
-        canvas.area(_robot(frame.pose), palette.BELIEF)
-        canvas.line(_robot(frame.truth), INK, width, closed=True)
+        canvas.disc(frame.target, POINT * self._scale, palette.TARGET)
+        canvas.area(_robot(frame.pose, self._scale), palette.BELIEF)
+        canvas.line(_robot(frame.truth, self._scale), INK, width, closed=True)
         self._draw_covariance(canvas, frame.pose[:2], frame.covariance)
         shown: Image = cv2.resize(canvas.image, self._size, interpolation=cv2.INTER_AREA)
         return shown
@@ -90,7 +95,7 @@ class TopDown:
         last = passed + AHEAD if self._layout.endless else min(passed + AHEAD, len(points))
         for number in range(passed, last):
             point = points[number % len(points)]
-            canvas.ring(point, 0.05, palette.TARGET, self._width)
+            canvas.ring(point, POINT * self._scale, palette.TARGET, self._width)
             u, v = canvas.pixel(point)
             corner = (u + self._letters // 2, v - self._letters // 2)
             draw_text(canvas.image, corner, str(number + 1), NUMBER, self._letters, strong=True)
@@ -110,22 +115,23 @@ class TopDown:
         self, canvas: Canvas, at: Sequence[float], covariance: tuple[float, float, float]
     ) -> None:
         xx, xy, yy = covariance
-        if xx + yy < MAX_SIGMA**2:
+        if xx + yy < (MAX_SIGMA * self._scale) ** 2:
             half, direction = ellipse.axes(np.array([[[xx, xy], [xy, yy]]]))
             canvas.ellipse(at, SIGMAS * half[0], float(direction[0]), palette.BELIEF, self._width)
 
 
-def _robot(pose: Sequence[float]) -> list[tuple[float, float]]:
+def _robot(pose: Sequence[float], scale: float) -> list[tuple[float, float]]:
     """Return the outline of the robot in W [m]."""
     x, y, yaw = pose
-    c, s = cos(yaw), sin(yaw)
+    c, s = scale * cos(yaw), scale * sin(yaw)
     return [(x + c * u - s * v, y + s * u + c * v) for u, v in ROBOT]
 
 
-def _view(frame: FrameSummary) -> Array:
+def _view(frame: FrameSummary, scale: float) -> Array:
     """Return the outline of the field of view in W [m]."""
     x, y, yaw = frame.pose
     half = min(0.5 * frame.fov, pi)
     angles = yaw + frame.gaze[0] + half * np.linspace(-1.0, 1.0, 12)
-    rim = np.column_stack([x + VIEW_RANGE * np.cos(angles), y + VIEW_RANGE * np.sin(angles)])
+    reach = VIEW_RANGE * scale
+    rim = np.column_stack([x + reach * np.cos(angles), y + reach * np.sin(angles)])
     return np.vstack([[x, y], rim])

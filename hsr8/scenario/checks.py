@@ -10,7 +10,7 @@ from hsr8.scenario.mission import Course, Points, Tour, Walk
 from hsr8.scenario.problem import Problem
 from hsr8.scenario.schema import Scenario
 from hsr8.scenario.section import Point
-from hsr8.scenario.world import ROBOT_RADIUS, CircleMover, Mover, ShuttleMover
+from hsr8.scenario.world import CircleMover, Mover, ShuttleMover
 from vision.errors import VisionError
 
 MAX_CELLS = 1000
@@ -27,6 +27,7 @@ def check(scenario: Scenario) -> list[Problem]:
         *_command(scenario),
         *fault_problems(scenario),
         *_outside(scenario),
+        *_gaps(scenario),
         *_overlaps(scenario),
         *_movers(scenario),
     ]
@@ -136,7 +137,7 @@ def _places(scenario: Scenario) -> Iterator[tuple[Path, Point, float]]:
     """Key of each place, its point, and the distance to keep from the border [m]."""
     world, mission = scenario.world, scenario.mission
     if scenario.robot.start.position is not None:
-        yield ("robot", "start", "position"), scenario.robot.start.position, ROBOT_RADIUS
+        yield ("robot", "start", "position"), scenario.robot.start.position, scenario.robot.radius
     for i, obstacle in enumerate(world.obstacle):
         yield ("world", "obstacle", i, "position"), obstacle.position, obstacle.radius
     for i, wall in enumerate(world.wall):
@@ -152,17 +153,30 @@ def _places(scenario: Scenario) -> Iterator[tuple[Path, Point, float]]:
             yield ("world", "mover", i, "end"), mover.end, mover.radius
     if isinstance(mission, Points):
         for i, point in enumerate(mission.points):
-            yield ("mission", "points", i), point, ROBOT_RADIUS
+            yield ("mission", "points", i), point, scenario.robot.radius
+
+
+def _gaps(scenario: Scenario) -> Iterator[Problem]:
+    """Gaps in walls wide enough for the robot."""
+    diameter = 2.0 * scenario.robot.radius
+    for i, wall in enumerate(scenario.world.wall):
+        if wall.gap is not None and wall.gap >= diameter:
+            yield Problem(
+                ("world", "wall", i, "gap"),
+                f"must be less than 2 robot.radius = {diameter:g}, got {wall.gap:g}",
+            )
 
 
 def _overlaps(scenario: Scenario) -> Iterator[Problem]:
     """Static obstacles on the start of the robot, on a point of the mission or on each other."""
-    world, start, mission = scenario.world, scenario.robot.start.position, scenario.mission
+    world, robot, mission = scenario.world, scenario.robot, scenario.mission
+    start = robot.start.position
     places = [("robot.start.position", start)] if start is not None else []
     if isinstance(mission, Points):
         places += [(f"mission.points[{k}]", point) for k, point in enumerate(mission.points)]
     cylinders: list[tuple[Path, float, list[Point]]] = [
-        (("world", "wall", i), wall.radius, wall.positions()) for i, wall in enumerate(world.wall)
+        (("world", "wall", i), wall.radius, wall.positions(robot.radius))
+        for i, wall in enumerate(world.wall)
     ]
     for i, a in enumerate(world.obstacle):
         path: Path = ("world", "obstacle", i, "position")
@@ -171,7 +185,7 @@ def _overlaps(scenario: Scenario) -> Iterator[Problem]:
             if _distance(a.position, b.position) < a.radius + b.radius:
                 yield Problem(path, f"overlaps world.obstacle[{k}] at {list(b.position)}")
     for path, radius, positions in cylinders:
-        reach = radius + ROBOT_RADIUS
+        reach = radius + robot.radius
         for name, point in places:
             if any(_distance(position, point) < reach for position in positions):
                 yield Problem(path, f"must be at least {reach:g} m from {name} = {list(point)}")
@@ -183,7 +197,7 @@ def _movers(scenario: Scenario) -> Iterator[Problem]:
         if isinstance(mover, ShuttleMover) and mover.start == mover.end:
             yield Problem(("world", "mover", i, "end"), "must differ from start")
         key, first = _initial_position(mover)
-        if start is not None and _distance(first, start) < mover.radius + ROBOT_RADIUS:
+        if start is not None and _distance(first, start) < mover.radius + scenario.robot.radius:
             yield Problem(("world", "mover", i, key), "begins at the start of the robot")
 
 

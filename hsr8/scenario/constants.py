@@ -5,7 +5,7 @@ from dataclasses import asdict, is_dataclass
 from functools import cache
 from typing import Any, get_type_hints
 
-from hsr8.scenario.presets import PROFILES, under
+from hsr8.scenario.presets import PROFILES, followers, under
 from hsr8.scenario.problem import Problem
 from hsr8.scenario.public_keys import LIBRARIES, PUBLIC
 from hsr8.scenario.schema import Scenario
@@ -55,7 +55,7 @@ def separated(data: Table) -> Table:
     libraries, settings, constants = {name: data[name] for name in LIBRARIES}, dict(data), {}
     defaults = {name: asdict(Scenario.model_fields[name].default) for name in LIBRARIES}
     defaults["navigation"] = asdict(PROFILES[data["navigation"]["profile"]]())
-    values, usual = _flat(libraries), _flat(defaults)
+    values, usual = _flat(libraries), _flat(defaults) | _flat(followers(data))
     settings |= _nested({key: value for key, value in values.items() if key in PUBLIC})
     constants = {k: v for k, v in values.items() if k not in PUBLIC and v != _plain(usual[k])}
     return {**settings, CONSTANTS: _nested(constants)} if constants else settings

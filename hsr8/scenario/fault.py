@@ -243,7 +243,7 @@ class LowFriction(_Fault):
     position: Point | None = None
     """Centre of the slippery patch in W; default: everywhere [m]."""
     radius: Annotated[float, Interval(gt=0.0, le=100.0), "m"] | None = None
-    """Radius of the patch; default: 0.3 [m]."""
+    """Radius of the patch; default: 0.3 world.scale [m]."""
 
     @model_validator(mode="after")
     def _placed(self) -> "LowFriction":
@@ -251,10 +251,9 @@ class LowFriction(_Fault):
             raise ValueError("radius requires position; without both the whole floor is slippery")
         return self
 
-    @property
-    def reach(self) -> float:
-        """Radius of the patch [m]."""
-        return 0.3 if self.radius is None else self.radius
+    def reach(self, scale: float) -> float:
+        """Radius of the patch in a world of some scale [m]."""
+        return 0.3 * scale if self.radius is None else self.radius
 
 
 class Bump(_Fault):

@@ -15,7 +15,7 @@ from hsr8.errors import ScenarioError
 from hsr8.scenario.checks import check
 from hsr8.scenario.constants import CONSTANTS, misplaced, separated, with_constants
 from hsr8.scenario.key_lines import Path, depth, line_of
-from hsr8.scenario.presets import expand_presets
+from hsr8.scenario.presets import expand_presets, followers, under
 from hsr8.scenario.problem import Problem, dotted, problems_of
 from hsr8.scenario.renamed import renamed
 from hsr8.scenario.schema import Scenario
@@ -150,7 +150,8 @@ class _Draft:
         problems = list(renamed(self.data)) or list(misplaced(self.data))
         if problems:
             return None, problems
-        data = with_constants(expand_presets(self.data))
+        data = under(self.data, followers(self.data))
+        data = with_constants(expand_presets(data))
         try:
             scenario = Scenario.model_validate_json(json.dumps(data, default=str))
         except ValidationError as error:

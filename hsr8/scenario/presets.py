@@ -1,4 +1,4 @@
-"""Presets: the navigation profile and the camera lens."""
+"""Presets: the navigation profile, the camera lens, and defaults that follow other keys."""
 
 from collections.abc import Mapping
 from dataclasses import asdict
@@ -6,6 +6,7 @@ from typing import Any
 
 from hsr8.scenario.camera import LENSES
 from navigation.parameters.navigation import NavigationParameters
+from vision.parameters import VisionParameters
 
 Table = dict[str, Any]
 
@@ -26,6 +27,30 @@ def expand_presets(data: Mapping[str, Any]) -> Table:
     if isinstance(camera, dict):
         expanded["camera"] = _with_lens(camera)
     return expanded
+
+
+def followers(data: Mapping[str, Any]) -> Table:
+    """Return the defaults that follow given keys of a scenario's tables.
+
+    Navigation takes the radius of the robot, vision the sizes of the obstacles and the beacons.
+    """
+    defaults: Table = {}
+    radius = _number(data, "robot", "radius")
+    if radius is not None:
+        defaults["navigation"] = {"univector": {"s_robot": radius}}
+    scale = _number(data, "world", "scale")
+    if scale is not None:
+        vision = VisionParameters()
+        sizes = ("obstacle_height", "beacon_height", "beacon_radius")
+        defaults["vision"] = {size: scale * getattr(vision, size) for size in sizes}
+    return defaults
+
+
+def _number(data: Mapping[str, Any], section: str, key: str) -> float | None:
+    """Value of a key; None without a number."""
+    table = data.get(section)
+    value = table.get(key) if isinstance(table, dict) else None
+    return None if isinstance(value, bool) or not isinstance(value, int | float) else value
 
 
 def _with_lens(camera: Table) -> Table:

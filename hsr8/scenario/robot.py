@@ -4,8 +4,11 @@ from typing import Annotated, Literal
 
 from annotated_types import Interval
 
-from hsr8.scenario.section import Section
+from hsr8.scenario.section import Radius, Section
 from hsr8.scenario.world import Start
+
+NOMINAL_SPEED = 0.20
+"""Maximum forward speed of HSR-VIII, by which the times of worlds scale [m/s]."""
 
 WalkingSpeed = Annotated[float, Interval(ge=0.01, le=5.0), "m/s"]
 
@@ -13,7 +16,7 @@ WalkingSpeed = Annotated[float, Interval(ge=0.01, le=5.0), "m/s"]
 class SpeedEnvelope(Section):
     """Speed limits of navigation."""
 
-    vx: WalkingSpeed = 0.20
+    vx: WalkingSpeed = NOMINAL_SPEED
     """Maximum forward speed [m/s]."""
     vx_backward: WalkingSpeed = 0.10
     """Maximum backward speed [m/s]."""
@@ -30,6 +33,8 @@ class Robot(Section):
 
     body: Literal["full", "kinematic"] = "full"
     """full: MuJoCo physics; kinematic: no dynamics, every footstep lands as planned."""
+    radius: Radius = 0.12
+    """Radius of the walking robot, for worlds, their certificates and navigation [m]."""
     start: Start = Start()
     """Initial pose."""
     speed: SpeedEnvelope = SpeedEnvelope()

@@ -14,7 +14,7 @@ from hsr8.scenario.disturbance import Disturbance
 from hsr8.scenario.fault import Fault
 from hsr8.scenario.mission import Mission
 from hsr8.scenario.plugin import Plugin
-from hsr8.scenario.robot import Robot
+from hsr8.scenario.robot import NOMINAL_SPEED, Robot
 from hsr8.scenario.section import PeriodMs, Section
 from hsr8.scenario.sensor_noise import SensorNoise
 from hsr8.scenario.world import World
@@ -112,6 +112,11 @@ class Scenario(Section):
         if not 0 <= number <= MAX_SEED:
             raise ScenarioError(f"seed={seed!r}: expected an integer from 0 to {MAX_SEED:_}")
         return self.model_copy(update={"seed": number})
+
+    @property
+    def time_scale(self) -> float:
+        """Time in which the robot walks across the world, relative to HSR-VIII [1]."""
+        return self.world.scale * (NOMINAL_SPEED / self.robot.speed.vx)
 
     def speed_limits(self) -> SpeedLimits:
         """Return the speed limits of navigation, whose commands last for one footstep."""

@@ -24,8 +24,7 @@ Side = Annotated[float, Interval(ge=0.5, le=100.0), "m"]
 Bearing = Annotated[float, Interval(ge=0.0, le=180.0)]
 BearingRange = Annotated[tuple[Bearing, Bearing], AfterValidator(ordered)]
 
-ROBOT_RADIUS = 0.12
-"""Radius of the walking robot, S_robot [m]."""
+GAP_RATIO = 5.0 / 6.0  # default gap in a wall, relative to the diameter of the robot [1]
 
 
 class StaticObstacle(Section):
@@ -91,13 +90,14 @@ class Wall(Section):
     """Axis of the last cylinder in W [m]."""
     radius: Radius = 0.12
     """Radius of a cylinder [m]."""
-    gap: Annotated[float, Interval(ge=0.0, lt=2.0 * ROBOT_RADIUS)] = 0.20
-    """Maximum gap between neighbouring cylinders [m]."""
+    gap: Annotated[float, Interval(ge=0.0, le=4.0), "m"] | None = None
+    """Maximum gap between neighbouring cylinders; default: 5/6 of the robot's diameter [m]."""
 
-    def positions(self) -> list[Point]:
-        """Axes of the cylinders, evenly spaced [m]."""
+    def positions(self, robot_radius: float) -> list[Point]:
+        """Axes of the cylinders, evenly spaced, for a robot of some radius [m]."""
         (x, y), (dx, dy) = self.start, (self.end[0] - self.start[0], self.end[1] - self.start[1])
-        n = ceil(hypot(dx, dy) / (2.0 * self.radius + self.gap) - 1e-9)
+        gap = 2.0 * GAP_RATIO * robot_radius if self.gap is None else self.gap
+        n = ceil(hypot(dx, dy) / (2.0 * self.radius + gap) - 1e-9)
         return [(x + k / n * dx, y + k / n * dy) for k in range(n + 1)] if n else [self.start]
 
 
@@ -126,6 +126,9 @@ class World(Section):
 
     size: tuple[Side, Side] = (5.0, 5.0)
     """Size of the field along x and y of W, centred on the origin [m]."""
+    scale: Annotated[float, Interval(ge=0.05, le=20.0), "m"] = 1.0
+    """Size of obstacles' heights, beacons, lines and distances relative to those for HSR-VIII
+    [1]."""
     n_static: Count = 12
     """Number of drawn static obstacles [1]."""
     n_moving: Count = 4

@@ -19,6 +19,7 @@ from navigation.observation import CameraView
 Array = NDArray[np.float64]
 
 SIGMAS = 2.0  # standard deviations of ellipses
+# Lengths are those in a world of scale 1.
 HEADING_LENGTH = 0.35  # [m]
 VELOCITY_SCALE = 2.0  # prediction time of velocity arrows [s]
 VIEW_RANGE = 1.5  # drawn length of the field of view [m]
@@ -35,9 +36,11 @@ class BeliefLayer:
     Args:
         stream: recording.
         map_period: minimum interval between two local maps and particle clouds [s].
+        scale: of the world [1].
     """
 
-    def __init__(self, stream: BlockStream, map_period: float) -> None:
+    def __init__(self, stream: BlockStream, map_period: float, scale: float = 1.0) -> None:
+        self._scale = scale
         self._stream = stream
         self._map_throttle = Throttle(map_period)
         self._map_shape: tuple[int, ...] = ()
@@ -46,20 +49,22 @@ class BeliefLayer:
         solid = rr.components.FillMode.Solid
         lines = rr.components.FillMode.MajorWireframe
         blue, arrows, cylinders = [palette.BELIEF], rr.Arrows3D, rr.Cylinders3D
-        rings = {"colors": blue, "fill_mode": lines, "line_radii": [0.004]}
-        virtual = {"colors": [palette.VIRTUAL], "fill_mode": lines, "line_radii": [0.006]}
+        rings = {"colors": blue, "fill_mode": lines, "line_radii": [0.004 * scale]}
+        virtual = {"colors": [palette.VIRTUAL], "fill_mode": lines, "line_radii": [0.006 * scale]}
 
         def channel(name: str, archetype: type, **style: object) -> Channel:
             return Channel(stream, f"/belief/{name}", archetype, **style)
 
-        self._pose = channel("pose", arrows, colors=blue, radii=[0.015])
+        self._pose = channel("pose", arrows, colors=blue, radii=[0.015 * scale])
         self._uncertainty = channel("uncertainty", rr.Ellipsoids3D, **rings)
         self._tracks = channel("tracks", cylinders, fill_mode=solid)
         self._track_uncertainty = channel("track_uncertainty", rr.Ellipsoids3D, **rings)
-        self._velocities = channel("velocities", arrows, colors=blue, radii=[0.01])
+        self._velocities = channel("velocities", arrows, colors=blue, radii=[0.01 * scale])
         self._virtual = channel("virtual_obstacles", cylinders, **virtual)
-        self._view = channel("view", rr.LineStrips3D, colors=[palette.VIEW], radii=[0.008])
-        self._target = channel("target", rr.Points3D, colors=[palette.TARGET], radii=[0.05])
+        edge = {"colors": [palette.VIEW], "radii": [0.008 * scale]}
+        self._view = channel("view", rr.LineStrips3D, **edge)
+        ball = {"colors": [palette.TARGET], "radii": [0.05 * scale]}
+        self._target = channel("target", rr.Points3D, **ball)
         self._particles = channel("particles", rr.Points3D)
         self._map = channel("local_map", rr.GridMap)
 
@@ -71,10 +76,14 @@ class BeliefLayer:
         centres, ahead = np.full((len(times), 3), MARK_HEIGHT), np.zeros((len(times), 3))
         centres[:, :2] = poses[:, :2]
         ahead[:, 0], ahead[:, 1] = np.cos(poses[:, 2]), np.sin(poses[:, 2])
-        self._pose.add_rows(times, ones, origins=centres, vectors=HEADING_LENGTH * ahead)
+        self._pose.add_rows(
+            times, ones, origins=centres, vectors=HEADING_LENGTH * self._scale * ahead
+        )
         covariances = np.array([belief.pose_covariance for belief in beliefs])[:, :2, :2]
         self._ellipses(self._uncertainty, times, ones, centres, covariances)
-        self._view.add_rows(times, ones, strips=list(_wedges(poses, [b.view for b in beliefs])))
+        self._view.add_rows(
+            times, ones, strips=list(_wedges(poses, [b.view for b in beliefs], self._scale))
+        )
         self._add_tracks(times, beliefs)
         for frame in frames:
             if frame.motion is not self._motion:
@@ -83,7 +92,7 @@ class BeliefLayer:
             target = frame.task.target.tolist()
             if target != self._target_position:
                 self._target_position = target
-                self._target.add(frame.time, positions=np.array([[*target, 0.05]]))
+                self._target.add(frame.time, positions=np.array([[*target, 0.05 * self._scale]]))
             if self._map_throttle.due(frame.time):
                 self._add_particles(frame.time, frame.belief)
                 self._add_map(frame.time, frame.belief)
@@ -105,7 +114,7 @@ class BeliefLayer:
             colors=np.array(colors, dtype=np.uint32),
         )
         covariances = np.reshape([t.covariance for t in tracks], (-1, 4, 4))[:, :2, :2]
-        known = np.trace(covariances, axis1=1, axis2=2) < MAX_SIGMA**2
+        known = np.trace(covariances, axis1=1, axis2=2) < (MAX_SIGMA * self._scale) ** 2
         counts = _counts(times, rows[known])
         self._ellipses(self._track_uncertainty, times, counts, centres[known], covariances[known])
         moving = np.array([t.motion is not Motion.STATIC for t in tracks], dtype=bool)
@@ -133,7 +142,7 @@ class BeliefLayer:
         self._particles.add(
             time,
             positions=np.column_stack([points, np.full(len(points), MARK_HEIGHT)]),
-            radii=PARTICLE * np.sqrt(np.clip(weights, *PARTICLE_WEIGHTS)),
+            radii=PARTICLE * self._scale * np.sqrt(np.clip(weights, *PARTICLE_WEIGHTS)),
             colors=np.array(colors, dtype=np.uint32),
         )
 
@@ -201,7 +210,7 @@ def _map_style(cell: float, shape: tuple[int, ...]) -> rr.GridMap:
     )
 
 
-def _wedges(poses: Array, views: Sequence[CameraView]) -> Array:
+def _wedges(poses: Array, views: Sequence[CameraView], scale: float = 1.0) -> Array:
     """Return the outlines of the fields of view on the floor (m, n, 3) [m]."""
     axes = np.array([view.rotation[:, 2] for view in views])
     middles = poses[:, 2] + np.arctan2(axes[:, 1], axes[:, 0])
@@ -209,6 +218,6 @@ def _wedges(poses: Array, views: Sequence[CameraView]) -> Array:
     angles = middles[:, None] + halves[:, None] * np.linspace(-1.0, 1.0, 9)
     outlines = np.full((len(poses), 11, 3), MARK_HEIGHT)
     outlines[:, :, :2] = poses[:, None, :2]
-    outlines[:, 1:-1, 0] += VIEW_RANGE * np.cos(angles)
-    outlines[:, 1:-1, 1] += VIEW_RANGE * np.sin(angles)
+    outlines[:, 1:-1, 0] += VIEW_RANGE * scale * np.cos(angles)
+    outlines[:, 1:-1, 1] += VIEW_RANGE * scale * np.sin(angles)
     return outlines

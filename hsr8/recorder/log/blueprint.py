@@ -24,23 +24,28 @@ OUTLINES = rr.Cylinders3D.from_fields(
 ABOVE = 6.2  # height of the viewpoint over a field of 5 m [m]
 
 
-def blueprint(field_size: float, *, walking: bool, images: bool) -> rrb.Blueprint:
+def blueprint(
+    field_size: float, *, walking: bool, images: bool, scale: float = 1.0
+) -> rrb.Blueprint:
     """Return two tabs: the whole robot, and its walking in detail.
 
     Args:
         field_size: longer side of the field [m].
         walking: show walking first.
         images: show images, beliefs and plans.
+        scale: of the world [1].
     """
     return rrb.Blueprint(
-        rrb.Tabs(_overview(field_size, images), _walking(), active_tab=1 if walking else 0),
+        rrb.Tabs(
+            _overview(field_size, images, scale), _walking(scale), active_tab=1 if walking else 0
+        ),
         rrb.TimePanel(timeline=TIMELINE, state="collapsed"),
         rrb.BlueprintPanel(state="collapsed"),
         rrb.SelectionPanel(state="collapsed"),
     )
 
 
-def _walking() -> rrb.Container:
+def _walking(scale: float) -> rrb.Container:
     """Return the robot over its footsteps on the left, curves on the right."""
     robot = rrb.Spatial3DView(
         name="Walking",
@@ -49,8 +54,8 @@ def _walking() -> rrb.Container:
         background=BACKGROUND,
         line_grid=False,
         eye_controls=rrb.EyeControls3D(
-            position=(-0.5, -0.6, 0.42),
-            look_target=(0.0, 0.0, 0.14),
+            position=(-0.5 * scale, -0.6 * scale, 0.42 * scale),
+            look_target=(0.0, 0.0, 0.14 * scale),
             eye_up=(0.0, 0.0, 1.0),
             tracking_entity="/world/robot/ellipsoids",
         ),
@@ -89,7 +94,7 @@ def _walking() -> rrb.Container:
     return rrb.Horizontal(left, curves, column_shares=[1, 1], name="Walking")
 
 
-def _overview(field_size: float, images: bool) -> rrb.Container:
+def _overview(field_size: float, images: bool, scale: float) -> rrb.Container:
     """Return robot and belief above, camera, gaze, states and curves below."""
     height = ABOVE * field_size / 5.0
     robot = rrb.Spatial3DView(
@@ -108,8 +113,8 @@ def _overview(field_size: float, images: bool) -> rrb.Container:
         background=BACKGROUND,
         line_grid=False,
         eye_controls=rrb.EyeControls3D(
-            position=(-1.05, -0.75, 0.75),
-            look_target=(0.05, 0.0, 0.2),
+            position=(-1.05 * scale, -0.75 * scale, 0.75 * scale),
+            look_target=(0.05 * scale, 0.0, 0.2 * scale),
             eye_up=(0.0, 0.0, 1.0),
             tracking_entity="/world/robot/ellipsoids",
         ),

@@ -17,6 +17,7 @@ from navigation.motion.univector import normalized
 
 Array = NDArray[np.float64]
 
+# Lengths are those in a world of scale 1.
 SPACING, REACH = 0.25, 1.5  # of the arrows of the field, and their maximum distance [m]
 ARROW = 0.13  # length of each [m]
 STEP, STEPS = 0.15, 8  # of the path that follows the field [m]
@@ -30,16 +31,24 @@ class PlanLayer:
     Args:
         stream: recording.
         period: minimum interval between two fields [s].
+        scale: of the world [1].
     """
 
-    def __init__(self, stream: BlockStream, period: float) -> None:
+    def __init__(self, stream: BlockStream, period: float, scale: float = 1.0) -> None:
+        self._scale = scale
         self._throttle = Throttle(period)
         self._motion: MotionDecision | None = None
         self._shown = False
         field, plan = [palette.FIELD], [palette.PLAN]
-        self._field = Channel(stream, "/plan/field", rr.Arrows3D, colors=field, radii=[0.008])
-        self._path = Channel(stream, "/plan/path", rr.LineStrips3D, colors=plan, radii=[0.007])
-        self._decision = Channel(stream, "/plan/decision", rr.Arrows3D, colors=plan, radii=[0.011])
+        self._field = Channel(
+            stream, "/plan/field", rr.Arrows3D, colors=field, radii=[0.008 * scale]
+        )
+        self._path = Channel(
+            stream, "/plan/path", rr.LineStrips3D, colors=plan, radii=[0.007 * scale]
+        )
+        self._decision = Channel(
+            stream, "/plan/decision", rr.Arrows3D, colors=plan, radii=[0.011 * scale]
+        )
 
     def add(self, frames: Sequence[FrameRecord]) -> None:
         """Take camera frames."""
@@ -63,35 +72,36 @@ class PlanLayer:
         elif self._throttle.due(frame.time):
             self._shown = True
             position = frame.belief.pose[:2]
-            points = grid(position)
-            path = path_along(motion.field, position, frame.task.target)
+            points = grid(position, self._scale)
+            path = path_along(motion.field, position, frame.task.target, self._scale)
             self._draw(frame.time, points, normalized(motion.field.at(points)), [path])
 
     def _draw(self, time: float, points: Array, directions: Array, paths: list[Array]) -> None:
-        arrows = ARROW * _raised(directions, 0.0)
+        arrows = ARROW * self._scale * _raised(directions, 0.0)
         # Arrows are centred on their points.
         self._field.add(time, origins=_raised(points, HEIGHT) - 0.5 * arrows, vectors=arrows)
         self._path.add(time, strips=[_raised(path, HEIGHT) for path in paths])
 
 
-def grid(position: Array) -> Array:
+def grid(position: Array, scale: float = 1.0) -> Array:
     """Return the points of a fixed grid around `position` (2,) (n, 2) [m]."""
-    centre = np.round(position / SPACING) * SPACING
-    steps = np.arange(-REACH, REACH + 0.5 * SPACING, SPACING)
+    spacing, reach = SPACING * scale, REACH * scale
+    centre = np.round(position / spacing) * spacing
+    steps = np.arange(-reach, reach + 0.5 * spacing, spacing)
     x, y = np.meshgrid(centre[0] + steps, centre[1] + steps)
     points = np.column_stack([x.ravel(), y.ravel()])
-    inside: Array = points[np.hypot(*(points - position).T) <= REACH]
+    inside: Array = points[np.hypot(*(points - position).T) <= reach]
     return inside
 
 
-def path_along(field: DirectionField, position: Array, target: Array) -> Array:
+def path_along(field: DirectionField, position: Array, target: Array, scale: float = 1.0) -> Array:
     """Return the path along a field from `position` (2,) up to `target` (2,) (n, 2) [m]."""
-    path = [np.asarray(position, dtype=float)]
+    path, step = [np.asarray(position, dtype=float)], STEP * scale
     for _ in range(STEPS):
-        if float(np.hypot(*(target - path[-1]))) <= STEP:
+        if float(np.hypot(*(target - path[-1]))) <= step:
             path.append(target)
             break
-        path.append(path[-1] + STEP * normalized(field.at(path[-1])))
+        path.append(path[-1] + step * normalized(field.at(path[-1])))
     return np.array(path)
 
 

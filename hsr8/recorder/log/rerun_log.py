@@ -31,7 +31,7 @@ from navigation.parameters.gaze import GazeParameters
 
 Array = NDArray[np.float64]
 
-APRON = 1.0  # margin of the floor around the field, both sides together [m]
+APRON = 1.0  # margin of the floor around the field, both sides together, at scale 1 [m]
 LIVE_PERIOD = 0.5  # interval between two batches while a viewer is connected [s]
 SOLE_HEIGHT = 0.004  # height of drawn footsteps [m]
 MAX_LABELS = 12  # more waypoints than this are shown without numbers
@@ -88,7 +88,10 @@ class RerunLog:
         self._waits = not live  # for the file; a viewer may disconnect
         self._failed = False
         shown = blueprint(
-            max(layout.field_size), walking=len(layout.waypoints) == 0, images=rates.jpeg > 0
+            max(layout.field_size),
+            scale=layout.scale,
+            walking=len(layout.waypoints) == 0,
+            images=rates.jpeg > 0,
         )
         try:
             self._stream.begin(sinks, shown)
@@ -97,19 +100,19 @@ class RerunLog:
         self._stream.send_recording_name(name)
         self._stream.log("/", rr.ViewCoordinates.RIGHT_HAND_Z_UP, static=True)
         self._n_movers = len(layout.movers)
-        width, depth = layout.field_size
-        self._scene = Scene(self._stream, model, (width + APRON, depth + APRON))
+        width, depth = (side + APRON * layout.scale for side in layout.field_size)
+        self._scene = Scene(self._stream, model, (width, depth))
         self._soles = tuple(sole_outline(model, side) for side in "lr")
         self._camera: CameraLayer | None = None
         self._belief_layers: tuple[BeliefLayer | PlanLayer, ...] = ()
         if rates.jpeg:
             self._camera = CameraLayer(self._stream, model, image_size, rates.jpeg, gaze)
             self._belief_layers = (
-                BeliefLayer(self._stream, rates.map),
-                PlanLayer(self._stream, rates.map),
+                BeliefLayer(self._stream, rates.map, layout.scale),
+                PlanLayer(self._stream, rates.map, layout.scale),
             )
         self._plots = PlotLayer(self._stream)
-        self._walk = WalkLayer(self._stream)
+        self._walk = WalkLayer(self._stream, layout.scale)
         self._footsteps = Channel(self._stream, "/world/footsteps", rr.LineStrips3D)
         self._path = Channel(self._stream, "/world/path", rr.LineStrips3D)
         self._trail: list[list[float]] = []
@@ -242,7 +245,7 @@ class RerunLog:
             "/world/waypoints",
             rr.Points3D(
                 np.column_stack([points, np.full(len(points), 0.01)]),
-                radii=0.03 if len(points) <= MAX_LABELS else 0.012,
+                radii=layout.scale * (0.03 if len(points) <= MAX_LABELS else 0.012),
                 colors=[palette.TARGET],
                 labels=labels,
                 show_labels=len(points) <= MAX_LABELS,
@@ -253,7 +256,7 @@ class RerunLog:
             c, s = cos(layout.goal_heading), sin(layout.goal_heading)
             heading = rr.Arrows3D(
                 origins=[[*points[-1].tolist(), 0.01]],
-                vectors=[[0.25 * c, 0.25 * s, 0.0]],
+                vectors=[[0.25 * layout.scale * c, 0.25 * layout.scale * s, 0.0]],
                 colors=[palette.TARGET],
                 radii=0.01,
             )

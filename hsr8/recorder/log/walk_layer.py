@@ -30,6 +30,7 @@ GAIT = {
 }
 POINTS = (("ZMP planned", ORANGE), ("ZMP measured", BLUE), ("CoM", GREEN), ("DCM", VIOLET))
 FLOOR = 0.006  # height of drawings on the floor [m]
+# In a world of scale 1; weights, and with them forces, grow with the cube of lengths.
 PIN = 0.16  # height of the pins that mark points on the floor [m]
 ARROW = 0.025  # drawn length of a push per newton [m/N]
 GAP = 0.07  # between the tip of an arrow and the point of action [m]
@@ -41,20 +42,28 @@ SIDES = {"l": (BLUE, SAND, GREEN), "r": (ORANGE, RED, VIOLET)}
 
 
 class WalkLayer:
-    """Layer of walking."""
+    """Layer of walking.
 
-    def __init__(self, stream: BlockStream) -> None:
+    Args:
+        stream: recording.
+        scale: of the world [1].
+    """
+
+    def __init__(self, stream: BlockStream, scale: float = 1.0) -> None:
+        self._pin, self._gap, self._arrow = PIN * scale, GAP * scale, ARROW / scale**2
         self._points = Channel(
             stream,
             "/world/walking/points",
             rr.Arrows3D,
             colors=[color for _, color in POINTS],
-            radii=[0.003],
-            vectors=np.tile([0.0, 0.0, FLOOR - PIN], (len(POINTS), 1)),
+            radii=[0.003 * scale],
+            vectors=np.tile([0.0, 0.0, FLOOR - self._pin], (len(POINTS), 1)),
         )
-        edge = {"colors": [palette.TARGET], "radii": [0.0025]}
+        edge = {"colors": [palette.TARGET], "radii": [0.0025 * scale]}
         self._support = Channel(stream, "/world/walking/support", rr.LineStrips3D, **edge)
-        self._pushes = Channel(stream, "/world/pushes", rr.Arrows3D, colors=[RED], radii=[0.012])
+        self._pushes = Channel(
+            stream, "/world/pushes", rr.Arrows3D, colors=[RED], radii=[0.012 * scale]
+        )
         curves = (*POINTS, ("edge of the soles", GREY), ("edge of the soles", GREY))
         self._zmp = tuple(
             Curves(stream, f"/plots/zmp_{axis}", curves) for axis in ("forward", "left")
@@ -99,7 +108,7 @@ class WalkLayer:
         points = np.stack([planned, measured, com, dcm], axis=1)
         self._add_curves(times, np.array([t.robot for t in truths]), points, support, rows)
         points[:, 1] = np.where(np.isnan(measured[:, :1]), planned, measured)
-        pins = np.full((len(times), len(POINTS), 3), PIN)
+        pins = np.full((len(times), len(POINTS), 3), self._pin)
         pins[..., :2] = points
         self._points.add_rows(times, [len(POINTS)] * len(times), origins=pins.reshape(-1, 3))
         commanded = np.array([record.command.velocity for record in records])
@@ -124,8 +133,10 @@ class WalkLayer:
         pushes = record.truth.pushes
         if pushes or self._pushed:
             self._pushed = bool(pushes)
-            vectors = ARROW * np.array([p.force for p in pushes]).reshape(-1, 3)
-            reach = 1.0 + GAP / np.maximum(np.linalg.norm(vectors, axis=1, keepdims=True), 1e-9)
+            vectors = self._arrow * np.array([p.force for p in pushes]).reshape(-1, 3)
+            reach = 1.0 + self._gap / np.maximum(
+                np.linalg.norm(vectors, axis=1, keepdims=True), 1e-9
+            )
             origins = np.array([p.point for p in pushes]).reshape(-1, 3) - reach * vectors
             self._pushes.add(record.time, origins=origins, vectors=vectors)
 

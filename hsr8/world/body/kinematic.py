@@ -23,7 +23,7 @@ from walking.targets import JointTargets
 Array = NDArray[np.float64]
 
 # Standard deviations of the slip of a foot at touch-down. With them the robot drifts as in full
-# physics, see `walking.body.odometry`.
+# physics, see `walking.body.odometry`. Lengths are those in a world of scale 1.
 SLIP = 0.0003  # per axis [m]
 YAW_SLIP = 0.0006  # about the vertical [rad]
 LANDED = 0.0005  # the swing foot becomes the stance foot when lower than it by this [m]
@@ -55,6 +55,8 @@ class KinematicBody:
         sensor_rng, self._slip_rng = rng.spawn(2)
         self._suite = SensorSuite(noise, sensor_rng, CONTROL_PERIOD)
         self._weight = float(model.body_subtreemass[self._index.base_body]) * GRAVITY
+        self._slip = np.array([SLIP * layout.scale, SLIP * layout.scale, YAW_SLIP])
+        self._landed, self._lifted = LANDED * layout.scale, LIFTED * layout.scale
         self._tick = 0
         sites = list(self._index.foot_sites)
         self._feet = model.site_bodyid[sites].astype(np.intp)
@@ -163,12 +165,12 @@ class KinematicBody:
         pose[:] = ORIGIN
         mujoco.mj_kinematics(self.model, data)
         self._set_base(pose)
-        if self._other_sole[3] < -LANDED:
+        if self._other_sole[3] < -self._landed:
             self._stance = 1 - self._stance
-            slip = self._slip_rng.standard_normal(3) * (SLIP, SLIP, YAW_SLIP)
+            slip = self._slip_rng.standard_normal(3) * self._slip
             self._anchor = self._other_sole[:3] + slip
             self._set_base(pose)
-        self._support = BOTH if self._other_sole[3] < LIFTED else self._stance
+        self._support = BOTH if self._other_sole[3] < self._lifted else self._stance
 
     def _set_base(self, pose: Array) -> None:
         data = self.data

@@ -76,7 +76,7 @@ class PhysicsBody:
         self._surroundings = Surroundings(model, layout)
         self._index = self._surroundings.index
         self._pusher = Pusher(model, pushes, CONTROL_PERIOD)
-        self._faults = WorldFaults(model, self._index, faults)
+        self._faults = WorldFaults(model, self._index, faults, layout.scale)
         self._saturation = SaturationWatch(model, self._index)
         self._suite = SensorSuite(noise, rng, CONTROL_PERIOD)
         self._substeps = round(CONTROL_PERIOD / model.opt.timestep)

@@ -19,9 +19,17 @@ class WorldFaults:
         model: compiled world.
         index: addresses in it.
         faults: of the scenario; faults of other parts are ignored.
+        scale: of the world [1].
     """
 
-    def __init__(self, model: mujoco.MjModel, index: ModelIndex, faults: Sequence[Fault]) -> None:
+    def __init__(
+        self,
+        model: mujoco.MjModel,
+        index: ModelIndex,
+        faults: Sequence[Fault],
+        scale: float = 1.0,
+    ) -> None:
+        self._scale = scale
         self._index = index
         self._weak = [f for f in faults if isinstance(f, ServoWeak)]
         self._low_friction = [f for f in faults if isinstance(f, LowFriction)]
@@ -53,13 +61,13 @@ class WorldFaults:
             friction = self._friction[side]
             x, y, _ = data.geom_xpos[geom].tolist()
             for slip in self._low_friction:
-                if slip.acts(tick) and _within(slip, x, y):
+                if slip.acts(tick) and _within(slip, x, y, self._scale):
                     friction = slip.magnitude
             if self._low_friction:
                 model.geom_friction[geom, 0] = friction
 
 
-def _within(slip: LowFriction, x: float, y: float) -> bool:
+def _within(slip: LowFriction, x: float, y: float, scale: float) -> bool:
     if slip.position is None:
         return True
-    return hypot(x - slip.position[0], y - slip.position[1]) <= slip.reach
+    return hypot(x - slip.position[0], y - slip.position[1]) <= slip.reach(scale)

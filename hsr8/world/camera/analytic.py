@@ -21,6 +21,7 @@ from vision.camera import PinholeCamera
 from vision.color import COLOR_CLASSES
 from vision.detection import Detection
 
+# Lengths are those in a world of scale 1.
 OBSTACLE_RANGE = 4.5  # farther obstacles are not reported [m]
 BEACON_RANGE = 5.5  # farther beacons are not reported [m]
 DETECTION_RATE = 0.999  # fraction of visible objects that are detected
@@ -59,6 +60,7 @@ class AnalyticCamera:
         faults: CameraFaults,
     ) -> None:
         self._camera = camera
+        self._scale = layout.scale
         self._rng = rng
         self._fault_rng = rng.spawn(1)[0]
         self._omnidirectional = settings.omnidirectional
@@ -105,6 +107,7 @@ class AnalyticCamera:
             if distance <= cylinder.radius:
                 continue
             limit = BEACON_RANGE if isinstance(cylinder, Beacon) else OBSTACLE_RANGE
+            limit *= self._scale
             draw = self._rng.random()
             noise = self._rng.standard_normal(3)
             if distance > limit or hidden > MAX_HIDDEN or draw > DETECTION_RATE:
@@ -114,8 +117,16 @@ class AnalyticCamera:
             if box[2]:
                 x, y = self._positions[i].tolist()
                 polar = _polar(x, y, robot)
-                noisy = _detection(polar, cylinder, box, hidden=hidden, noise=noise.tolist())
-                detections.append(noisy)
+                detections.append(
+                    _detection(
+                        polar,
+                        cylinder,
+                        box,
+                        hidden=hidden,
+                        noise=noise.tolist(),
+                        scale=self._scale,
+                    )
+                )
         return detections
 
     def _false_detections(self, robot: tuple[float, float, float], mean: float) -> list[Detection]:
@@ -126,15 +137,25 @@ class AnalyticCamera:
         detections = []
         for _ in range(int(rng.poisson(mean)) if mean else 0):
             color = OBSTACLE_COLORS[rng.integers(len(OBSTACLE_COLORS))]
-            cylinder = Obstacle((0.0, 0.0), FALSE_RADIUS, FALSE_HEIGHT, color)
-            polar = (rng.uniform(*FALSE_RANGE), ahead + rng.uniform(-half, half))
+            radius, height = FALSE_RADIUS * self._scale, FALSE_HEIGHT * self._scale
+            cylinder = Obstacle((0.0, 0.0), radius, height, color)
+            distance = self._scale * rng.uniform(*FALSE_RANGE)
+            polar = (distance, ahead + rng.uniform(-half, half))
             direction = polar[1] + robot[2]
             x = robot[0] + polar[0] * cos(direction) - float(eye[0])
             y = robot[1] + polar[0] * sin(direction) - float(eye[1])
             box = project(x, y, cylinder.radius, cylinder.height, False, eye)
             if box[2]:
-                noise = (0.0, 0.0, 0.0)
-                detections.append(_detection(polar, cylinder, box, hidden=0.0, noise=noise))
+                detections.append(
+                    _detection(
+                        polar,
+                        cylinder,
+                        box,
+                        hidden=0.0,
+                        noise=(0.0, 0.0, 0.0),
+                        scale=self._scale,
+                    )
+                )
         return detections
 
 
@@ -159,13 +180,18 @@ def _detection(
     *,
     hidden: float,
     noise: Sequence[float],
+    scale: float,
 ) -> Detection:
-    """Return a noisy detection of a cylinder at true (distance, bearing) in R."""
+    """Return a noisy detection of a cylinder at true (distance, bearing) in R.
+
+    `scale` is that of the world.
+    """
     distance, true_bearing = polar
     left, top, right, bottom, cut = box
     beacon = isinstance(cylinder, Beacon)
     whole = beacon or (not cut and hidden <= MAX_HIDDEN_WHOLE)
-    range_sigma, bearing_sigma, radius_sigma = _deviations(distance, whole)
+    range_sigma, bearing_sigma, radius_sigma = _deviations(distance / scale, whole)
+    range_sigma, radius_sigma = range_sigma * scale, radius_sigma * scale
     if beacon:
         radius_sigma = 0.0
     bearing = true_bearing + bearing_sigma * noise[1]
@@ -174,9 +200,9 @@ def _detection(
         kind="beacon" if beacon else "obstacle",
         label=cylinder.name if isinstance(cylinder, Beacon) else cylinder.color,
         bearing=atan2(sin(bearing), cos(bearing)),
-        distance=max(0.05, distance + range_sigma * noise[0]),
+        distance=max(0.05 * scale, distance + range_sigma * noise[0]),
         covariance=np.array([[range_sigma**2, 0.0], [0.0, bearing_sigma**2]]),
-        radius=max(0.01, radius),
+        radius=max(0.01 * scale, radius),
         radius_sigma=radius_sigma,
         by_radius=np.zeros(2),
         cut=bool(cut),

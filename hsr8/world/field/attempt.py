@@ -9,18 +9,7 @@ from numpy.typing import NDArray
 from hsr8.scenario.mission import Course, Points, Tour
 from hsr8.scenario.schema import Scenario
 from hsr8.world.field.encounter import NominalWalk, course_to, passage_through
-from hsr8.world.field.fairness import (
-    LANE_TO_GOAL,
-    LANE_TO_LANE,
-    LANE_TO_STATIC,
-    OBSTACLE_TO_BORDER,
-    POINT_TO_BORDER,
-    POINT_TO_STATIC,
-    START_TO_MOVER,
-    START_TO_STATIC,
-    START_TURN,
-    STATIC_GAP,
-)
+from hsr8.world.field.fairness import START_TURN, FairDistances
 from hsr8.world.field.lane import Lane, apart_at_all_times, distance, motion_law
 from hsr8.world.field.layout import (
     OBSTACLE_HEIGHT,
@@ -41,7 +30,8 @@ COLORS = ("red", "green", "blue", "violet")
 BATCH = 64  # candidate positions drawn at a time
 MAX_BATCHES = 30  # per object
 MAX_LANES = 300  # per mover
-ROUTE_OFFSET = 0.30  # maximum offset of a lane between walls from the route, along x and y [m]
+# Maximum offset of a lane between walls from the route, along x and y, in a world of scale 1 [m].
+ROUTE_OFFSET = 0.30
 
 
 class CrowdedError(Exception):
@@ -64,6 +54,7 @@ class Attempt:
         self._world = scenario.world
         self._rng = rng
         self.tried = 0
+        self._fair = FairDistances.of(scenario)
         self._half = 0.5 * np.asarray(scenario.world.size)
         self._static: list[Obstacle] = []
         self._lanes: list[Lane] = []
@@ -77,15 +68,13 @@ class Attempt:
         world = self._world
         start = self._scenario.robot.start.position
         points = self._given_points()
-        self._lanes = [Lane.of(motion_law(m), m.radius, m.color) for m in world.mover]
-        self._static = [
-            Obstacle(o.position, o.radius, OBSTACLE_HEIGHT, o.color) for o in world.obstacle
-        ]
+        self._lanes = [self._lane(motion_law(m), m.radius, m.color) for m in world.mover]
+        self._static = [self._cylinder(o.position, o.radius, o.color) for o in world.obstacle]
         for wall in world.wall:
-            for k, position in enumerate(wall.positions()):
+            for k, position in enumerate(wall.positions(self._scenario.robot.radius)):
                 # Neighbours differ in colour, so that vision can separate them.
                 color = COLORS[k % len(COLORS)]
-                self._static.append(Obstacle(position, wall.radius, OBSTACLE_HEIGHT, color))
+                self._static.append(self._cylinder(position, wall.radius, color))
         for _ in range(world.n_moving):
             self._lanes.append(self._draw_mover(start, points))
         self._draw_static(start, points)
@@ -102,13 +91,24 @@ class Attempt:
             waypoints=np.array(points, dtype=float).reshape(-1, 2),
             goal_heading=self._goal_heading(),
             endless=self._is_endless(),
+            scale=world.scale,
         )
+
+    def _cylinder(self, position: Point, radius: float, color: str) -> Obstacle:
+        """Return a static obstacle."""
+        return Obstacle(position, radius, OBSTACLE_HEIGHT * self._world.scale, color)
+
+    def _lane(self, motion: MotionLaw, radius: float, color: str) -> Lane:
+        """Return a mover with its lane."""
+        return Lane.of(motion, radius, color, self._world.scale, self._scenario.time_scale)
 
     def _beacons(self) -> tuple[Beacon, ...]:
         world = self._world
         if not world.beacons:
             return ()
-        return with_first_moved(standard_beacons(world.size), world.beacon_displacement)
+        return with_first_moved(
+            standard_beacons(world.size, world.scale), world.beacon_displacement
+        )
 
     def _given_points(self) -> list[Point] | None:
         mission = self._scenario.mission
@@ -144,19 +144,19 @@ class Attempt:
             radius = self._radius()
 
             def clear(p: Array, radius: float = radius) -> Mask:
-                free: Mask = self._static_gap(p) - radius >= STATIC_GAP
+                free: Mask = self._static_gap(p) - radius >= self._fair.static_gap
                 if start is not None:
-                    free &= distance(p, [start]) - radius >= START_TO_STATIC
+                    free &= distance(p, [start]) - radius >= self._fair.start_to_static
                 if points:
-                    free &= distance(p, points) - radius >= POINT_TO_STATIC
+                    free &= distance(p, points) - radius >= self._fair.point_to_static
                 for lane in self._lanes:
                     gap = distance(p, lane.path) - radius - lane.obstacle.radius
-                    free &= gap >= LANE_TO_STATIC
+                    free &= gap >= self._fair.lane_to_static
                 return free
 
-            margin = radius + OBSTACLE_TO_BORDER
+            margin = radius + self._fair.obstacle_to_border
             position = self._draw_point("static obstacles", clear, margin)
-            self._static.append(Obstacle(position, radius, OBSTACLE_HEIGHT, self._color()))
+            self._static.append(self._cylinder(position, radius, self._color()))
 
     def _draw_points(self, start: Point) -> list[Point]:
         """Draw the via points of a tour, or the via points and the goal of a course."""
@@ -174,13 +174,13 @@ class Attempt:
             def clear(
                 p: Array, last: Point = last, others: list[Point] = others, is_goal: bool = is_goal
             ) -> Mask:
-                free: Mask = self._static_gap(p) >= POINT_TO_STATIC
+                free: Mask = self._static_gap(p) >= self._fair.point_to_static
                 free &= distance(p, others) >= shortest
                 free &= distance(p, [last]) <= longest
                 if is_goal:
                     for lane in self._lanes:
                         gap = distance(p, lane.ends) - lane.obstacle.radius
-                        free &= gap >= LANE_TO_GOAL
+                        free &= gap >= self._fair.lane_to_goal
                 return free
 
             points.append(self._draw_point("via points", clear))
@@ -194,7 +194,7 @@ class Attempt:
             motion = self._draw_motion(route)
             if motion is None:
                 continue
-            lane = Lane.of(motion, self._radius(), self._color())
+            lane = self._lane(motion, self._radius(), self._color())
             if self._lane_clear(lane, start, goal):
                 return lane
         raise CrowdedError("moving obstacles")
@@ -206,8 +206,9 @@ class Attempt:
             # Between walls only movers near the route matter.
             walk = NominalWalk(route, 1.0)
             (along_x, along_y), _ = walk.at(walk.duration * float(rng.random()))
-            x = along_x + float(rng.uniform(-ROUTE_OFFSET, ROUTE_OFFSET))
-            y = along_y + float(rng.uniform(-ROUTE_OFFSET, ROUTE_OFFSET))
+            offset = ROUTE_OFFSET * world.scale
+            x = along_x + float(rng.uniform(-offset, offset))
+            y = along_y + float(rng.uniform(-offset, offset))
         centre = (x, y)
         angle = float(rng.uniform(-pi, pi))
         length = float(rng.uniform(*world.lane))
@@ -217,7 +218,7 @@ class Attempt:
             sense = 1.0 if rng.random() < 0.5 else -1.0
             return Circle(centre, 0.5 * length, sense * speed, angle)
         if kind == "wander":
-            return draw_wander(rng, centre, length, speed)
+            return draw_wander(rng, centre, length, speed, world.scale)
         dx, dy = 0.5 * length * cos(angle), 0.5 * length * sin(angle)
         return Shuttle(
             (centre[0] - dx, centre[1] - dy),
@@ -228,23 +229,31 @@ class Attempt:
 
     def _lane_clear(self, lane: Lane, start: Point | None, goal: Point | None) -> bool:
         radius = lane.obstacle.radius
-        if (np.abs(lane.path) > self._half - radius - OBSTACLE_TO_BORDER).any():
+        if (np.abs(lane.path) > self._half - radius - self._fair.obstacle_to_border).any():
             return False
-        if (self._static_gap(lane.path) - radius < LANE_TO_STATIC).any():
+        if (self._static_gap(lane.path) - radius < self._fair.lane_to_static).any():
             return False
         at_first = np.array([lane.obstacle.position])
-        if start is not None and distance(at_first, [start])[0] - radius < START_TO_MOVER:
+        if (
+            start is not None
+            and distance(at_first, [start])[0] - radius < self._fair.start_to_mover
+        ):
             return False
-        if goal is not None and (distance(lane.ends, [goal]) - radius < LANE_TO_GOAL).any():
+        if (
+            goal is not None
+            and (distance(lane.ends, [goal]) - radius < self._fair.lane_to_goal).any()
+        ):
             return False
         return all(self._lanes_clear(lane, other) for other in self._lanes)
 
     def _lanes_clear(self, lane: Lane, other: Lane) -> bool:
         """Return whether two lanes keep their distance, or cross without a meeting."""
-        room = LANE_TO_LANE + lane.obstacle.radius + other.obstacle.radius
+        room = self._fair.lane_to_lane + lane.obstacle.radius + other.obstacle.radius
         if (distance(lane.path, other.path) >= room).all():
             return True
-        return (lane.crosses or other.crosses) and apart_at_all_times(lane, other, room)
+        return (lane.crosses or other.crosses) and apart_at_all_times(
+            lane, other, room, self._scenario.time_scale
+        )
 
     def _draw_encounters(self, start: Point, points: Sequence[Point]) -> None:
         encounters = self._world.encounters
@@ -264,30 +273,32 @@ class Attempt:
                 course = course_to(velocity, speed, side * bearing)
                 if course is None:
                     continue
-                reach_x, reach_y = (self._half - radius - 2.0 * OBSTACLE_TO_BORDER).tolist()
+                reach_x, reach_y = (
+                    self._half - radius - 2.0 * self._fair.obstacle_to_border
+                ).tolist()
                 motion = passage_through(point, course, time, (reach_x, reach_y))
-                if motion is None or _starts_near(motion, walk, radius):
+                if motion is None or _starts_near(motion, walk, radius + self._fair.start_to_mover):
                     continue
-                lane = Lane.of(motion, radius, self._color())
+                lane = self._lane(motion, radius, self._color())
                 # The mover stays at its end, which must not block a point.
                 gaps = distance(lane.ends, points) - radius
-                if (gaps >= LANE_TO_GOAL).all() and self._lane_clear(lane, start, None):
+                if (gaps >= self._fair.lane_to_goal).all() and self._lane_clear(lane, start, None):
                     self._lanes.append(lane)
                     break
             else:
                 raise CrowdedError("movers on collision courses")
 
     def _start_clear(self, p: Array) -> Mask:
-        free: Mask = self._static_gap(p) >= START_TO_STATIC
+        free: Mask = self._static_gap(p) >= self._fair.start_to_static
         for lane in self._lanes:
             gap = distance(p, [lane.obstacle.position]) - lane.obstacle.radius
-            free &= gap >= START_TO_MOVER
+            free &= gap >= self._fair.start_to_mover
         return free
 
     def _draw_point(
-        self, objects: str, clear: Callable[[Array], Mask], margin: float = POINT_TO_BORDER
+        self, objects: str, clear: Callable[[Array], Mask], margin: float | None = None
     ) -> Point:
-        reach = self._half - margin
+        reach = self._half - (self._fair.point_to_border if margin is None else margin)
         if (reach <= 0.0).any():
             raise CrowdedError(objects)
         for _ in range(MAX_BATCHES):
@@ -315,8 +326,7 @@ class Attempt:
         return COLORS[int(self._rng.integers(len(COLORS)))]
 
 
-def _starts_near(motion: Passage, walk: NominalWalk, radius: float) -> bool:
-    """Return whether a waiting mover of some `radius` [m] departs close to the nominal walk."""
+def _starts_near(motion: Passage, walk: NominalWalk, room: float) -> bool:
+    """Return whether a waiting mover departs nearer than `room` [m] to the nominal walk."""
     (x, y), _ = walk.at(motion.depart)
-    gap = float(distance(np.array([motion.start]), [(x, y)])[0]) - radius
-    return motion.depart > 0.0 and gap < START_TO_MOVER
+    return motion.depart > 0.0 and bool(distance(np.array([motion.start]), [(x, y)])[0] < room)

@@ -12,17 +12,17 @@ from math import ceil, hypot, pi
 import numpy as np
 from numpy.typing import NDArray
 
-from hsr8.scenario.robot import SpeedEnvelope
-from hsr8.scenario.world import ROBOT_RADIUS
-from hsr8.world.field.lattice import DIRECTIONS, HALF_MOVE, Bits, Lattice
+from hsr8.scenario.robot import Robot
+from hsr8.world.field.lattice import DIRECTIONS, HALF_MOVE, LAYERS_PER_CELL, Bits, Lattice
 from hsr8.world.field.layout import Layout
 from hsr8.world.field.reachable import EIGHTH, Reachable
 
 Array = NDArray[np.float64]
 
+# In a world of scale 1:
 CELLS = (0.10, 0.05)  # cell sizes; the finer lattice is used if the coarser has no path [m]
 VIA_REACHED = 0.15  # distance at which a via point counts as passed [m]
-MAX_TIME = 400.0  # of the search [s]
+MAX_LENGTH = 80.0  # that the robot could walk during the search [m]
 MAX_POINTS = 8  # checked of a long tour
 SAMPLE = 0.02  # interval of the clearance along a path [s]
 
@@ -51,25 +51,26 @@ class Certificate:
         return float(np.hypot(*np.diff(self.path[:, 1:3], axis=0).T).sum())
 
 
-def certify(layout: Layout, speed: SpeedEnvelope) -> Certificate:
+def certify(layout: Layout, robot: Robot) -> Certificate:
     """Search a path through the first `MAX_POINTS` points of `layout` at most.
 
     Args:
         layout: the world.
-        speed: speed limits of the robot.
+        robot: radius and speed limits.
     """
     points = layout.waypoints[:MAX_POINTS].tolist()
     if not points:
         return Certificate(True, 0, 0, 0.0)
     for cell in CELLS:
-        lattice = Lattice(layout, speed, cell)
+        lattice = Lattice(layout, robot, cell * layout.scale)
         targets = _targets(layout, lattice, points)
         # A point enclosed by static obstacles needs no search.
         connected = lattice.connected()
         inside = [bool((target & connected).any()) for target in targets]
         search = Reachable(lattice, targets[: (*inside, False).index(False)])
         off = abs(layout.start[2] - EIGHTH * round(layout.start[2] / EIGHTH))
-        search.propagate(layout.start[2], off / speed.wz, ceil(MAX_TIME / lattice.layer))
+        layers = ceil(LAYERS_PER_CELL * MAX_LENGTH / cell)
+        search.propagate(layout.start[2], off / robot.speed.wz, layers)
         if search.passed == len(points):
             path = _from_start(layout, search.path())
             return Certificate(True, len(points), len(points), search.time, path)
@@ -85,7 +86,7 @@ def _from_start(layout: Layout, path: Array) -> Array:
 
 def _targets(layout: Layout, lattice: Lattice, points: list[list[float]]) -> list[Bits]:
     """Return the states that pass each point; the goal of a course requires its heading."""
-    targets = [lattice.near(point, VIA_REACHED) for point in points]
+    targets = [lattice.near(point, VIA_REACHED * layout.scale) for point in points]
     if not layout.endless and len(points) == len(layout.waypoints):
         # Half the diagonal of a cell: the cells next to the goal.
         targets[-1] = lattice.near(points[-1], HALF_MOVE * lattice.cell + 1e-9)
@@ -94,17 +95,21 @@ def _targets(layout: Layout, lattice: Lattice, points: list[list[float]]) -> lis
     return targets
 
 
-def min_clearance(layout: Layout, path: Array) -> float:
-    """Return the minimum distance of the robot's disc on `path` (n, 4) to any obstacle [m]."""
+def min_clearance(layout: Layout, path: Array, radius: float) -> float:
+    """Return the minimum distance of a robot on `path` (n, 4) to any obstacle [m].
+
+    Args:
+        layout: the world.
+        path: of a certificate.
+        radius: of the robot [m].
+    """
     times = np.arange(path[0, 0], path[-1, 0] + SAMPLE, SAMPLE)
     positions = np.stack([np.interp(times, path[:, 0], path[:, k]) for k in (1, 2)], axis=1)
-    gaps = [
-        np.hypot(*(positions - o.position).T).min() - o.radius - ROBOT_RADIUS for o in layout.static
-    ]
+    gaps = [np.hypot(*(positions - o.position).T).min() - o.radius - radius for o in layout.static]
     for mover in layout.movers:
         assert mover.motion is not None
         at = np.array([mover.motion.position(time) for time in times.tolist()])
-        gaps.append(np.hypot(*(positions - at).T).min() - mover.radius - ROBOT_RADIUS)
+        gaps.append(np.hypot(*(positions - at).T).min() - mover.radius - radius)
     return float(min(gaps, default=np.inf))
 
 

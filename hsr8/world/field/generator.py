@@ -1,6 +1,7 @@
 """Generator of fair worlds: random worlds that satisfy minimum distances and are feasible.
 
-The rules, with distances between surfaces except where a point is named:
+The rules, with distances between surfaces except where a point is named, which are those of a world
+of scale 1:
 
 * static obstacles leave gaps of two robot radii plus 0.16 m;
 * the start, a point, is 0.35 m from static obstacles and 0.9 m from movers;
@@ -75,7 +76,7 @@ def draw_world(scenario: Scenario, seed: int) -> FairWorld:
             if lanes > MAX_LANES:
                 break
             continue
-        certificate = certify(layout, scenario.robot.speed)
+        certificate = certify(layout, scenario.robot)
         if certificate.solvable or not _draws(scenario):
             faulty = with_faults(layout, scenario.fault)
             return FairWorld(faulty, certificate, rejected, crowded.total())

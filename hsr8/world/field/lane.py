@@ -15,6 +15,7 @@ from hsr8.world.field.wander import Wander
 Array = NDArray[np.float64]
 
 SAMPLES = 61  # points along a lane
+# For worlds in which the robot is as fast as HSR-VIII in a world of scale 1:
 INTERVAL = 0.5  # between checks of crossing movers [s]
 HORIZON = 300.0  # of these checks, whatever the duration of the run [s]
 OPEN_TIME = 60.0  # sampled time of a lane without an end [s]
@@ -37,9 +38,25 @@ class Lane:
     crosses: bool = False
 
     @classmethod
-    def of(cls, motion: MotionLaw, radius: float, color: str) -> "Lane":
-        """Return the lane of a mover of some `radius` [m] that follows `motion`."""
-        obstacle = Obstacle(motion.position(0.0), radius, OBSTACLE_HEIGHT, color, motion)
+    def of(
+        cls,
+        motion: MotionLaw,
+        radius: float,
+        color: str,
+        scale: float = 1.0,
+        time_scale: float = 1.0,
+    ) -> "Lane":
+        """Return the lane of a mover.
+
+        Args:
+            motion: of the mover.
+            radius: of the mover [m].
+            color: of the mover.
+            scale: of the world [1].
+            time_scale: of the world [1].
+        """
+        height = OBSTACLE_HEIGHT * scale
+        obstacle = Obstacle(motion.position(0.0), radius, height, color, motion)
         if isinstance(motion, Shuttle):
             path = np.linspace(motion.start, motion.end, SAMPLES)
             return cls(obstacle, path, path[[0, -1]])
@@ -54,7 +71,7 @@ class Lane:
         if isinstance(motion, Wander):
             path = np.array(motion.track)
             return cls(obstacle, path, path, crosses=True)
-        times = np.linspace(0.0, OPEN_TIME, SAMPLES).tolist()
+        times = np.linspace(0.0, OPEN_TIME * time_scale, SAMPLES).tolist()
         path = np.array([motion.position(time) for time in times])
         return cls(obstacle, path, path[:1])
 
@@ -72,12 +89,12 @@ def motion_law(mover: Mover) -> MotionLaw:
     return Circle(mover.centre, mover.path_radius, speed, radians(mover.angle_deg))
 
 
-def apart_at_all_times(lane: Lane, other: Lane, room: float) -> bool:
+def apart_at_all_times(lane: Lane, other: Lane, room: float, time_scale: float = 1.0) -> bool:
     """Return whether the axes of two movers keep a distance of `room` [m] for `HORIZON`."""
     motions = lane.obstacle.motion, other.obstacle.motion
     assert motions[0] is not None
     assert motions[1] is not None
-    times = np.arange(0.0, HORIZON, INTERVAL).tolist()
+    times = (time_scale * np.arange(0.0, HORIZON, INTERVAL)).tolist()
     first, second = (
         np.array([motion.position(time) for time in times]) for motion in motions if motion
     )

@@ -15,8 +15,7 @@ from math import ceil, pi
 import numpy as np
 from numpy.typing import NDArray
 
-from hsr8.scenario.robot import SpeedEnvelope
-from hsr8.scenario.world import ROBOT_RADIUS
+from hsr8.scenario.robot import Robot
 from hsr8.world.field.layout import Layout
 
 Array = NDArray[np.float64]
@@ -24,7 +23,7 @@ Bits = NDArray[np.uint8]
 """One byte per cell, one bit per heading."""
 
 ALL = 0xFF
-DISC = ROBOT_RADIUS + 0.02  # radius of the disc, with a margin [m]
+MARGIN = 0.02  # of the disc around the robot, in a world of scale 1 [m]
 DIRECTIONS = ((1, 0), (1, 1), (0, 1), (-1, 1), (-1, 0), (-1, -1), (0, -1), (1, -1))
 HALF_MOVE = 0.5 * 2.0**0.5  # of the longest move [cell]
 LAYERS_PER_CELL = 2  # layers of a straight move to a neighbour [1]
@@ -50,7 +49,7 @@ class Lattice:
 
     Args:
         layout: the world.
-        speed: speed limits of the robot.
+        robot: radius and speed limits.
         cell: distance of neighbours [m].
 
     Attributes:
@@ -63,16 +62,18 @@ class Lattice:
         start: indices of the start.
     """
 
-    def __init__(self, layout: Layout, speed: SpeedEnvelope, cell: float) -> None:
+    def __init__(self, layout: Layout, robot: Robot, cell: float) -> None:
+        speed = robot.speed
         self.cell = cell
+        self._disc = robot.radius + MARGIN * layout.scale
         self.layer = cell / speed.vx / LAYERS_PER_CELL
         self.turn = self._layers(0.25 * pi / speed.wz)
-        half = 0.5 * np.asarray(layout.field_size) - DISC
+        half = 0.5 * np.asarray(layout.field_size) - self._disc
         self.x, i = _aligned(half[0], layout.start[0], cell)
         self.y, j = _aligned(half[1], layout.start[1], cell)
         self.start = i, j
         self._movers = layout.motion()
-        reach = np.array([o.radius for o in layout.movers]) + DISC + HALF_MOVE * cell
+        reach = np.array([o.radius for o in layout.movers]) + self._disc + HALF_MOVE * cell
         self._reach2 = (reach + 0.5 * self.layer * self._movers.top_speeds()) ** 2
         self._static = self._clear(layout, (0.0, 0.0))
         self.moves = self._moves(layout, speed.vx)
@@ -129,7 +130,7 @@ class Lattice:
             # Fraction of the move at the closest approach.
             fraction = np.clip(-(dx * move[0] + dy * move[1]) / (square or 1.0), 0.0, 1.0)
             gap2 = (dx + fraction * move[0]) ** 2 + (dy + fraction * move[1]) ** 2
-            clear &= gap2 > (obstacle.radius + DISC) ** 2
+            clear &= gap2 > (obstacle.radius + self._disc) ** 2
         return _bits(clear)
 
 

@@ -8,10 +8,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from hsr8.scenario.fault import Bump, Fault, MoverAppears
-from hsr8.world.field.motion import Appearing, MotionLaw, Movers, Point
+from hsr8.world.field.motion import AWAY, Appearing, MotionLaw, Movers, Point
 
 Array = NDArray[np.float64]
 
+# In a world of scale 1:
 OBSTACLE_HEIGHT = 0.30  # [m]
 BEACON_RADIUS = 0.05  # [m]
 BEACON_HEIGHT = 0.60  # [m]
@@ -79,6 +80,7 @@ class Layout:
         goal_heading: required heading at the last waypoint [rad]; None for any.
         endless: the first waypoint follows the last one.
         bumps: low discs on the floor (faults).
+        scale: size of drawings and distances relative to those for HSR-VIII [1].
     """
 
     field_size: Point
@@ -89,6 +91,7 @@ class Layout:
     goal_heading: float | None
     endless: bool
     bumps: tuple[Bump, ...] = ()
+    scale: float = 1.0
 
     @property
     def static(self) -> tuple[Obstacle, ...]:
@@ -105,21 +108,32 @@ class Layout:
         return Movers(tuple(o.motion for o in self.obstacles if o.motion is not None))
 
 
-def standard_beacons(field_size: Point) -> tuple[Beacon, ...]:
+def standard_beacons(field_size: Point, scale: float = 1.0) -> tuple[Beacon, ...]:
     """Return six beacons around a field, one for every ordered pair of the beacon colours.
 
     They are on the rectangle `BEACON_OFFSET` outside the border, 60 deg apart as seen from its
-    centre, so that neighbours never have the same two colours.
+    centre, so that neighbours never have the same two colours. Sizes and that offset are
+    multiplied by `scale`.
     """
-    half = 0.5 * np.asarray(field_size, dtype=float) + BEACON_OFFSET
+    half = 0.5 * np.asarray(field_size, dtype=float) + BEACON_OFFSET * scale
     y, c, m = BEACON_COLORS
     pairs = ((y, c), (c, m), (m, y), (c, y), (m, c), (y, m))
     beacons = []
     for k, (top, bottom) in enumerate(pairs):
         angle = np.pi / 6.0 + k * np.pi / 3.0
         unit = np.array([np.cos(angle), np.sin(angle)])
-        x, y_ = (unit * np.min(half / np.maximum(np.abs(unit), 1e-9))).round(3).tolist()
-        beacons.append(Beacon(f"{top}/{bottom}", (x + 0.0, y_ + 0.0), top, bottom))
+        corner = unit * np.min(half / np.maximum(np.abs(unit), 1e-9))
+        x, y_ = (scale * (corner / scale).round(3)).tolist()
+        beacons.append(
+            Beacon(
+                f"{top}/{bottom}",
+                (x + 0.0, y_ + 0.0),
+                top,
+                bottom,
+                radius=BEACON_RADIUS * scale,
+                height=BEACON_HEIGHT * scale,
+            )
+        )
     return tuple(beacons)
 
 
@@ -143,7 +157,7 @@ def with_faults(layout: Layout, faults: Sequence[Fault]) -> Layout:
             mover = obstacles[first + fault.mover]
             assert mover.motion is not None
             end = inf if fault.end is None else fault.end
-            motion = Appearing(mover.motion, fault.begin, end)
+            motion = Appearing(mover.motion, fault.begin, end, AWAY * layout.scale)
             obstacles[first + fault.mover] = replace(
                 mover, position=motion.position(0.0), motion=motion
             )

@@ -11,7 +11,7 @@ from hsr8.world.field.wander import Wander
 Array = NDArray[np.float64]
 Point = tuple[float, float]
 
-AWAY = 60.0  # distance of an absent mover from its lane, out of sight [m]
+AWAY = 60.0  # distance of an absent mover from its lane, out of sight, in a world of scale 1 [m]
 SAME_TIME = 1e-6  # times closer than this are equal [s]
 
 
@@ -145,16 +145,18 @@ class Appearing:
         motion: while the mover is present.
         start: of the interval [s].
         end: of the interval [s].
+        away: distance from the lane outside the interval [m].
     """
 
     motion: "MotionLaw"
     start: float
     end: float = inf
+    away: float = AWAY
 
     def position(self, time: float) -> Point:
         """Return the position at `time` [s]."""
         x, y = self.motion.position(time)
-        return (x, y) if self._present(time) else (x + AWAY, y)
+        return (x, y) if self._present(time) else (x + self.away, y)
 
     def velocity(self, time: float) -> Point:
         """Return the velocity at `time` [m/s]; zero while the mover is away."""

@@ -12,7 +12,7 @@ Point = tuple[float, float]
 CORNERS = 192  # of the polygon that approximates the track
 FINE = 1024  # samples of the curve from which the corners are chosen
 COARSE = 128  # samples of the curve for its curvature
-MIN_BEND_RADIUS = 0.08  # [m]
+MIN_BEND_RADIUS = 0.08  # in a world of scale 1 [m]
 TRACKS = 24  # drawn at a time; the first one with gentle bends is used
 BATCHES = 8
 ORDER = np.arange(1, 4)  # of the harmonics of x and y
@@ -65,7 +65,7 @@ class Wander:
 
 
 def draw_wander(
-    rng: np.random.Generator, centre: Point, extent: float, speed: float
+    rng: np.random.Generator, centre: Point, extent: float, speed: float, scale: float = 1.0
 ) -> Wander | None:
     """Draw a mover that wanders around `centre`.
 
@@ -74,6 +74,7 @@ def draw_wander(
         centre: of the bounding box of the track [m].
         extent: longer side of that box [m].
         speed: [m/s].
+        scale: of the world [1].
 
     Returns:
         The law; None if no track of that extent has gentle bends.
@@ -85,14 +86,14 @@ def draw_wander(
         )
         shift = rng.uniform(-pi, pi, size.shape)
         box, bend = _shape(size, shift, COARSE)
-        scale = extent / np.ptp(box, axis=2).max(axis=1)
-        gentle = np.flatnonzero(scale * bend >= MIN_BEND_RADIUS)
+        size_ratio = extent / np.ptp(box, axis=2).max(axis=1)
+        gentle = np.flatnonzero(size_ratio * bend >= MIN_BEND_RADIUS * scale)
         if len(gentle) == 0:
             continue
         k = gentle[0]
         curve = _curve(size[k], shift[k], FINE)
         middle = 0.5 * (curve.max(axis=1) + curve.min(axis=1))
-        track, side = _equal_sides(scale[k] * (curve - middle[:, None]).T)
+        track, side = _equal_sides(size_ratio[k] * (curve - middle[:, None]).T)
         offset = float(rng.uniform(0.0, CORNERS * side))
         corners = (track + np.asarray(centre)).tolist()
         return Wander(tuple((x, y) for x, y in corners), side, speed, offset)

@@ -21,6 +21,7 @@ from vision.color import COLOR_CLASSES
 
 Quality = Literal["vision", "show"]
 
+# Lengths are those in a world of scale 1.
 BORDER = 0.02  # half width of the line around the field [m]
 PAINT_HEIGHT = 0.0005  # of painted lines above the floor [m]
 STRIPE = 0.010  # half height of the stripe that marks a mover, for people only [m]
@@ -76,20 +77,21 @@ def assemble(layout: Layout, quality: Quality, optics: Optics) -> mujoco.MjModel
     spec.modelname = f"hsr8_{quality}"
     spec.visual.global_.offwidth = optics.width
     spec.visual.global_.offheight = optics.height
+    spec.visual.map.zfar *= max(1.0, layout.scale)
     _set_lights(spec, optics.brightness, max(layout.field_size))
     if quality == "vision" and optics.shadows:
-        _cast_shadows(spec, max(layout.field_size))
+        _cast_shadows(spec, max(layout.field_size), layout.scale)
     camera = _part(spec.camera, HEAD_CAMERA)
     camera.fovy = float(np.degrees(optics.vertical_fov))
     camera.resolution = [optics.width, optics.height]
-    _add_border(spec, layout.field_size)
+    _add_border(spec, layout.field_size, layout.scale)
     if quality == "vision":
-        _add_room(spec, layout.field_size)
+        _add_room(spec, layout.field_size, layout.scale)
     _add_cameras(spec, layout.field_size)
     for i, obstacle in enumerate(layout.static):
-        _add_obstacle(spec, f"obstacle_{i:02d}", obstacle, quality)
+        _add_obstacle(spec, f"obstacle_{i:02d}", obstacle, quality, layout.scale)
     for i, mover in enumerate(layout.movers):
-        _add_obstacle(spec, f"mover_{i:02d}", mover, quality)
+        _add_obstacle(spec, f"mover_{i:02d}", mover, quality, layout.scale)
     for beacon in layout.beacons:
         _add_beacon(spec, beacon, quality)
     for i, bump in enumerate(layout.bumps):
@@ -116,30 +118,31 @@ def _set_lights(spec: mujoco.MjSpec, brightness: float, side: float) -> None:
         light.pos = max(1.0, side / REFERENCE_SIDE) * np.asarray(light.pos)
 
 
-def _cast_shadows(spec: mujoco.MjSpec, side: float) -> None:
+def _cast_shadows(spec: mujoco.MjSpec, side: float, scale: float) -> None:
     """Make the sun cast shadows on the whole field."""
     spec.visual.quality.shadowsize = SHADOW_SIZE
-    spec.visual.map.shadowclip = (0.5 * side + APRON) / spec.stat.extent
+    spec.visual.map.shadowclip = (0.5 * side + APRON * scale) / spec.stat.extent
     _part(spec.light, "sun").castshadow = True
 
 
-def _add_border(spec: mujoco.MjSpec, field_size: tuple[float, float]) -> None:
+def _add_border(spec: mujoco.MjSpec, field_size: tuple[float, float], scale: float) -> None:
     """Add the line around the field."""
     x, y = (0.5 * side for side in field_size)
-    halves = (BORDER, y + BORDER), (x - BORDER, BORDER)
-    _add_frame(spec, "rim", (x, y), halves, z=0.0, half_height=PAINT_HEIGHT, material="line")
+    half, paint = BORDER * scale, PAINT_HEIGHT * scale
+    halves = (half, y + half), (x - half, half)
+    _add_frame(spec, "rim", (x, y), halves, z=0.0, half_height=paint, material="line")
 
 
-def _add_room(spec: mujoco.MjSpec, field_size: tuple[float, float]) -> None:
+def _add_room(spec: mujoco.MjSpec, field_size: tuple[float, float], scale: float) -> None:
     """Add plain walls around the field, so that the robot does not see empty space.
 
     The floor is rendered inside them only: an infinite plane costs more than the rest of an
     image. For contacts every plane is infinite.
     """
-    x, y = (0.5 * side + APRON for side in field_size)
+    x, y = (0.5 * side + APRON * scale for side in field_size)
     _part(spec.geom, "floor").size = [x, y, 1.0]
-    z = 0.5 * WALL_HEIGHT
-    halves = (0.01, y), (x, 0.01)
+    z = 0.5 * WALL_HEIGHT * scale
+    halves = (0.01 * scale, y), (x, 0.01 * scale)
     _add_frame(spec, "wall", (x, y), halves, z=z, half_height=z, material="wall")
 
 
@@ -202,7 +205,9 @@ def _paint(spec: mujoco.MjSpec, color: str, quality: Quality) -> str:
     return name
 
 
-def _add_obstacle(spec: mujoco.MjSpec, name: str, obstacle: Obstacle, quality: Quality) -> None:
+def _add_obstacle(
+    spec: mujoco.MjSpec, name: str, obstacle: Obstacle, quality: Quality, scale: float
+) -> None:
     is_mover = obstacle.motion is not None
     body = spec.worldbody.add_body(
         name=name, pos=[*obstacle.position, 0.5 * obstacle.height], mocap=is_mover
@@ -215,11 +220,12 @@ def _add_obstacle(spec: mujoco.MjSpec, name: str, obstacle: Obstacle, quality: Q
         **_SOLID,
     )
     if is_mover and quality == "show":
+        stripe = STRIPE * scale
         body.add_geom(
             name=f"{name}_stripe",
             type=mujoco.mjtGeom.mjGEOM_CYLINDER,
-            pos=[0.0, 0.0, 0.5 * obstacle.height - 4.0 * STRIPE],
-            size=[obstacle.radius + 0.001, STRIPE, 0.0],
+            pos=[0.0, 0.0, 0.5 * obstacle.height - 4.0 * stripe],
+            size=[obstacle.radius + 0.001 * scale, stripe, 0.0],
             material="stripe",
             **_VISUAL,
         )

@@ -13,7 +13,7 @@ from hsr8.world.truth.truth import Contact
 
 Array = NDArray[np.float64]
 
-CLOSING_SPEED = 0.02  # of the robot towards an obstacle, above which it is at fault [m/s]
+CLOSING_SPEED = 0.02  # of a robot at fault towards an obstacle, in a world of scale 1 [m/s]
 MAX_CLEARANCE = 100.0  # [m]
 
 
@@ -29,6 +29,7 @@ class ContactWatch:
     def __init__(self, model: mujoco.MjModel, index: ModelIndex, layout: Layout) -> None:
         self._model = model
         self._index = index
+        self._closing_speed = CLOSING_SPEED * layout.scale
         static = len(layout.static)
         self._names = [
             *((f"obstacle {number}", False) for number in range(static)),
@@ -79,7 +80,7 @@ class ContactWatch:
                 moving=moving,
                 robot_geom=self._model.geom(geom).name,
                 force=force,
-                closing=float(velocity @ towards) > CLOSING_SPEED * distance,
+                closing=float(velocity @ towards) > self._closing_speed * distance,
             )
 
     def take(self) -> tuple[Contact, ...]:

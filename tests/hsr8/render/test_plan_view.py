@@ -9,7 +9,7 @@ from vision.color import COLOR_CLASSES
 
 def test_every_object_is_drawn_in_its_color():
     layout = draw_layout(load_scenario("course"), 1)
-    image = PlanView(layout, 600).draw()
+    image = PlanView(layout, 0.12, 600).draw()
     assert max(image.shape[:2]) == 600
     for color in {o.color for o in layout.obstacles} | {b.top for b in layout.beacons}:
         rgb = np.round(255 * np.asarray(COLOR_CLASSES[color].rgb))
@@ -18,7 +18,7 @@ def test_every_object_is_drawn_in_its_color():
 
 def test_y_points_up_and_x_to_the_right():
     scenario = load_scenario("walk", ["world.obstacle=[{position=[2.0, 1.5], radius=0.2}]"])
-    image = PlanView(draw_layout(scenario, 0), 600).draw()
+    image = PlanView(draw_layout(scenario, 0), 0.12, 600).draw()
     red = np.round(255 * np.asarray(COLOR_CLASSES["red"].rgb))
     rows, columns = np.nonzero(np.abs(image - red).max(axis=2) <= 1)
     assert rows.mean() < 0.3 * image.shape[0]
@@ -29,7 +29,7 @@ def test_appearing_movers_and_bumps_are_drawn():
     bump = '{kind="bump",magnitude=0.01,position=[1.5,1.5],radius=0.2}'
     faults = '{kind="mover-appears",start=2.0},' + bump
     usual, faulty = (
-        PlanView(draw_layout(load_scenario("quick", [f"fault=[{text}]"]), 2), 600).draw()
+        PlanView(draw_layout(load_scenario("quick", [f"fault=[{text}]"]), 2), 0.12, 600).draw()
         for text in ('{kind="mover-appears"}', faults)
     )
     rows, columns = np.nonzero((usual != faulty).any(axis=2))

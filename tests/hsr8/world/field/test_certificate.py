@@ -6,15 +6,14 @@ import pytest
 
 from hsr8.errors import ScenarioError
 from hsr8.scenario.loader import load_scenario
-from hsr8.scenario.robot import SpeedEnvelope
-from hsr8.scenario.world import ROBOT_RADIUS
+from hsr8.scenario.robot import Robot, SpeedEnvelope
 from hsr8.world.field.certificate import VIA_REACHED, certify, min_clearance, straight_length
 from hsr8.world.field.generator import draw_layout, draw_world
 from hsr8.world.field.layout import Layout, Obstacle
 from hsr8.world.field.motion import Circle, Passage, Shuttle
 from hsr8.world.field.wander import Wander
 
-SPEED = SpeedEnvelope()
+ROBOT = Robot()
 DIAGONAL = 0.075  # maximum distance to the nearest cell of a lattice of 0.1 m [m]
 
 
@@ -32,9 +31,10 @@ def sampled(path, step=0.01):
     return times, np.stack([np.interp(times, path[:, 0], path[:, k]) for k in (1, 2, 3)], axis=1)
 
 
-def assert_walks_through(world, path, speed):
+def assert_walks_through(world, path, robot):
     """The path keeps the speed limits, touches nothing, and passes all points in order."""
     times, poses = sampled(path)
+    speed = robot.speed
     steps = np.diff(path, axis=0)
     pace = np.hypot(steps[:, 1], steps[:, 2]) / steps[:, 0]
     assert pace.max() <= speed.vx + 1e-9
@@ -46,7 +46,7 @@ def assert_walks_through(world, path, speed):
     for o in world.obstacles:
         where = o.motion.position if o.motion else lambda _, o=o: o.position
         at = np.array([where(time) for time in times.tolist()])
-        assert np.hypot(*(poses[:, :2] - at).T).min() > o.radius + ROBOT_RADIUS
+        assert np.hypot(*(poses[:, :2] - at).T).min() > o.radius + robot.radius
     since = 0
     for k, point in enumerate(world.waypoints.tolist()):
         reach = DIAGONAL if k == len(world.waypoints) - 1 and not world.endless else VIA_REACHED
@@ -95,8 +95,8 @@ def test_the_path_of_a_certificate_has_no_contact(name):
     assert world.certificate.solvable
     path = world.certificate.path
     assert path[0].tolist() == [0.0, *world.layout.start]
-    assert_walks_through(world.layout, path, scenario.robot.speed)
-    assert min_clearance(world.layout, path) >= 0.02
+    assert_walks_through(world.layout, path, scenario.robot)
+    assert min_clearance(world.layout, path, scenario.robot.radius) >= 0.02
 
 
 @pytest.mark.parametrize("name", ["quick", "crowd", "conflict"])
@@ -104,16 +104,16 @@ def test_a_mirrored_world_has_a_mirrored_certificate(name):
     scenario = load_scenario(name)
     world = draw_world(scenario, 1002)
     mirror = mirrored(world.layout)
-    certificate = certify(mirror, scenario.robot.speed)
+    certificate = certify(mirror, scenario.robot)
     assert certificate.time == pytest.approx(world.certificate.time)
     path = world.certificate.path * (1.0, 1.0, -1.0, -1.0)
-    assert_walks_through(mirror, path, scenario.robot.speed)
+    assert_walks_through(mirror, path, scenario.robot)
 
 
 def test_a_robot_that_turns_slower_needs_longer():
     world = layout(waypoints=((0.5, 0.0), (0.5, 0.4)))
-    usual = certify(world, SPEED)
-    slow = certify(world, SpeedEnvelope(wz=0.2))
+    usual = certify(world, ROBOT)
+    slow = certify(world, Robot(speed=SpeedEnvelope(wz=0.2)))
     assert slow.time - usual.time > 0.5 * (0.5 * pi) * (1.0 / 0.2 - 1.0 / 0.8)
 
 
@@ -147,9 +147,9 @@ def test_a_world_placed_by_hand_is_never_rejected():
 
 
 def test_an_empty_field_is_crossed_straight_at_full_speed():
-    certificate = certify(layout(), SPEED)
+    certificate = certify(layout(), ROBOT)
     assert certificate.solvable
-    assert certificate.time == pytest.approx(2.0 / SPEED.vx, abs=0.1 / SPEED.vx)
+    assert certificate.time == pytest.approx(2.0 / ROBOT.speed.vx, abs=0.1 / ROBOT.speed.vx)
     assert certificate.length == pytest.approx(2.0, abs=0.1)
 
 
@@ -158,7 +158,7 @@ def test_an_empty_field_is_crossed_straight_at_full_speed():
     [(0.0, ((1.0, 0.0),), 0), (0.5, ((-0.4, 0.0), (1.0, 0.0)), 1)],
 )
 def test_points_before_a_wall_are_counted(x, points, reached):
-    certificate = certify(layout(wall(x), points), SPEED)
+    certificate = certify(layout(wall(x), points), ROBOT)
     assert (certificate.solvable, certificate.points_reached) == (False, reached)
     assert certificate.points == len(points)
 
@@ -166,12 +166,12 @@ def test_points_before_a_wall_are_counted(x, points, reached):
 def test_a_mover_that_sweeps_a_narrow_corridor_blocks_it():
     sweeper = Obstacle((1.2, 0.0), 0.12, 0.3, "red", Shuttle((1.2, 0.0), (-1.2, 0.0), 0.15))
     corridor = layout([sweeper], size=(3.0, 0.44))
-    assert not certify(corridor, SPEED).solvable
-    assert certify(layout([sweeper], size=(3.0, 2.0)), SPEED).solvable
+    assert not certify(corridor, ROBOT).solvable
+    assert certify(layout([sweeper], size=(3.0, 2.0)), ROBOT).solvable
 
 
 def test_a_world_without_points_is_feasible():
-    assert certify(layout(waypoints=np.zeros((0, 2))), SPEED).solvable
+    assert certify(layout(waypoints=np.zeros((0, 2))), ROBOT).solvable
 
 
 def test_straight_length_adds_the_legs():

@@ -7,10 +7,9 @@ import pytest
 
 from hsr8.errors import ScenarioError
 from hsr8.scenario.loader import load_scenario
-from hsr8.scenario.world import ROBOT_RADIUS
-from hsr8.world.field import fairness
 from hsr8.world.field.attempt import Attempt, CrowdedError
 from hsr8.world.field.encounter import NominalWalk
+from hsr8.world.field.fairness import FairDistances
 from hsr8.world.field.generator import MAX_WORLDS, draw_layout
 from hsr8.world.field.motion import Circle, Passage, Shuttle
 from hsr8.world.field.wander import Wander
@@ -19,6 +18,7 @@ PLAIN = ("course", "paper", "quick")  # shuttles alone, drawn without walls
 FAMILIES = ("crowd", "dense", "fast", "conflict", "behind", "corridor", "crossing", "blind-corner")
 SAMPLED = 0.01  # lanes are drawn as points: their distances are this exact [m]
 TIMES = np.arange(0.0, 240.0, 0.5)
+FAIR = FairDistances.of(load_scenario("course"))
 
 
 def apart(a, b):
@@ -63,14 +63,14 @@ def test_the_robot_fits_between_drawn_obstacles_and_none_overlap(worlds):
     for layout in layouts:
         for a, b in combinations(layout.obstacles, 2):
             both_static = a.motion is None and b.motion is None and not scenario.world.wall
-            room = fairness.STATIC_GAP if both_static else 0.0
+            room = FAIR.static_gap if both_static else 0.0
             assert apart(a.position, b.position) - a.radius - b.radius >= room - 1e-9
 
 
 def test_the_start_is_clear(worlds):
     for layout in worlds[1]:
         for o in layout.obstacles:
-            room = fairness.START_TO_MOVER if o.motion else fairness.START_TO_STATIC
+            room = FAIR.start_to_mover if o.motion else FAIR.start_to_static
             assert apart(o.position, layout.start) - o.radius >= room - 1e-9
 
 
@@ -78,7 +78,7 @@ def test_points_are_clear_of_static_obstacles_and_apart(worlds):
     scenario, layouts = worlds
     for layout in layouts:
         points = layout.waypoints.tolist()
-        room = ROBOT_RADIUS + 0.05 if scenario.world.wall else fairness.POINT_TO_STATIC
+        room = scenario.robot.radius + 0.05 if scenario.world.wall else FAIR.point_to_static
         for point in points:
             for o in layout.static:
                 assert apart(o.position, point) - o.radius >= room - 1e-9
@@ -98,7 +98,7 @@ def test_movers_stay_in_the_field_and_never_pin_the_robot_or_meet(worlds):
         assert (np.abs(positions) <= half - radii[:, None]).all()
         for o in layout.static:
             gaps = np.hypot(*np.moveaxis(positions - o.position, 2, 0)) - radii - o.radius
-            assert (gaps >= fairness.LANE_TO_STATIC - SAMPLED).all()
+            assert (gaps >= FAIR.lane_to_static - SAMPLED).all()
         for i, k in combinations(range(len(radii)), 2):
             gaps = np.hypot(*(positions[:, i] - positions[:, k]).T)
             assert gaps.min() > radii[i] + radii[k]
@@ -109,7 +109,7 @@ def test_shuttles_reverse_away_from_the_goal(worlds):
         for o in (o for o in layout.movers if isinstance(o.motion, Shuttle)):
             for end in (o.motion.start, o.motion.end):
                 gap = apart(end, layout.waypoints[-1]) - o.radius
-                assert gap >= fairness.LANE_TO_GOAL - 1e-9
+                assert gap >= FAIR.lane_to_goal - 1e-9
 
 
 @pytest.mark.parametrize("name", ["conflict", "behind"])
@@ -141,7 +141,7 @@ def test_encounters_meet_a_robot_that_walks_straight(name):
             bearing = abs(degrees(np.angle(complex(*sight) / complex(*velocity))))
             assert low - 15.0 <= bearing <= high + 15.0
     assert len(waits) > 3
-    assert min(waits) >= fairness.START_TO_MOVER - 1e-9
+    assert min(waits) >= FAIR.start_to_mover - 1e-9
 
 
 def test_a_crowd_shuttles_circles_and_wanders():
@@ -154,7 +154,7 @@ def test_walls_have_no_gap_for_the_robot():
     layout = drawn(load_scenario("corridor"), 0)
     upper = sorted(o.position for o in layout.static if o.position[1] > 0.0)
     gaps = np.diff([x for x, _ in upper]) - 2.0 * layout.static[0].radius
-    assert (gaps < 2.0 * ROBOT_RADIUS).all()
+    assert (gaps < 2.0 * 0.12).all()
     assert atan2(*np.ptp(upper, axis=0)[::-1]) == 0.0
 
 
@@ -195,7 +195,7 @@ def test_drawn_obstacles_keep_clear_of_those_placed_by_hand():
         assert placed.position == (0.0, 0.0)
         for o in others:
             gap = apart(o.position, (0.0, 0.0)) - o.radius - placed.radius
-            assert gap >= fairness.STATIC_GAP - 1e-9
+            assert gap >= FAIR.static_gap - 1e-9
 
 
 def test_a_walk_has_no_destination():
