@@ -41,6 +41,7 @@ class RobotInfo:
         joint_names: in the order of all joint arrays, n in all.
         ready: joint angles of the ready posture, in which a walk starts (n,) [rad].
         lower, upper: joint limits (n,) [rad].
+        head: indices of the head joints, pan and tilt; empty without a movable head.
         period: of control [s].
         file: MJCF file of the robot.
     """
@@ -49,14 +50,22 @@ class RobotInfo:
     ready: Array
     lower: Array
     upper: Array
+    head: list[int]
     period: float
     file: Path
 
     @classmethod
     def of(cls, robot: RobotModel, file: Path) -> "RobotInfo":
         """Return the description of `robot`, read from `file`."""
-        limits = robot.lower.copy(), robot.upper.copy()
-        return cls(JOINT_NAMES, robot.ready.copy(), *limits, CONTROL_PERIOD, file)
+        return cls(
+            joint_names=JOINT_NAMES,
+            ready=robot.ready.copy(),
+            lower=robot.lower.copy(),
+            upper=robot.upper.copy(),
+            head=list(range(HEAD.start, HEAD.stop)),
+            period=CONTROL_PERIOD,
+            file=file,
+        )
 
 
 class CustomWalker(Protocol):
@@ -70,7 +79,7 @@ class CustomWalker(Protocol):
         self,
         sensors: BodySensors,
         command: VelocityCommand,
-        head: HeadTarget,
+        head: Array,
         estimate: BodyEstimate,
     ) -> ArrayLike:
         """Return the setpoints of all joints for one control tick (n,) [rad].
@@ -78,7 +87,8 @@ class CustomWalker(Protocol):
         Args:
             sensors: read at the start of the tick.
             command: velocity of the robot frame; explicit footsteps arrive as their velocity.
-            head: pan and tilt within the limits of rate and acceleration, fit as setpoints.
+            head: setpoints of the head joints, limited in rate and acceleration (2,) [rad]; empty
+                without a movable head.
             estimate: motion of the trunk.
         """
 
@@ -119,7 +129,7 @@ class PluginWalker:
         self,
         sensors: BodySensors,
         command: VelocityCommand,
-        head: HeadTarget,
+        head: Array,
         estimate: BodyEstimate,
     ) -> Array:
         """Return the validated setpoints of this tick (n,) [rad]."""
@@ -191,8 +201,8 @@ class PluginEngine:
             self._walker.reset()
         self._command = VelocityCommand(*command.velocity)
         estimate = self._observer.update(sensors)
-        target = HeadTarget(*self._head.advance(head))
-        setpoints = self._walker.step(sensors, self._command, target, estimate)
+        angles = np.array(self._head.advance(head))
+        setpoints = self._walker.step(sensors, self._command, angles, estimate)
         setpoints = np.clip(setpoints, self._lower, self._upper)
         return JointTargets(position=setpoints, setpoint=setpoints)
 

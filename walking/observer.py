@@ -1,5 +1,6 @@
 """State estimation under a walking controller without a plan: measurements only."""
 
+from dataclasses import replace
 from math import hypot
 
 import numpy as np
@@ -12,11 +13,12 @@ from walking.body.foot_contacts import FootContacts
 from walking.body.measurement import BodyMeasurement
 from walking.body.odometry import LegOdometry
 from walking.body.robot_model import RobotModel
+from walking.body.rolling_feet import RollingFeet
 from walking.body.steady_gains import steady_gains
 from walking.command import VelocityCommand
 from walking.command_limits import CommandLimits
 from walking.foothold import Foothold
-from walking.parameters import CONTROL_PERIOD, WalkingParameters
+from walking.parameters import CONTROL_PERIOD, GRAVITY, WalkingParameters
 from walking.pattern.lipm import Lipm
 from walking.pattern.support import SupportPolygon
 from walking.phase import Phase
@@ -26,7 +28,10 @@ from walking.sensing import BodySensors
 from walking.state import Balance, WalkingState
 from walking.value import value
 
-VELOCITY_TIME = 0.02  # time constant of the low-pass filter of the velocity [s]
+VELOCITY_TIME = 0.05  # time constant of the legs in the velocity filter [s]
+FEET = ("l_foot", "r_foot")  # frames of the feet
+PRESSURE = 20  # index of the centres of pressure in the measurements
+FULL_LOAD = 0.5  # of the weight on the feet, above which the legs have their full weight [1]
 
 
 @value
@@ -66,13 +71,14 @@ class BodyObserver:
         self._omega = omega = Lipm(parameters.pattern.lipm_height).omega
         self._estimation = Estimation(robot, omega, parameters.estimator, odometry)
         self._contacts = FootContacts(robot.mass, parameters.gait)
+        self._full_load = FULL_LOAD * robot.mass * GRAVITY
         self._fall_tilt = parameters.estimator.fall_tilt
         self._gains = np.array([*steady_gains(omega, parameters.estimator), omega])
         self._com = np.zeros(5)  # state of the filter, see `estimation_kernel.filter_error`
         self._zmp: Point = (0.0, 0.0)
         self._feet = np.zeros((2, 4))  # in the odometry frame: x, y, height [m], yaw [rad]
-        self._legs: Array | None = None  # from the base to each foot, odometry axes (2, 3) [m]
-        self._velocity = np.zeros(3)
+        self._rolling = RollingFeet()
+        self._velocity = np.zeros(3)  # axes of the IMU's yaw, z up [m/s]
         self._sensors: BodySensors | None = None
 
     @property
@@ -89,24 +95,25 @@ class BodyObserver:
     def update(self, sensors: BodySensors) -> BodyEstimate:
         """Run one tick; return the estimate."""
         self.observe(sensors)
-        estimation, contacts, body = self._estimation, self._contacts, self._body
+        estimation, contacts = self._estimation, self._contacts
         contacts.update(estimation.load(0), estimation.load(1))
-        left, right = ((foot.x, foot.y) for foot in body.feet)
+        yaw, body, tilt = float(estimation.measured[2]), self._body, np.empty((3, 3))
+        published_state_kernel.incline(body.roll, body.pitch, tilt)
+        feet = np.array([(foot.x, foot.y, foot.z) for foot in body.feet])
+        self._roll(sensors, feet, tilt, yaw)
+        left, right = (feet[:, :2] + self._rolling.rolled).tolist()
         self._odometry.advance(
-            float(estimation.measured[2]),
-            (left, right),
+            yaw,
+            ((left[0], left[1]), (right[0], right[1])),
             body.right_load,
             stepping=contacts.phase is not Phase.STANDING,
         )
-        pose = self._pose
-        self._follow_velocity(body, pose)
-        height = self._height(body)
+        pose, height = self._pose, self._height
+        self._follow_velocity(sensors, tilt, yaw)
         for side, foot in enumerate(body.feet):
             x, y = from_frame(pose, foot.x, foot.y)
             self._feet[side] = x, y, height + foot.z, pose[2] + foot.yaw
         self._follow_com(body, pose)
-        tilt = np.empty((3, 3))
-        published_state_kernel.incline(body.roll, body.pitch, tilt)
         vx, vy, vz = self._velocity.tolist()
         on_left, on_right = contacts.on_floor
         return BodyEstimate(
@@ -114,7 +121,7 @@ class BodyObserver:
             height=height,
             roll=body.roll,
             pitch=body.pitch,
-            velocity=np.array([*rotate_back(pose[2], vx, vy), vz]) @ tilt,
+            velocity=np.array([*rotate_back(yaw, vx, vy), vz]) @ tilt,
             on_floor=(on_left, on_right),
         )
 
@@ -139,7 +146,7 @@ class BodyObserver:
         return WalkingState(
             phase=self._contacts.phase,
             odometry=self._odometry.pose(),
-            camera=camera_pose(self._robot, self._sensors, body),
+            camera=camera_pose(self._robot, self._sensors, self._over_contacts(body)),
             applied_velocity=np.array(command.velocity),
             footsteps=(support, other),
             zmp=np.array(self._zmp),
@@ -166,26 +173,41 @@ class BodyObserver:
         assert body is not None
         return body
 
+    def _over_contacts(self, body: BodyMeasurement) -> BodyMeasurement:
+        """Return the body with the heights of the contact points as those of the feet."""
+        heights = self._rolling.contact[:, 2].tolist()
+        left, right = (replace(f, z=z) for f, z in zip(body.feet, heights, strict=True))
+        return replace(body, feet=(left, right))
+
     @property
     def _pose(self) -> Frame:
         x, y, yaw = self._odometry.state[:3].tolist()
         return x, y, yaw
 
-    @staticmethod
-    def _height(body: BodyMeasurement) -> float:
-        """Return the height of the base above the loaded foot [m]."""
-        left, right = body.feet
-        return -(1.0 - body.right_load) * left.z - body.right_load * right.z
+    @property
+    def _height(self) -> float:
+        """Height of the base above the contact point of the loaded foot [m]."""
+        left, right = self._rolling.contact[:, 2].tolist()
+        load = self._body.right_load
+        return float(-(1.0 - load) * left - load * right)
 
-    def _follow_velocity(self, body: BodyMeasurement, pose: Frame) -> None:
-        """Filter the velocity of the base over the loaded feet, which do not move."""
-        legs = np.array([(*rotate(pose[2], foot.x, foot.y), foot.z) for foot in body.feet])
-        if self._legs is not None:
-            left, right = (self._legs - legs) / CONTROL_PERIOD
-            measured = (1.0 - body.right_load) * left + body.right_load * right
-            gain = CONTROL_PERIOD / (VELOCITY_TIME + CONTROL_PERIOD)
-            self._velocity += gain * (measured - self._velocity)
-        self._legs = legs
+    def _roll(self, sensors: BodySensors, feet: Array, tilt: Array, yaw: float) -> None:
+        """Update the contact points of the feet."""
+        joints = sensors.joint_position
+        rotations = [tilt @ self._robot.frame_pose(name, joints)[0] for name in FEET]
+        pressure = self._estimation.measured[PRESSURE:].reshape(2, 2)
+        self._rolling.update(feet, np.array(rotations), pressure, yaw, self._contacts.on_floor)
+
+    def _follow_velocity(self, sensors: BodySensors, tilt: Array, yaw: float) -> None:
+        """Integrate the accelerometer, corrected by the legs over the points of contact."""
+        ax, ay, az = (tilt @ sensors.accelerometer).tolist()
+        self._velocity += CONTROL_PERIOD * np.array([*rotate(yaw, ax, ay), az - GRAVITY])
+        load = self._body.right_load
+        weights = np.array([1.0 - load, load])
+        by_legs = -weights @ self._rolling.motion / CONTROL_PERIOD
+        carried = (self._estimation.load(0) + self._estimation.load(1)) / self._full_load
+        gain = min(1.0, carried) * CONTROL_PERIOD / (VELOCITY_TIME + CONTROL_PERIOD)
+        self._velocity += gain * (by_legs - self._velocity)
 
     def _follow_com(self, body: BodyMeasurement, pose: Frame) -> None:
         """Filter the centre of mass as an inverted pendulum over the centre of pressure."""
