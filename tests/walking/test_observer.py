@@ -1,0 +1,112 @@
+"""State estimation without a plan, compared with that of the walking engine."""
+
+from dataclasses import replace
+from math import cos, sin
+
+import numpy as np
+import pytest
+
+from walking.body.odometry import LegOdometry
+from walking.command import HeadTarget, VelocityCommand
+from walking.engine import WalkingEngine
+from walking.observer import BodyObserver
+from walking.parameters import WalkingParameters
+from walking.phase import Phase
+
+PARAMETERS = WalkingParameters()
+COMMAND = VelocityCommand(0.15, 0.03, 0.3)
+TICKS = 1200
+
+
+def observer_of(robot):
+    return BodyObserver(robot, PARAMETERS, LegOdometry(PARAMETERS.odometry))
+
+
+@pytest.fixture(scope="module")
+def walk(robot, make_body):
+    """Estimates and states of the observer, states of the engine, and true poses, per tick."""
+    body, engine, observer = make_body(), WalkingEngine(robot, PARAMETERS), observer_of(robot)
+    rows = []
+    for _ in range(TICKS):
+        sensors = body.sense()
+        targets = engine.step(sensors, COMMAND, HeadTarget())
+        estimate = observer.update(sensors)
+        rows.append((estimate, observer.state(COMMAND), engine.state(), (body.x, body.y, body.yaw)))
+        body.apply(targets)
+    return rows
+
+
+def test_odometry_and_camera_are_those_of_the_engine(walk):
+    for estimate, measured, planned, _ in walk:
+        odometry = planned.odometry
+        pose = odometry.x, odometry.y, odometry.yaw
+        assert estimate.pose == pytest.approx(pose, abs=1e-4)
+        assert measured.camera.position == pytest.approx(planned.camera.position, abs=1e-4)
+        assert np.array_equal(measured.camera.rotation, planned.camera.rotation)
+        assert (measured.roll, measured.pitch) == (planned.roll, planned.pitch)
+        assert measured.com == pytest.approx(planned.com, abs=1e-4)
+
+
+def test_footsteps_and_phases_follow_the_loads(walk):
+    _, measured, planned, _ = walk[-1]
+    assert abs(measured.step_count - planned.step_count) <= 1
+    assert planned.step_count > 10
+    phases = [(measured.phase, planned.phase) for _, measured, planned, _ in walk]
+    agree = sum(a == b for a, b in phases)
+    assert agree > 0.7 * len(phases)  # an ideal body has both feet on the floor for longer
+    assert {Phase.STANDING, Phase.LEFT_SUPPORT, Phase.RIGHT_SUPPORT} <= {a for a, _ in phases}
+
+
+def test_the_velocity_is_that_of_the_body(walk):
+    poses = np.array([pose for *_, pose in walk[600:]])
+    yaw = poses[:-1, 2]
+    vx, vy = np.diff(poses[:, :2], axis=0).T / 0.005
+    true = np.array([np.cos(yaw) * vx + np.sin(yaw) * vy, np.cos(yaw) * vy - np.sin(yaw) * vx])
+    estimated = np.array([estimate.velocity[:2] for estimate, *_ in walk[600:-1]]).T
+    assert estimated.mean(axis=1) == pytest.approx(true.mean(axis=1), abs=0.01)
+    assert np.corrcoef(estimated[1], true[1])[0, 1] > 0.6
+
+
+def test_the_zmp_is_in_the_polygon_of_the_feet_on_the_floor(walk):
+    for estimate, measured, *_ in walk:
+        assert measured.balance.zmp_depth > -1e-9
+        assert len(measured.footsteps) == 2
+        assert {step.left for step in measured.footsteps} == {True, False}
+        assert any(estimate.on_floor)
+        lowest = measured.balance.feet[:, 2].min()
+        assert lowest == pytest.approx(0.0, abs=2e-3)
+        np.testing.assert_array_equal(measured.applied_velocity, COMMAND.velocity)
+        assert not measured.command_limits.limited
+
+
+def test_the_dcm_leads_the_centre_of_mass(walk):
+    com = np.array([measured.com for _, measured, *_ in walk[600:]])
+    lead = np.array([measured.dcm for _, measured, *_ in walk[600:]]) - com
+    velocity = (com[40:] - com[:-40]) / 0.2
+    assert np.corrcoef(lead[20:-20].ravel(), velocity.ravel())[0, 1] > 0.7
+
+
+def test_without_a_tick_there_is_no_state(robot):
+    with pytest.raises(RuntimeError, match="before its first tick"):
+        observer_of(robot).state(COMMAND)
+
+
+def test_a_robot_on_its_face_has_fallen(robot, ideal_body):
+    observer, sensors = observer_of(robot), ideal_body.sense()
+    observer.update(sensors)
+    assert not observer.fallen
+    face_down = np.array([cos(0.75), 0.0, sin(0.75), 0.0])
+    for _ in range(200):
+        observer.observe(replace(sensors, orientation=face_down))
+    assert observer.fallen
+    assert observer.state(COMMAND).fallen
+
+
+def test_a_robot_in_the_air_has_a_state(robot, ideal_body):
+    observer, sensors = observer_of(robot), ideal_body.sense()
+    observer.update(sensors)
+    for _ in range(20):
+        estimate = observer.update(replace(sensors, foot_force=np.zeros((2, 4))))
+    state = observer.state(COMMAND)
+    assert estimate.on_floor == (False, False)
+    assert np.isfinite([*state.zmp, *state.dcm, *state.com, *estimate.velocity]).all()
