@@ -2,6 +2,7 @@
 
 import mujoco
 
+from hsr8.robots.loaded import load_robot
 from hsr8.robots.models import reading_models
 from hsr8.scenario.schema import Scenario
 from hsr8.seeds import named_rng
@@ -16,11 +17,12 @@ from walking.parameters import CONTROL_PERIOD
 
 def build_model(scenario: Scenario, layout: Layout) -> mujoco.MjModel:
     """Return the world model of `scenario` for the camera of the robot."""
+    robot = load_robot(scenario.robot.model)
     camera = scenario.camera
     fov = camera.vertical_fov
     brightness = scenario.world.brightness
     optics = Optics(camera.width, camera.height, fov, brightness, camera.shadows)
-    return assemble(layout, "vision", optics)
+    return assemble(robot, layout, "vision", optics)
 
 
 def build_body(scenario: Scenario, seed: int, layout: Layout, model: mujoco.MjModel) -> Body:
@@ -29,9 +31,10 @@ def build_body(scenario: Scenario, seed: int, layout: Layout, model: mujoco.MjMo
     Raises:
         ModelError: the control period is not a multiple of the physics step.
     """
+    robot = load_robot(scenario.robot.model)
     noise, rng = scenario.sensors, named_rng(seed, "body")
     if scenario.robot.body == "kinematic":
-        return KinematicBody(model, layout, noise, rng)
+        return KinematicBody(model, robot, layout, noise, rng)
     pushes = schedule(
         scenario.disturbance,
         scenario.duration,
@@ -40,4 +43,4 @@ def build_body(scenario: Scenario, seed: int, layout: Layout, model: mujoco.MjMo
         scenario.fault,
     )
     with reading_models():
-        return PhysicsBody(model, layout, noise, rng, pushes=pushes, faults=scenario.fault)
+        return PhysicsBody(model, robot, layout, noise, rng, pushes=pushes, faults=scenario.fault)

@@ -18,6 +18,7 @@ from hsr8.recorder.record import Listener, TickRecord
 from hsr8.recorder.run.tape import TapeWriter
 from hsr8.robot import Robot, SensorFrame
 from hsr8.robot_builder import build_robot, head_camera
+from hsr8.robots.loaded import load_robot
 from hsr8.scenario.schema import Scenario
 from hsr8.seeds import named_rng
 from hsr8.world.body.sensor_faults import SensorFaults
@@ -74,6 +75,7 @@ class Simulation:
         seed: draws the world and all noise.
         listeners: receive every record; extensible before the run.
         tape: records setpoints and hashes, if set.
+        humanoid: the robot and its model.
         layout: the drawn world.
         model: MuJoCo model of world and robot.
         exit_reason: goal, timeout, completed, fall, diverged or interrupted after the run; None
@@ -101,6 +103,7 @@ class Simulation:
         self.seed = scenario.with_seed(seed).seed
         self.listeners = list(listeners)
         self.tape: TapeWriter | None = None
+        self.humanoid = load_robot(scenario.robot.model)
         self.layout = draw_layout(scenario, self.seed)
         self.model = build_model(scenario, self.layout)
         self.exit_reason: str | None = None
@@ -148,7 +151,9 @@ class Simulation:
     @property
     def index(self) -> ModelIndex:
         """Addresses in the model."""
-        return ModelIndex.of(self.model, len(self.layout.static), len(self.layout.movers))
+        return ModelIndex.of(
+            self.model, self.humanoid, len(self.layout.static), len(self.layout.movers)
+        )
 
     @property
     def time(self) -> float:

@@ -15,7 +15,6 @@ from numpy.typing import ArrayLike, NDArray
 from hsr8.errors import UsageError
 from hsr8.plugin_file import line_of
 from hsr8.plugin_method import PluginMethod, numbers, shown
-from walking.body.joints import HEAD, JOINT_NAMES
 from walking.body.odometry import LegOdometry
 from walking.body.robot_model import RobotModel
 from walking.command import Command, HeadTarget, VelocityCommand
@@ -58,11 +57,11 @@ class RobotInfo:
     def of(cls, robot: RobotModel, file: Path) -> "RobotInfo":
         """Return the description of `robot`, read from `file`."""
         return cls(
-            joint_names=JOINT_NAMES,
+            joint_names=robot.names,
             ready=robot.ready.copy(),
             lower=robot.lower.copy(),
             upper=robot.upper.copy(),
-            head=list(range(HEAD.start, HEAD.stop)),
+            head=list(robot.tree.head or ()),
             period=CONTROL_PERIOD,
             file=file,
         )
@@ -166,8 +165,8 @@ class PluginEngine:
         self._walker = walker
         self._lower, self._upper = robot.lower, robot.upper
         self._observer = BodyObserver(robot, parameters, odometry)
-        limits = np.column_stack([robot.lower[HEAD], robot.upper[HEAD]])
-        self._head = Head(robot.ready[HEAD], limits, parameters.head)
+        self._head = Head(robot.neck.angles(robot.ready), robot.neck.range(), parameters.head)
+        self._head_joints = robot.neck.joints
         self._command: VelocityCommand | None = None
 
     @property
@@ -201,7 +200,7 @@ class PluginEngine:
             self._walker.reset()
         self._command = VelocityCommand(*command.velocity)
         estimate = self._observer.update(sensors)
-        angles = np.array(self._head.advance(head))
+        angles = np.array(self._head_joints(*self._head.advance(head)))
         setpoints = self._walker.step(sensors, self._command, angles, estimate)
         setpoints = np.clip(setpoints, self._lower, self._upper)
         return JointTargets(position=setpoints, setpoint=setpoints)

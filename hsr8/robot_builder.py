@@ -17,7 +17,7 @@ from hsr8.plugin_decisions import PluginGaze, PluginPlanner
 from hsr8.plugin_file import load_plugin
 from hsr8.plugin_walker import CustomWalker, PluginEngine, PluginWalker, RobotInfo
 from hsr8.robot import Robot
-from hsr8.robots.models import models_dir, reading_models
+from hsr8.robots.loaded import LoadedRobot, load_robot
 from hsr8.scenario.mission import Walk
 from hsr8.scenario.schema import Scenario
 from hsr8.seeds import named_rng
@@ -30,17 +30,10 @@ from navigation.motion.landmark_obstacles import LandmarkObstacles
 from vision.camera import PinholeCamera
 from vision.detector import Detector
 from vision.self_mask import BodyPart
-from walking.body.robot_model import RobotModel
 from walking.parameters import WalkingParameters
-from walking.scaling import parameters_for
+from walking.scaling import override
 from walking.walker import Walker
 
-# Arms in view of the head camera: shoulder, elbow, hand in R [m], with room for their swing.
-# Measured over 25 s of walking: shoulders move 2 mm, hands 2 cm.
-ARM_X = (0.0, -0.012, 0.018)
-ARM_Y = (0.087, 0.096, 0.106)
-ARM_Z = (0.378, 0.305, 0.225)
-ARM_RADII = (0.029, 0.032, 0.045)
 OMNIDIRECTIONAL = (2.0 * pi, pi)  # field of view of an omnidirectional camera [rad]
 MARGINS = (("pattern", "sole_margin"), ("pattern", "plan_margin"), ("stabilizer", "sole_margin"))
 # Standard deviation of the known start position in a world of scale 1 [m] and heading [rad].
@@ -73,12 +66,13 @@ def build_robot(
         gaze: replaces the gaze planner of the scenario.
         walker: replaces the walking engine of the scenario.
     """
+    humanoid = load_robot(scenario.robot.model)
     camera = head_camera(scenario)
     schedule = build_schedule(scenario, named_rng(seed, "command"))
     return Robot(
         walking=build_walker(scenario, walker),
         fov=field_of_view(scenario, camera),
-        vision=Detector(camera, scenario.vision, arms()),
+        vision=Detector(camera, scenario.vision, tuple(BodyPart(*arm) for arm in humanoid.arms)),
         pose=scenario.vision.pose,
         shutter=1e-3 * scenario.camera.shutter_ms,
         belief=build_estimator(scenario, layout, named_rng(seed, "belief")),
@@ -97,24 +91,24 @@ def build_walker(scenario: Scenario, walker: CustomWalker | None = None) -> Walk
     Raises:
         UsageError: the walker, given or named by the scenario, is invalid.
     """
-    body = robot_model()
-    parameters = walking_parameters(body, scenario)
+    humanoid = load_robot(scenario.robot.model)
+    body, parameters = humanoid.model, walking_parameters(humanoid, scenario)
     if walker is None and scenario.plugin.walker:
         walker = load_plugin(scenario.plugin.walker)
     if walker is None:
         return Walker(body, parameters)
-    plugin = PluginWalker(walker, RobotInfo.of(body, models_dir() / "hsr8" / "hsr8.xml"))
+    plugin = PluginWalker(walker, RobotInfo.of(body, humanoid.file))
     return Walker(body, parameters, partial(PluginEngine, plugin, body, parameters))
 
 
-def walking_parameters(body: RobotModel, scenario: Scenario) -> WalkingParameters:
-    """Return the walking parameters of `scenario`, scaled to the robot `body`.
+def walking_parameters(humanoid: LoadedRobot, scenario: Scenario) -> WalkingParameters:
+    """Return the walking parameters of `scenario` for its robot.
 
     Raises:
         ScenarioError: a margin leaves no support area on the soles.
     """
-    parameters = parameters_for(body, scenario.walking)
-    half = body.sole.half_width
+    parameters = override(humanoid.parameters, scenario.walking, WalkingParameters())
+    half = humanoid.model.sole.half_width
     for section, margin in MARGINS:
         value = getattr(getattr(parameters, section), margin)
         if value >= half:
@@ -123,16 +117,6 @@ def walking_parameters(body: RobotModel, scenario: Scenario) -> WalkingParameter
                 f"got {value:g}; expected less than half the width of the sole, {half:g}"
             )
     return parameters
-
-
-@reading_models()
-def robot_model() -> RobotModel:
-    """Return the dynamic model of HSR-VIII for the walking engine.
-
-    Raises:
-        ModelError: the model file is invalid.
-    """
-    return RobotModel.from_mjcf(models_dir() / "hsr8" / "hsr8.xml")
 
 
 def head_camera(scenario: Scenario) -> PinholeCamera:
@@ -226,13 +210,4 @@ def build_estimator(scenario: Scenario, layout: Layout, rng: np.random.Generator
         np.array(layout.start),
         np.diag(np.square([sigma, sigma, START_HEADING_SIGMA])),
         rng,
-    )
-
-
-def arms() -> tuple[BodyPart, ...]:
-    """Return both arms of the robot, hanging."""
-    radii = np.array(ARM_RADII)
-    return tuple(
-        BodyPart(np.column_stack([ARM_X, side * np.array(ARM_Y), ARM_Z]), radii)
-        for side in (1.0, -1.0)
     )

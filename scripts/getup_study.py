@@ -11,6 +11,7 @@ import argparse
 from collections import Counter
 from dataclasses import dataclass
 
+from hsr8.robots.loaded import load_robot
 from walking.body.robot_model import RobotModel
 from walking.command import HeadTarget, VelocityCommand
 from walking.get_up.get_up import Outcome
@@ -20,7 +21,7 @@ from walking.walker import Walker
 
 import numpy as np
 from study_page import RESULTS, add_seeds, command_line, environment
-from walking_body import ROBOT, Body, Plant
+from walking_body import Body, Plant
 
 RESULT = RESULTS / "getup.md"
 LEAD = (2.0, 3.0)  # of walking before the push [s]
@@ -185,7 +186,7 @@ def main() -> None:
     add_seeds(parser, range(10))
     parser.add_argument("--write", action="store_true", help=f"into {RESULT.name}")
     options = parser.parse_args()
-    falls_study(RobotModel.from_mjcf(ROBOT), options.seeds, write=options.write)
+    falls_study(load_robot("hsr8").model, options.seeds, write=options.write)
 
 
 if __name__ == "__main__":

@@ -11,12 +11,14 @@ from pathlib import Path
 os.environ.setdefault("MUJOCO_GL", "egl")
 
 from hsr8.cli.color_table import MASK, mask_colors
+from hsr8.robots.loaded import load_robot
+from hsr8.robots.normal_form import HEAD_CAMERA
 from hsr8.scenario.loader import load_scenario
 from hsr8.seeds import named_rng
 from hsr8.world.body.kinematic import KinematicBody
 from hsr8.world.camera.rendered import RenderedCamera
 from hsr8.world.field.generator import draw_layout
-from hsr8.world.model.assembly import HEAD_CAMERA, Optics, assemble
+from hsr8.world.model.assembly import Optics, assemble
 
 import cv2
 import mujoco
@@ -34,9 +36,9 @@ def labelled(seed: int, pan: float, tilt: float) -> tuple[Image, Image]:
     layout = draw_layout(scenario, seed)
     camera = scenario.camera
     fov = camera.vertical_fov
-    model = assemble(layout, "vision", Optics(camera.width, camera.height, fov))
+    model = assemble(load_robot("hsr8"), layout, "vision", Optics(camera.width, camera.height, fov))
     rng = named_rng(seed, "label")
-    body = KinematicBody(model, layout, scenario.sensors, rng)
+    body = KinematicBody(model, load_robot("hsr8"), layout, scenario.sensors, rng)
     body.data.joint("head_pan").qpos[0] = pan
     body.data.joint("head_tilt").qpos[0] = tilt
     rendered = RenderedCamera(model, camera, rng)

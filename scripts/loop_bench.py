@@ -21,12 +21,12 @@ from hsr8.recorder.run import run_folder
 from hsr8.recorder.run.manifest import Manifest
 from hsr8.recorder.run.run_folder import RunFolder
 from hsr8.recorder.run.walking_table import WalkingTableWriter
+from hsr8.robots.normal_form import HEAD_CAMERA
 from hsr8.scenario.loader import dump
 from hsr8.scenario.schema import Scenario
 from hsr8.world.camera.image_noise import ImageNoise
 from hsr8.world.camera.offscreen import Offscreen
 from hsr8.world.camera.rendered import RenderedCamera
-from hsr8.world.model.assembly import HEAD_CAMERA
 from walking.parameters import CONTROL_PERIOD
 
 import mujoco

@@ -12,6 +12,7 @@ import argparse
 import copy
 from math import sqrt
 
+from hsr8.robots.loaded import load_robot
 from walking.body.robot_model import RobotModel
 from walking.command import HeadTarget, VelocityCommand
 from walking.engine import WalkingEngine
@@ -20,7 +21,7 @@ from walking.parameters import CONTROL_PERIOD, GRAVITY, WalkingParameters
 import mujoco
 import numpy as np
 from study_page import add_seeds
-from walking_body import ROBOT, Body, Plant
+from walking_body import Body, Plant
 from walking_trial import parameters_of
 
 DIRECTIONS = ("forward", "fl", "left", "bl", "back", "br", "right", "fr")
@@ -78,7 +79,7 @@ def survivors(
     parameters: WalkingParameters, speed: float, levels: list[float], seed: int
 ) -> np.ndarray:
     """Who survives (levels, directions, phases)."""
-    robot = RobotModel.from_mjcf(ROBOT)
+    robot = load_robot("hsr8").model
     gait, command = parameters.gait, VelocityCommand(speed, 0.0, 0.0)
     period, unit = 2.0 * gait.footstep_time, unit_impulse()
     result = np.zeros((len(levels), len(DIRECTIONS), PHASES), bool)

@@ -13,6 +13,7 @@ longer walks, which would leave the field of bumps. Tune on seeds 0-99, report o
 import argparse
 from math import radians
 
+from hsr8.robots.loaded import load_robot
 from walking.body.robot_model import RobotModel
 from walking.engine import WalkingEngine
 from walking.parameters import WalkingParameters
@@ -20,7 +21,7 @@ from walking.parameters import WalkingParameters
 import numpy as np
 from scipy.stats import chi2
 from study_page import add_seeds
-from walking_body import ROBOT, Body, Plant
+from walking_body import Body, Plant
 from walking_trial import Trace, parameters_of, random_script, walk
 
 ERRORS = {
@@ -77,7 +78,7 @@ def main() -> None:
     parser.add_argument("--only", default="", help="errors whose name contains this")
     parser.add_argument("--set", nargs="*", default=[], help="parameters, group.name=value")
     options = parser.parse_args()
-    robot, parameters = RobotModel.from_mjcf(ROBOT), parameters_of(options.set)
+    robot, parameters = load_robot("hsr8").model, parameters_of(options.set)
     plants = {"none": Plant()} if options.study == "falls" else ERRORS
     for name, plant in plants.items():
         if options.only in name:

@@ -7,6 +7,11 @@ does, only larger and slower, as far as its control does so, too.
 
 from dataclasses import dataclass
 from math import sqrt
+from pathlib import Path
+
+from hsr8.robots.loaded import LoadedRobot, load_robot
+from hsr8.robots.locate import find_description
+from hsr8.robots.models import models_dir
 
 import mujoco
 import numpy as np
@@ -106,3 +111,16 @@ def _scale_servo(actuator: mujoco.MjsActuator, scale: _Scale) -> None:
     actuator.gainprm[0] *= scale.torque
     actuator.biasprm[1] *= scale.torque
     actuator.biasprm[2] *= scale.damping
+
+
+def scaled_robot(size: float, folder: Path) -> LoadedRobot:
+    """Return HSR-VIII of another size, written to a folder and loaded from there."""
+    spec = mujoco.MjSpec.from_file(str(models_dir() / "hsr8" / "hsr8.xml"))
+    scale_robot(spec, size)
+    spec.compile()
+    (folder / f"size-{size}.xml").write_text(spec.to_xml(), encoding="utf-8")
+    text = find_description("hsr8").read_text(encoding="utf-8")
+    text = text.replace('"hsr8/hsr8.xml"', f'"size-{size}.xml"')
+    file = folder / f"size-{size}.toml"
+    file.write_text(text.replace("radius = 0.12\n", ""), encoding="utf-8")
+    return load_robot(str(file))

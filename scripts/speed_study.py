@@ -12,9 +12,9 @@ import argparse
 from dataclasses import dataclass, field
 from itertools import pairwise, product
 
+from hsr8.robots.loaded import load_robot
 from walking.body.joints import LEFT_LEG, LEG_JOINTS, RIGHT_LEG
 from walking.body.odometry import Odometry, increment
-from walking.body.robot_model import RobotModel
 from walking.command import HeadTarget, VelocityCommand
 from walking.engine import WalkingEngine
 from walking.parameters import CONTROL_PERIOD, WalkingParameters
@@ -22,7 +22,7 @@ from walking.parameters import CONTROL_PERIOD, WalkingParameters
 import mujoco
 import numpy as np
 from study_page import add_seeds
-from walking_body import ROBOT, Body, Plant
+from walking_body import Body, Plant
 from walking_trial import Script, parameters_of, random_script, steady_script
 
 SETTLED = 3.0  # time after which a walk is measured [s]
@@ -112,7 +112,7 @@ class Study:
     """Walks one robot with one set of parameters."""
 
     def __init__(self, parameters: WalkingParameters, friction: float) -> None:
-        self._robot = RobotModel.from_mjcf(ROBOT)
+        self._robot = load_robot("hsr8").model
         self._parameters = parameters
         self._plant = Plant(friction=friction)
 

@@ -11,13 +11,13 @@ import argparse
 import cProfile
 import pstats
 
-from walking.body.robot_model import RobotModel
+from hsr8.robots.loaded import load_robot
 from walking.command import HeadTarget, VelocityCommand
 from walking.engine import WalkingEngine
 
 import numpy as np
 from study_page import add_seeds
-from walking_body import ROBOT, Body, Plant
+from walking_body import Body, Plant
 from walking_trial import SAMPLE_TIME, Trace, parameters_of, random_script, steady_script, walk
 
 
@@ -98,7 +98,7 @@ def main() -> None:
     parser.add_argument("--friction", type=float, default=0.8)
     parser.add_argument("--set", nargs="*", default=[], help="parameters, group.name=value")
     options = parser.parse_args()
-    robot = RobotModel.from_mjcf(ROBOT)
+    robot = load_robot("hsr8").model
     parameters = parameters_of(options.set)
     plant = Plant(noise=options.noise, friction=options.friction)
     command = VelocityCommand(options.vx, options.vy, options.wz)

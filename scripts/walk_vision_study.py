@@ -16,8 +16,8 @@ os.environ.setdefault("MUJOCO_GL", "egl")
 
 from hsr8.loop import Simulation
 from hsr8.recorder.record import Listener, TickRecord
+from hsr8.robots.normal_form import HEAD_CAMERA
 from hsr8.scenario.loader import load_scenario
-from hsr8.world.model.assembly import HEAD_CAMERA
 from vision.camera import PinholeCamera
 
 import mujoco

@@ -10,7 +10,6 @@ from walking.balance.com_offset import ComOffset
 from walking.balance.foot_placement import FootPlacement
 from walking.balance.stabilizer import Stabilizer
 from walking.body.estimation import Estimation
-from walking.body.joints import HEAD
 from walking.body.odometry import LegOdometry
 from walking.body.robot_model import RobotModel
 from walking.command import Command, HeadTarget
@@ -83,8 +82,7 @@ class WalkingEngine:
         self._com_offset = ComOffset(parameters.stabilizer)
         self._odometry = odometry or LegOdometry(parameters.odometry)
         self._estimation = Estimation(robot, lipm.omega, parameters.estimator, self._odometry)
-        limits = np.column_stack([robot.lower[HEAD], robot.upper[HEAD]])
-        self._head = Head(robot.ready[HEAD], limits, parameters.head)
+        self._head = Head(robot.neck.angles(robot.ready), robot.neck.range(), parameters.head)
         self._polygon = SupportPolygon(robot.sole, gait.support_feet)
         self._fall_tilt = parameters.estimator.fall_tilt
         self._zmp_shift = (0.0, 0.0)
@@ -156,7 +154,7 @@ class WalkingEngine:
             zmp,
             self._zmp_shift,
             load,
-            head=self._head.advance(head),
+            head=self._robot.neck.joints(*self._head.advance(head)),
             offset=self._com_offset.offset,
         )
 

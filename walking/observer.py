@@ -29,7 +29,6 @@ from walking.state import Balance, WalkingState
 from walking.value import value
 
 VELOCITY_TIME = 0.05  # time constant of the legs in the velocity filter [s]
-FEET = ("l_foot", "r_foot")  # frames of the feet
 PRESSURE = 20  # index of the centres of pressure in the measurements
 FULL_LOAD = 0.5  # of the weight on the feet, above which the legs have their full weight [1]
 
@@ -194,7 +193,8 @@ class BodyObserver:
     def _roll(self, sensors: BodySensors, feet: Array, tilt: Array, yaw: float) -> None:
         """Update the contact points of the feet."""
         joints = sensors.joint_position
-        rotations = [tilt @ self._robot.frame_pose(name, joints)[0] for name in FEET]
+        feet_frames = self._robot.tree.feet
+        rotations = [tilt @ self._robot.frame_pose(frame, joints)[0] for frame in feet_frames]
         pressure = self._estimation.measured[PRESSURE:].reshape(2, 2)
         self._rolling.update(feet, np.array(rotations), pressure, yaw, self._contacts.on_floor)
 

@@ -4,7 +4,6 @@ import numpy as np
 
 from walking import published_state_kernel
 from walking.arrays import Array, Point
-from walking.body.joints import HEAD
 from walking.body.measurement import BodyMeasurement
 from walking.body.odometry import Odometry
 from walking.body.robot_model import RobotModel
@@ -34,15 +33,17 @@ class PublishedPlan:
 
 def camera_pose(robot: RobotModel, sensors: BodySensors, body: BodyMeasurement) -> HeadCameraPose:
     """Return the head camera in the robot frame: tilt by IMU, height by the loaded leg."""
-    R_BC, p_BC = robot.camera_pose(sensors.joint_position)
+    R_BC, p_BC = robot.neck.camera_pose(sensors.joint_position)
     R_RB = np.empty((3, 3))
     published_state_kernel.incline(body.roll, body.pitch, R_RB)
     load = body.right_load
     position = R_RB @ p_BC
     position[2] += -(1.0 - load) * body.feet[0].z - load * body.feet[1].z
-    pan, tilt = sensors.joint_position[HEAD].tolist()
-    pan_rate, tilt_rate = sensors.joint_velocity[HEAD].tolist()
-    return HeadCameraPose(R_RB @ R_BC, position, pan, tilt, pan_rate, tilt_rate)
+    angles, rates = (
+        robot.neck.angles(sensors.joint_position),
+        robot.neck.rates(sensors.joint_velocity),
+    )
+    return HeadCameraPose(R_RB @ R_BC, position, *angles, *rates)
 
 
 def published_plan(

@@ -21,7 +21,7 @@ def parameters_for(robot: RobotModel, chosen: WalkingParameters | None = None) -
     """
     defaults = WalkingParameters()
     scaled = scale_parameters(defaults, HSR_VIII, robot.measures())
-    return scaled if chosen is None else _override(scaled, chosen, defaults)
+    return scaled if chosen is None else override(scaled, chosen, defaults)
 
 
 def scale_parameters(parameters: Section, old: RobotMeasures, new: RobotMeasures) -> Section:
@@ -55,13 +55,13 @@ def rules_of(section: type) -> dict[str, Rule]:
     return rules
 
 
-def _override(scaled: Section, chosen: Section, defaults: Section) -> Section:
+def override(scaled: Section, chosen: Section, defaults: Section) -> Section:
     """Return `chosen` with the scaled value wherever it equals the default."""
     values: dict[str, Any] = {}
     for name in (field.name for field in fields(chosen)):  # type: ignore[arg-type]
         value, default = getattr(chosen, name), getattr(defaults, name)
         if is_dataclass(value):
-            values[name] = _override(getattr(scaled, name), value, default)
+            values[name] = override(getattr(scaled, name), value, default)
         elif value == default:
             values[name] = getattr(scaled, name)
     return replace(chosen, **values)  # type: ignore[type-var]

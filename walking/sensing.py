@@ -9,8 +9,8 @@ class BodySensors:
     """Reading of all body sensors at the start of a control tick.
 
     Attributes:
-        joint_position: encoder angles in the order of ``JOINT_NAMES`` (26,) [rad].
-        joint_velocity: encoder rates in the same order (26,) [rad/s].
+        joint_position: encoder angles in the order of ``RobotTree`` (n,) [rad].
+        joint_velocity: encoder rates in the same order (n,) [rad/s].
         gyro: angular velocity of the trunk in the IMU frame (3,) [rad/s].
         accelerometer: specific force in the IMU frame (3,) [m/s²]; used by the filter of
             `orientation` only.

@@ -6,15 +6,15 @@ from walking.value import value
 
 @value
 class JointTargets:
-    """Setpoints of the 26 position servos for one control tick.
+    """Setpoints of the position servos for one control tick.
 
     The setpoint is the desired angle plus a feed-forward offset for the compliance of the servo
     under its expected load (gravity, velocity lag), within the range of the joint. A body without
     dynamics follows `position` alone.
 
     Attributes:
-        position: desired joint angles, order of ``JOINT_NAMES`` (26,) [rad].
-        setpoint: sent to the servos (26,) [rad].
+        position: desired joint angles, order of ``RobotTree`` (n,) [rad].
+        setpoint: sent to the servos (n,) [rad].
     """
 
     position: Array

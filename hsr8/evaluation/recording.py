@@ -100,11 +100,13 @@ class Recording:
         manifest = replace(manifest, libraries=libraries, log=log or "")
         self._folder = RunFolder(path, manifest, dump(scenario), len(simulation.layout.movers))
         with self._failure_noted():
-            simulation.tape = TapeWriter(path / run_folder.TAPE)
+            simulation.tape = TapeWriter(
+                path / run_folder.TAPE, len(simulation.humanoid.model.names)
+            )
             walking = path / run_folder.WALKING
             writers: list[Listener] = [
                 self._folder,
-                WalkingTableWriter(walking, simulation.model, simulation.index),
+                WalkingTableWriter(walking, simulation.humanoid.model),
             ]
             if log is not None:
                 # Imported late: runs without a log start a third of a second earlier.
@@ -113,8 +115,7 @@ class Recording:
                 writers.append(
                     RerunLog(
                         path / run_folder.LOG,
-                        simulation.model,
-                        simulation.layout,
+                        (simulation.model, simulation.humanoid, simulation.layout),
                         (scenario.camera.width, scenario.camera.height),
                         f"{scenario.name} {scenario.seed}",
                         gaze=scenario.navigation.gaze,

@@ -6,7 +6,6 @@ from dataclasses import asdict, dataclass
 from itertools import zip_longest
 from typing import Any
 
-import mujoco
 import numpy as np
 from numpy.typing import NDArray
 
@@ -15,9 +14,7 @@ from hsr8.recorder.run.fingerprints import CHANNELS, DECISIONS
 from hsr8.recorder.run.measurements import Measurement
 from hsr8.recorder.run.run_reader import Run
 from hsr8.recorder.run.tape import Block
-from hsr8.recorder.run.walking_table import COLUMNS
-from hsr8.robots.models import models_dir
-from walking.body.joints import JOINT_NAMES
+from hsr8.robots.loaded import LoadedRobot, load_robot
 from walking.parameters import CONTROL_PERIOD
 
 Array = NDArray[np.float64]
@@ -70,7 +67,7 @@ def motion(a: Run, b: Run) -> list[RunDifference]:
     inputs = ([(m.frame.time, _values(m)) for m in run.measurements()] for run in (a, b))
     summaries = ([(frame.time, asdict(frame)) for frame in run.frames()] for run in (a, b))
     differences = (
-        _first_set_point(*tapes),
+        _first_set_point(a, *tapes),
         _first_hash(*tapes),
         _first_row(a, b),
         _first_frame("measurements", *inputs),
@@ -82,8 +79,12 @@ def motion(a: Run, b: Run) -> list[RunDifference]:
     return sorted(present, key=lambda difference: difference.tick or 0)
 
 
-def _first_set_point(a: list[Block], b: list[Block]) -> RunDifference | None:
-    none = np.empty((0, len(JOINT_NAMES)))
+def _first_set_point(run: Run, a: list[Block], b: list[Block]) -> RunDifference | None:
+    joints = [{block.setpoints.shape[1] for block in tape} or {0} for tape in (a, b)]
+    if joints[0] != joints[1]:
+        x, y = (max(n) for n in joints)
+        return RunDifference("tape", "number of joints", x, y, 0, 0.0)
+    none = np.empty((0, max(joints[0])))
     rows = [np.concatenate([none, *(block.setpoints for block in tape)]) for tape in (a, b)]
     n = min(map(len, rows))
     differ = rows[0][:n].view(np.int64) != rows[1][:n].view(np.int64)
@@ -92,7 +93,7 @@ def _first_set_point(a: list[Block], b: list[Block]) -> RunDifference | None:
         tick = int(ticks[0])
         joint = int(np.argmax(differ[tick]))
         x, y = (float(table[tick, joint]) for table in rows)
-        channel = f"setpoint of {JOINT_NAMES[joint]} [rad]"
+        channel = f"setpoint of {_robot(run).model.names[joint]} [rad]"
         return RunDifference("tape", channel, x, y, tick, tick * CONTROL_PERIOD)
     if len(rows[0]) != len(rows[1]):
         x, y = map(len, rows)
@@ -117,15 +118,16 @@ def _first_row(a: Run, b: Run) -> RunDifference | None:
     if p.qpos.shape[1] != q.qpos.shape[1] or p.movers.shape[1] != q.movers.shape[1]:
         shapes = [f"{t.qpos.shape[1]} coordinates, {t.movers.shape[1]} movers" for t in (p, q)]
         return RunDifference("trajectory", "columns", shapes[0], shapes[1], 0, 0.0)
-    names = ["time [s]", *_qpos_names(p.qpos.shape[1])]
+    names = ["time [s]", *_qpos_names(_robot(a), p.qpos.shape[1])]
     names += [f"mover {k // 2} {'xy'[k % 2]} [m]" for k in range(2 * p.movers.shape[1])]
     tables = [np.hstack([t.time[:, None], t.qpos, t.movers.reshape(len(t), -1)]) for t in (p, q)]
     return _first_value("trajectory", names, *tables)
 
 
 def _first_walking(a: Run, b: Run) -> RunDifference | None:
-    tables = [np.column_stack([t.time, *t.columns.values()]) for t in (a.walking(), b.walking())]
-    return _first_value("walking", ["time [s]", *COLUMNS], *tables)
+    walks = a.walking(), b.walking()
+    tables = [np.column_stack([t.time, *t.columns.values()]) for t in walks]
+    return _first_value("walking", ["time [s]", *walks[0].columns], *tables)
 
 
 def _first_value(record: str, names: Sequence[str], a: Array, b: Array) -> RunDifference | None:
@@ -201,9 +203,13 @@ def _values(measurement: Measurement) -> dict[str, Any]:
     return values
 
 
-def _qpos_names(count: int) -> list[str]:
-    """Return the name of every coordinate of the robot in MuJoCo's order."""
-    model = mujoco.MjModel.from_xml_path(str(models_dir() / "hsr8" / "hsr8.xml"))
+def _robot(run: Run) -> LoadedRobot:
+    return load_robot(run.scenario().robot.model)
+
+
+def _qpos_names(robot: LoadedRobot, count: int) -> list[str]:
+    """Return the name of every coordinate of a robot in MuJoCo's order."""
+    model = robot.spec.compile()
     names = [f"qpos[{k}]" for k in range(count)]
     for k in range(model.njnt):
         joint = model.joint(k)

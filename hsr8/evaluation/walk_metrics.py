@@ -10,7 +10,6 @@ from hsr8.recorder.record import TickRecord
 from hsr8.recorder.walk_counters import WalkCounters
 from hsr8.world.truth.saturation import Saturation, SaturationWatch
 from navigation.angles import wrap
-from walking.body.joints import JOINT_NAMES
 from walking.phase import Phase
 
 Array = NDArray[np.float64]
@@ -172,15 +171,15 @@ def _saturation(saturation: Saturation) -> dict[str, object]:
     fastest = int(np.argmax(saturation.peak_speed))
     return {
         "torque_saturated_ticks": saturation.torque_any,
-        "torque_saturated_by": _by_joint(saturation.torque_ticks),
+        "torque_saturated_by": _by_joint(saturation.names, saturation.torque_ticks),
         "joint_stop_ticks": saturation.stop_any,
-        "joint_stop_by": _by_joint(saturation.stop_ticks),
+        "joint_stop_by": _by_joint(saturation.names, saturation.stop_ticks),
         "peak_torque_ratio": float(saturation.peak_torque[strongest]),
-        "peak_torque_joint": JOINT_NAMES[strongest],
+        "peak_torque_joint": saturation.names[strongest],
         "peak_joint_speed_radps": float(saturation.peak_speed[fastest]),
-        "peak_speed_joint": JOINT_NAMES[fastest],
+        "peak_speed_joint": saturation.names[fastest],
     }
 
 
-def _by_joint(ticks: NDArray[np.int64]) -> dict[str, int]:
-    return {name: n for name, n in zip(JOINT_NAMES, ticks.tolist(), strict=True) if n}
+def _by_joint(names: tuple[str, ...], ticks: NDArray[np.int64]) -> dict[str, int]:
+    return {name: n for name, n in zip(names, ticks.tolist(), strict=True) if n}

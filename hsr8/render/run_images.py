@@ -19,8 +19,10 @@ from hsr8.render.push_arrows import SHOWN, Arrow, PushArrow, arrows_at, push_arr
 from hsr8.render.scene_renderer import Image, SceneRenderer
 from hsr8.render.timeline import Timeline
 from hsr8.render.top_down import TRAIL
+from hsr8.robots.loaded import load_robot
+from hsr8.robots.normal_form import HEAD_CAMERA
 from hsr8.world.field.generator import draw_layout
-from hsr8.world.model.assembly import HEAD_CAMERA, Optics, Quality
+from hsr8.world.model.assembly import Optics, Quality
 
 Array = NDArray[np.float64]
 Draw = Callable[[int], Image]
@@ -47,6 +49,7 @@ class RunImages:
     ) -> None:
         self._scenario = run.scenario()
         self._layout = draw_layout(self._scenario, run.seed)
+        self._robot = load_robot(self._scenario.robot.model)
         self._times, self._size, self._speed, self._fine = times, size, speed, fine
         self._trajectory = run.trajectory()
         self._rows = rows_at(self._trajectory.time, times)
@@ -95,6 +98,7 @@ class RunImages:
         self, quality: Quality, size: tuple[int, int], oversampling: float | None = None
     ) -> SceneRenderer:
         renderer = SceneRenderer(
+            self._robot,
             self._layout,
             quality,
             size,

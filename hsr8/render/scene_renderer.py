@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 from hsr8.errors import UsageError
 from hsr8.gl import require_gl
 from hsr8.render.push_arrows import Arrow
+from hsr8.robots.loaded import LoadedRobot
 from hsr8.suggestion import suggestion
 from hsr8.world.field.layout import Layout
 from hsr8.world.model.assembly import Optics, Quality, assemble
@@ -29,6 +30,7 @@ class SceneRenderer:
     """Renderer of a layout with robot and movers; use it in one thread only and close it.
 
     Args:
+        robot: of the run.
         layout: of the run's world.
         quality: ``show`` for people, ``vision`` for the robot's camera.
         size: width and height of the images [pixel].
@@ -42,6 +44,7 @@ class SceneRenderer:
 
     def __init__(
         self,
+        robot: LoadedRobot,
         layout: Layout,
         quality: Quality,
         size: tuple[int, int],
@@ -51,7 +54,7 @@ class SceneRenderer:
         fine: bool,
     ) -> None:
         require_gl()
-        self.model = assemble(layout, quality, optics)
+        self.model = assemble(robot, layout, quality, optics)
         self.data = mujoco.MjData(self.model)
         self._movers = np.array(
             [self.model.body(f"mover_{i:02d}").mocapid[0] for i in range(len(layout.movers))],

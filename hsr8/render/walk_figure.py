@@ -63,7 +63,7 @@ TIME_PANELS: dict[str, tuple[Panel, ...]] = {
     "velocity": tuple(
         Panel(0.9, partial(panels.velocity, component=k), legend=k == 0) for k in range(3)
     ),
-    "torques": tuple(Panel(1.1, partial(panels.torque, group=group)) for group in panels.JOINTS),
+    "torques": tuple(Panel(1.1, partial(panels.torque, group=group)) for group in panels.GROUPS),
     "tilt": (Panel(0.9, panels.tilt),),
 }
 MIN_RECORDS = 4  # of a plot

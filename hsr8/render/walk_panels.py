@@ -1,7 +1,7 @@
 """Panels of a figure of walking; each function draws into one pair of axes."""
 
 from collections.abc import Sequence
-from math import cos, degrees, sin
+from math import cos, degrees, isfinite, sin
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -49,11 +49,7 @@ MIN_SPANS = (0.1, 0.1, 0.4)  # of the shown ranges of vx, vy [m/s] and wz [rad/s
 STEPS_PER_STRIDE = 2
 ARROW = 0.08  # drawn length of a push [m]
 DEFAULT_STRIDE = 0.7  # window of the velocity without footsteps [s]
-JOINTS = {
-    "hip": ("hip_yaw", "hip_roll", "hip_pitch"),
-    "knee": ("knee",),
-    "ankle": ("ankle_pitch", "ankle_roll"),
-}
+GROUPS = ("hip", "knee", "ankle")
 DASHES = ("-", (0, (4, 1.5)), (0, (1, 1)))
 
 
@@ -245,18 +241,16 @@ def _at_least(axes: Axes, span: float) -> None:
 def torque(axes: Axes, table: WalkingTable, group: str) -> None:
     """Draw the torques of one group of leg joints and their limits."""
     limit_max = 0.0
-    for joint, dash in zip(JOINTS[group], DASHES, strict=False):
-        for side, color in (("l", LEFT), ("r", RIGHT)):
-            name = f"{side}_{joint}"
-            side_name = "left" if side == "l" else "right"
-            label = f"{side_name} {joint.removeprefix(group + '_')}".replace("_", " ")
-            axes.plot(
-                table.time, table[f"torque_{name}"], color=color, lw=0.9, ls=dash, label=label
-            )
+    names = tuple(table.torque_limit)
+    for joint, dash in zip(table.groups[group], DASHES, strict=False):
+        for name, color in ((names[joint], LEFT), (names[6 + joint], RIGHT)):
+            torques, label = table[f"torque_{name}"], name.replace("_", " ")
+            axes.plot(table.time, torques, color=color, lw=0.9, ls=dash, label=label)
             limit_max = max(limit_max, table.torque_limit[name])
-    for limit in (-limit_max, limit_max):
-        axes.axhline(limit, color=PUSH, lw=0.9, ls=(0, (6, 2)))
-    axes.set_ylim(-1.12 * limit_max, 1.12 * limit_max)
+    if isfinite(limit_max):
+        for limit in (-limit_max, limit_max):
+            axes.axhline(limit, color=PUSH, lw=0.9, ls=(0, (6, 2)))
+        axes.set_ylim(-1.12 * limit_max, 1.12 * limit_max)
     axes.set_ylabel(f"{group}\n[N m]")
 
 

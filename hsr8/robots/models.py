@@ -25,8 +25,11 @@ def models_dir() -> Path:
 
 
 @contextmanager
-def reading_models() -> Iterator[None]:
+def reading_models(source: str | None = None) -> Iterator[None]:
     """Context in which errors of model files become a `ModelError`.
+
+    Args:
+        source: file that is read, which begins the message; default: the models of hsr8.
 
     Raises:
         ModelError: a file is damaged, or lacks a required name.
@@ -35,4 +38,5 @@ def reading_models() -> Iterator[None]:
         yield
     except (ValueError, KeyError, SyntaxError) as error:  # SyntaxError: invalid XML
         reason = " ".join(str(error.args[0]).split())
-        raise ModelError(f"invalid robot or field model in {models_dir()}: {reason}") from error
+        what = "invalid robot or field model" if source is None else "invalid robot model"
+        raise ModelError(f"{source or models_dir()}: {what}: {reason}") from error

@@ -2,7 +2,7 @@
 
 from typing import Annotated, Literal
 
-from annotated_types import Interval
+from annotated_types import Interval, Len
 
 from hsr8.scenario.section import Radius, Section
 from hsr8.scenario.world import Start
@@ -31,6 +31,8 @@ class SpeedEnvelope(Section):
 class Robot(Section):
     """Body, initial pose and speed limits."""
 
+    model: Annotated[str, Len(1, 500)] = "hsr8"
+    """Robot: name of a shipped description, or the file of a description."""
     body: Literal["full", "kinematic"] = "full"
     """full: MuJoCo physics; kinematic: no dynamics, every footstep lands as planned."""
     radius: Radius = 0.12

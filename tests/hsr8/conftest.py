@@ -10,6 +10,7 @@ from hsr8.decisions import Decision, DecisionContext
 from hsr8.recorder.frame_record import FrameRecord
 from hsr8.recorder.record import TickRecord
 from hsr8.recorder.walk_counters import WalkCounters
+from hsr8.robots.loaded import load_robot
 from hsr8.world.field.layout import Beacon, Layout, Obstacle
 from hsr8.world.field.motion import Shuttle
 from hsr8.world.model.assembly import Optics, assemble
@@ -56,7 +57,7 @@ def layout():
 
 @pytest.fixture(scope="session")
 def model(layout):
-    return assemble(layout, "vision", Optics())
+    return assemble(load_robot("hsr8"), layout, "vision", Optics())
 
 
 def _track(layout, index, time, error=(0.0, 0.0), velocity=None):

@@ -12,8 +12,8 @@ from hsr8.cli.main import entry
 from hsr8.errors import UsageError
 from hsr8.plugin_file import digests
 from hsr8.plugin_walker import PluginEngine, PluginWalker, RobotInfo
-from hsr8.robot_builder import build_walker, robot_model
-from hsr8.robots.models import models_dir
+from hsr8.robot_builder import build_walker
+from hsr8.robots.loaded import load_robot
 from hsr8.scenario.plugin import Plugin
 from navigation.decision import GazeDecision
 from walking.body.odometry import LegOdometry
@@ -90,7 +90,7 @@ class BuiltIn:
     """The walking engine of hsr8."""
 
     def reset(self):
-        robot = robot_model()
+        robot = load_robot("hsr8").model
         self.engine = WalkingEngine(robot, parameters_for(robot))
 
     def step(self, sensors, command, head, estimate):
@@ -106,11 +106,11 @@ class Ahead:
 
 @pytest.fixture(scope="module")
 def robot():
-    return robot_model()
+    return load_robot("hsr8").model
 
 
 def info_of(robot):
-    return RobotInfo.of(robot, models_dir() / "hsr8" / "hsr8.xml")
+    return RobotInfo.of(robot, load_robot("hsr8").file)
 
 
 def engine_of(robot, walker):
@@ -302,7 +302,9 @@ def test_a_run_records_the_digest_and_can_be_verified_and_drawn(folder, capsys):
 
 
 def test_a_run_with_an_object_records_its_class(folder):
-    hsr8.run("quick", settings=FAST, walker=Fixed(robot_model().ready), log=False, out=folder)
+    hsr8.run(
+        "quick", settings=FAST, walker=Fixed(load_robot("hsr8").model.ready), log=False, out=folder
+    )
     (manifest,) = folder.glob("quick/*/manifest.json")
     assert f"walker={__name__}.Fixed" in str(json.loads(manifest.read_text())["command"])
 

@@ -5,10 +5,9 @@ from math import sqrt
 import mujoco
 import numpy as np
 import pytest
-from scaled_model import scale_robot
+from scaled_model import scale_robot, scaled_robot
 
 from hsr8.robots.models import models_dir
-from walking.body.robot_model import RobotModel
 from walking.robot_measures import HSR_VIII
 
 ROBOT = models_dir() / "hsr8" / "hsr8.xml"
@@ -81,12 +80,8 @@ def test_a_scaled_robot_moves_as_the_original_does(size):
 
 
 @pytest.mark.parametrize("size", [0.8, 1.3])
-def test_the_walking_library_reads_it_from_the_file_that_mujoco_saves(size, tmp_path):
-    spec = spec_of(size)
-    spec.compile()
-    path = tmp_path / "robot.xml"
-    path.write_text(spec.to_xml(), encoding="utf-8")
-    y = RobotModel.from_mjcf(path).measures()
+def test_its_measures_scale(size, tmp_path):
+    y = scaled_robot(size, tmp_path).model.measures()
     assert (y.leg, y.hip, y.sole) == pytest.approx(
         (size * HSR_VIII.leg, size * HSR_VIII.hip, size * HSR_VIII.sole), rel=1e-5
     )

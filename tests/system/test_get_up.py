@@ -7,11 +7,11 @@ import numpy as np
 import pytest
 
 from hsr8.body_builder import build_body, build_model
+from hsr8.robots.loaded import load_robot
 from hsr8.robots.models import models_dir
 from hsr8.scenario.loader import load_scenario
 from hsr8.world.field.generator import draw_layout
 from hsr8.world.model.index import ModelIndex
-from walking.body.robot_model import RobotModel
 from walking.get_up.get_up import GetUp, Outcome
 from walking.get_up.key_posture import STRAIGHT
 from walking.parameters import CONTROL_PERIOD, GetUpParameters
@@ -25,7 +25,7 @@ DROP = 0.08  # height from which the robot is laid down [m]
 def lay(body, pitch):
     """Put the robot down stretched out, its trunk pitched by `pitch` [rad]."""
     model, data = body.model, body.data
-    index = ModelIndex.of(model, 0, 0)
+    index = ModelIndex.of(model, load_robot("hsr8"), 0, 0)
     root, joints = index.root_qpos, index.joint_qpos
     data.qpos[joints] = STRAIGHT.angles()
     data.qpos[root + 2] = DROP
@@ -39,7 +39,7 @@ def test_it_rises_from_front_and_back(pitch, most):
     layout = draw_layout(scenario, 0)
     body = build_body(scenario, 0, layout, build_model(scenario, layout))
     lay(body, pitch)
-    robot = RobotModel.from_mjcf(ROBOT)
+    robot = load_robot("hsr8").model
     get_up = GetUp(robot, GetUpParameters(max_attempts=most), np.array(STRAIGHT.angles()))
     while get_up.outcome is Outcome.UNDER_WAY and body.time < 30.0:
         body.apply(get_up.step(body.sense()))

@@ -3,63 +3,34 @@
 from dataclasses import replace
 from math import sqrt
 
-import mujoco
 import numpy as np
 import pytest
-from scaled_model import scale_robot
+from scaled_model import scaled_robot
 
-from hsr8.robots.models import models_dir
-from walking.body.joints import JOINT_NAMES
-from walking.body.robot_model import RobotModel
+from hsr8.scenario.sensor_noise import SensorNoise
+from hsr8.world.body.physics import PhysicsBody
+from hsr8.world.field.layout import Layout
+from hsr8.world.model.assembly import Optics, assemble
 from walking.command import CommandState, HeadTarget, VelocityCommand
 from walking.engine import WalkingEngine
 from walking.parameters import CONTROL_PERIOD, WalkingParameters
 from walking.robot_measures import HSR_VIII
 from walking.scaling import parameters_for, scale_parameters
-from walking.sensing import BodySensors
 
-PADS = [f"{side}_sole_{pad}_force" for side in "lr" for pad in ("fl", "fr", "bl", "br")]
+EMPTY = Layout((4.0, 4.0), (), (), (0.0, 0.0, 0.0), np.zeros((0, 2)), None, endless=False)
+SILENT = SensorNoise(**dict.fromkeys(SensorNoise.__dataclass_fields__, 0.0))
 
 
 class Body:
     """A scaled robot on a plain floor; its sensors are perfect."""
 
     def __init__(self, size, folder):
-        spec = mujoco.MjSpec.from_file(str(models_dir() / "hsr8" / "hsr8.xml"))
-        scale_robot(spec, size)
-        spec.compile()
-        path = folder / f"robot-{size}.xml"
-        path.write_text(spec.to_xml(), encoding="utf-8")
-        self.robot = RobotModel.from_mjcf(path)
-        floor = spec.worldbody.add_geom(
-            name="floor", type=mujoco.mjtGeom.mjGEOM_PLANE, size=[0, 0, 1], condim=4
-        )
-        floor.contype, floor.conaffinity = 3, 1
-        self.model = spec.compile()
-        self.data = mujoco.MjData(self.model)
-        model = self.model
-        mujoco.mj_resetDataKeyframe(model, self.data, model.key("walk_ready").id)
-        mujoco.mj_forward(model, self.data)
-        self._qpos = [int(model.joint(name).qposadr[0]) for name in JOINT_NAMES]
-        self._dof = [int(model.joint(name).dofadr[0]) for name in JOINT_NAMES]
-        self._servos = [model.actuator(f"{name}_act").id for name in JOINT_NAMES]
-        self._pads = [int(model.sensor(name).adr[0]) for name in PADS]
-
-    def sense(self):
-        data = self.data
-        return BodySensors(
-            joint_position=data.qpos[self._qpos],
-            joint_velocity=data.qvel[self._dof],
-            gyro=data.qvel[3:6].copy(),
-            accelerometer=np.array([0.0, 0.0, 9.81]),
-            orientation=data.qpos[3:7].copy(),
-            foot_force=data.sensordata[self._pads].reshape(2, 4),
-        )
-
-    def apply(self, targets):
-        self.data.ctrl[self._servos] = targets.setpoint
-        for _ in range(round(CONTROL_PERIOD / self.model.opt.timestep)):
-            mujoco.mj_step(self.model, self.data)
+        loaded = scaled_robot(size, folder)
+        self.robot = loaded.model
+        model = assemble(loaded, EMPTY, "vision", Optics())
+        self.body = PhysicsBody(model, loaded, EMPTY, SILENT, np.random.default_rng(0))
+        self.data = self.body.data
+        self.sense, self.apply = self.body.sense, self.body.apply
 
     @property
     def tilt(self):

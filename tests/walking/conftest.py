@@ -1,23 +1,20 @@
 """A robot model and a body without dynamics."""
 
 from math import atan2, cos, sin
-from pathlib import Path
 
 import numpy as np
 import pytest
 
-from walking.body.joints import JOINT_NAMES, LEFT_LEG, RIGHT_LEG
-from walking.body.leg_kinematics import foot_pose
+from hsr8.robots.loaded import load_robot
 from walking.body.robot_model import RobotModel
+from walking.body.tree import LEFT_LEG, RIGHT_LEG
 from walking.parameters import CONTROL_PERIOD
 from walking.sensing import BodySensors
-
-MODEL = Path(__file__).resolve().parents[2] / "models" / "hsr8" / "hsr8.xml"
 
 
 @pytest.fixture(scope="session")
 def robot() -> RobotModel:
-    return RobotModel.from_mjcf(MODEL)
+    return load_robot("hsr8").model
 
 
 class IdealBody:
@@ -68,7 +65,7 @@ class IdealBody:
 
     def _feet(self):
         return [
-            foot_pose(leg, tuple(self._joints[part].tolist()))
+            leg.pose(self._joints[part])
             for leg, part in zip(self._robot.legs, (LEFT_LEG, RIGHT_LEG), strict=True)
         ]
 
@@ -93,15 +90,14 @@ def ideal_body(make_body) -> IdealBody:
 
 
 @pytest.fixture(scope="session")
-def mirrored_joints():
-    """Mirrors angles of all joints (..., 26) at the sagittal plane."""
+def mirrored_joints(robot):
+    """Mirrors angles of all joints (..., n) at the sagittal plane."""
+    names = robot.names
     swapped = [
-        JOINT_NAMES.index(
-            {"l": "r", "r": "l"}[name[0]] + name[1:] if name[:2] in ("l_", "r_") else name
-        )
-        for name in JOINT_NAMES
+        names.index({"l": "r", "r": "l"}[name[0]] + name[1:] if name[:2] in ("l_", "r_") else name)
+        for name in names
     ]
     sign = np.array(
-        [-1.0 if name.endswith(("yaw", "roll", "pan", "gripper")) else 1.0 for name in JOINT_NAMES]
+        [-1.0 if name.endswith(("yaw", "roll", "pan", "gripper")) else 1.0 for name in names]
     )
     return lambda angles: sign * angles[..., swapped]

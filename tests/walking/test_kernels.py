@@ -6,7 +6,12 @@ import numpy as np
 import pytest
 
 from walking import published_state_kernel
-from walking.body import estimation_kernel, head_kernel, leg_kernel
+from walking.body import (
+    estimation_kernel,
+    feedforward_kernel,
+    head_kernel,
+    kinematics_kernel,
+)
 from walking.command import CommandState, HeadTarget, VelocityCommand
 from walking.engine import WalkingEngine
 from walking.footsteps import foothold_kernel, stride_kernel
@@ -27,11 +32,12 @@ KERNELS = [
     (support_kernel, "load_fraction"),
     (support_kernel, "depth"),
     (estimation_kernel, "estimate"),
-    (leg_kernel, "pose"),
-    (leg_kernel, "rates"),
-    (leg_kernel, "offsets"),
+    (kinematics_kernel, "pose"),
+    (kinematics_kernel, "feet_poses"),
+    (kinematics_kernel, "chain_end"),
+    (feedforward_kernel, "rates"),
+    (feedforward_kernel, "offsets"),
     (head_kernel, "advance"),
-    (head_kernel, "camera_pose"),
     (published_state_kernel, "show"),
     (published_state_kernel, "incline"),
     (stride_kernel, "strides"),

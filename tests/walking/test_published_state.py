@@ -34,7 +34,7 @@ def looking(ideal_body):
 
 
 def test_the_camera_of_a_level_body_is_as_high_above_its_foot_as_the_leg_says(robot, looking):
-    R_BC, p_BC = robot.camera_pose(looking.joint_position)
+    R_BC, p_BC = robot.neck.camera_pose(looking.joint_position)
     head = camera_pose(robot, looking, BODY)
     np.testing.assert_array_equal(head.rotation, R_BC)
     assert head.position == pytest.approx(p_BC - [0.0, 0.0, LEFT.z])
@@ -50,7 +50,7 @@ def test_the_height_is_that_above_the_foot_that_carries(robot, looking, load):
 
 @pytest.mark.parametrize(("roll", "pitch"), [(0.2, 0.0), (0.0, -0.3), (0.1, 0.2)])
 def test_a_tilted_trunk_takes_the_camera_along(robot, looking, roll, pitch):
-    R_BC, p_BC = robot.camera_pose(looking.joint_position)
+    R_BC, p_BC = robot.neck.camera_pose(looking.joint_position)
     tilted = Rotation.from_euler("xy", (roll, pitch)).as_matrix()
     head = camera_pose(robot, looking, replace(BODY, roll=roll, pitch=pitch))
     assert head.rotation == pytest.approx(tilted @ R_BC)

@@ -42,7 +42,8 @@ class Stabilizer:
     def __init__(self, robot: RobotModel, parameters: StabilizerParameters, omega: float) -> None:
         self._parameters = parameters
         self._omega = omega
-        lag = float((robot.damping[4:6] / robot.stiffness[4:6]).max())
+        ankle = slice(robot.legs[0].ankle, 6)
+        lag = float((robot.damping[ankle] / robot.stiffness[ankle]).max())
         self._gain = dcm_gain(omega, lag, parameters.dcm_rate)
         sole, margin = robot.sole, parameters.sole_margin
         self._margin = sole.half_length - margin, sole.half_width - margin

@@ -3,7 +3,7 @@
 import numpy as np
 
 from walking.arrays import Array, Point
-from walking.body import estimation_kernel
+from walking.body import estimation_kernel, kinematics_kernel
 from walking.body.estimation_kernel import LOAD, MEASURED, Plan
 from walking.body.measurement import BodyMeasurement, body_of
 from walking.body.odometry import LegOdometry
@@ -49,6 +49,7 @@ class Estimation:
         self._body = np.array(body)
         self._gains = np.array([*steady_gains(omega, parameters), omega])
         self.measured = np.zeros(MEASURED)
+        self._feet = np.zeros((2, 4))
         self.tilt: Point | None = None
         self.dcm_error: Point = (0.0, 0.0)
         self.pressure_error: Point = (0.0, 0.0)
@@ -72,7 +73,7 @@ class Estimation:
     def observe(self, sensors: BodySensors) -> None:
         """Measure the body and filter its tilt in a tick without a plan."""
         self.tilt = estimation_kernel.observe(
-            *self._inputs(sensors), self._robot.leg_rows, self._body, CONTROL_PERIOD, self.measured
+            *self._inputs(sensors), self._body, CONTROL_PERIOD, self.measured
         )
 
     def update(self, sensors: BodySensors, feet: Array, plan: Plan, *, stepping: bool) -> Point:
@@ -92,7 +93,6 @@ class Estimation:
             *self._inputs(sensors),
             odometry.state,
             self._error,
-            self._robot.leg_rows,
             self._body,
             odometry.growth,
             self._gains,
@@ -108,4 +108,6 @@ class Estimation:
     def _inputs(self, sensors: BodySensors) -> tuple[Array, Array, Array, Array, Array, Array]:
         """Return the first arguments of `observe` and `estimate`."""
         joints, com = sensors.joint_position, self._robot.com(sensors.joint_position)
-        return joints, sensors.foot_force, sensors.orientation, sensors.gyro, com, self._filter
+        kinematics_kernel.feet_poses(self._robot.chains, joints, self._feet)
+        pads = sensors.foot_force
+        return self._feet, pads, sensors.orientation, sensors.gyro, com, self._filter

@@ -9,16 +9,14 @@ State arrays, booleans as 0 or 1:
                     at its begin x, y [m] | xx, xy, xw, yy, yw, ww of the error covariance;
     error (5,)      x, y [m], vx, vy [m/s] | weight on the right foot [1], -1 before the first tick.
 
-Constant numbers are passed in arrays, too: tuples are unpacked at every call. The forward
-kinematics of the legs is here because kernels call no kernel of another file.
+Constant numbers are passed in arrays, too: tuples are unpacked at every call.
 """
 
-from math import asin, atan2, cos, hypot, pi, sin, sqrt
+from math import atan2, cos, hypot, pi, sin, sqrt
 
 from numba import njit
 
 from walking.arrays import Array, Point, Vector
-from walking.body.leg_kernel import Angles, Leg, Pose
 
 Plan = tuple[float, float, float, float, float, float, float, float, float, float, float]
 """Pelvis x, y [m], heading [rad]; centre of mass in the base frame x, y; ZMP x, y; its shift by the
@@ -30,7 +28,7 @@ MEASURED, LOAD = 24, 10  # number of measurements; index of the left foot's load
 
 @njit(cache=True)
 def estimate(
-    joints: Array,
+    legs: Array,
     pads: Array,
     orientation: Array,
     gyro: Array,
@@ -38,7 +36,6 @@ def estimate(
     tilt: Array,
     odometry: Array,
     error: Array,
-    legs: Array,
     body: Array,
     growth: Array,
     gains: Array,
@@ -58,7 +55,7 @@ def estimate(
         roll and pitch [rad]; DCM error in the plan frame [m]; error of the centre of pressure,
         forward and left, zero in the air [m]; odometry pose [m, m, rad].
     """
-    inclined = observe(joints, pads, orientation, gyro, com, tilt, legs, body, period, measured)
+    inclined = observe(legs, pads, orientation, gyro, com, tilt, body, period, measured)
     left, right = (measured[6], measured[7]), (measured[11], measured[12])
     reckon(odometry, measured[2], (left, right), measured[19], stepping, growth)
     yaw, weight = plan[2], plan[10]
@@ -88,13 +85,12 @@ def estimate(
 
 @njit(cache=True)
 def observe(
-    joints: Array,
+    legs: Array,
     pads: Array,
     orientation: Array,
     gyro: Array,
     com: Array,
     tilt: Array,
-    legs: Array,
     body: Array,
     period: float,
     measured: Array,
@@ -102,13 +98,12 @@ def observe(
     """Measure the body in the level frame of the trunk's heading.
 
     Args:
-        joints: joint angles (26,) [rad].
+        legs: x, y, z [m] and yaw [rad] of the left and the right foot in the base frame (2, 4).
         pads: load on front left, front right, back left and back right of each sole (2, 4) [N].
         orientation: attitude of the IMU, quaternion w-x-y-z (4,).
         gyro: angular velocity (3,) [rad/s].
         com: centre of mass for the measured joints in the base frame (3,) [m].
         tilt: updated.
-        legs: left and right, see `Leg` (2, 6).
         body: filter gain of the tilt per tick [1]; load below which a foot is unloaded [N]; centre
             of a sole ahead of the ankle, half of its length and width [m] (5,).
         period: of control [s].
@@ -126,10 +121,7 @@ def observe(
     measured[3], measured[4], measured[5] = gyro[0], gyro[1], gyro[2]
     inclined = (tilt[1], tilt[2])
     for side in range(2):
-        leg, own = legs[side], joints[6 * side : 6 * side + 6]
-        build = (leg[0], leg[1], leg[2], leg[3], leg[4], leg[5])
-        angles = (own[0], own[1], own[2], own[3], own[4], own[5])
-        x, y, z, _, _, yaw = foot_pose(build, angles)
+        x, y, z, yaw = legs[side, 0], legs[side, 1], legs[side, 2], legs[side, 3]
         force, ahead, aside = load_of(pads[side], (body[2], body[3], body[4]))
         row = 6 + 5 * side
         measured[row], measured[row + 1], measured[row + 2] = level((x, y, z), inclined)
@@ -340,30 +332,6 @@ def com_error(
     dx, dy = com[0] - foot[0], com[1] - foot[1]
     x, y = c * dx - s * dy, s * dx + c * dy
     return x + reference[0] - planned[0], y + reference[1] - planned[1], x, y
-
-
-@njit(cache=True)
-def foot_pose(leg: Leg, angles: Angles) -> Pose:
-    """Return the pose of the foot for joint angles; the inverse is `leg_kernel.leg_angles`."""
-    hip_x, hip_y, hip_z, l1, l2, h = leg
-    a, b, c, d, e, f = angles
-    ca, sa, cb, sb, cf, sf = cos(a), sin(a), cos(b), sin(b), cos(f), sin(f)
-    t, g = c + d, c + d + e
-    cg, sg = cos(g), sin(g)
-    x = -l1 * sin(c) - l2 * sin(t) - h * cf * sg
-    z = -l1 * cos(c) - l2 * cos(t) - h * cf * cg
-    y = h * sf
-    y, z = y * cb - z * sb, y * sb + z * cb
-    # Foot axes x and, for the roll, the z components of y and z.
-    ux, uy, uz = cg, sg * sb, -sg * cb
-    return (
-        hip_x + ca * x - sa * y,
-        hip_y + sa * x + ca * y,
-        hip_z + z,
-        atan2(cf * sb + sf * cb * cg, -sf * sb + cf * cb * cg),
-        asin(min(1.0, max(-1.0, -uz))),
-        atan2(sa * ux + ca * uy, ca * ux - sa * uy),
-    )
 
 
 @njit(cache=True)

@@ -1,6 +1,6 @@
-"""Head motion and pose of the head camera, compiled."""
+"""Head motion, compiled."""
 
-from math import cos, sin, sqrt
+from math import sqrt
 
 from numba import njit
 
@@ -33,33 +33,3 @@ def advance(position: Array, velocity: Array, target: Point, limits: Array, moti
         velocity[axis] += min(step, max(-step, wanted - velocity[axis]))
         position[axis] += velocity[axis] * period
     return position[0], position[1]
-
-
-@njit(cache=True)
-def camera_pose(
-    pan: float, tilt: float, origins: Array, mounted: Array, rotation: Array, position: Array
-) -> None:
-    """Set the pose of the head camera in the base frame.
-
-    Args:
-        pan: left positive [rad].
-        tilt: up positive [rad].
-        origins: positions of the pan joint in the base, of the tilt joint on the neck, of the
-            camera on the head (3, 3) [m].
-        mounted: rotation of the camera on the head (3, 3).
-        rotation: R_BC, set (3, 3).
-        position: p_BC, set (3,) [m].
-    """
-    ca, sa, cb, sb = cos(pan), sin(pan), cos(tilt), sin(tilt)
-    rows = ((ca * cb, -sa, -ca * sb), (sa * cb, ca, -sa * sb), (sb, 0.0, cb))
-    neck, head, camera = origins[0], origins[1], origins[2]
-    for k in range(3):
-        x, y, z = rows[k]
-        for axis in range(3):
-            rotation[k, axis] = x * mounted[0, axis] + y * mounted[1, axis] + z * mounted[2, axis]
-    position[0] = neck[0] + (ca * head[0] - sa * head[1])
-    position[1] = neck[1] + (sa * head[0] + ca * head[1])
-    position[2] = neck[2] + head[2]
-    for k in range(3):
-        x, y, z = rows[k]
-        position[k] += x * camera[0] + y * camera[1] + z * camera[2]

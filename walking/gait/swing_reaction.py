@@ -22,9 +22,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from walking.arrays import Array, Point
-from walking.body.joints import LEFT_LEG, RIGHT_LEG
-from walking.body.leg_kinematics import FootPose, leg_angles
+from walking.body.leg import FootPose
 from walking.body.robot_model import RobotModel
+from walking.body.tree import LEFT_LEG, RIGHT_LEG
 from walking.footsteps.foothold_kernel import ZmpOffset
 from walking.gait import swing_kernel
 from walking.gait.swing_kernel import Feet
@@ -65,10 +65,9 @@ def leg_reaction(robot: RobotModel, height: float, lift: float) -> LegReaction:
     def posture(forward: float, up: float) -> np.ndarray:
         q = robot.ready.copy()
         for side, part in zip(robot.legs, (LEFT_LEG, RIGHT_LEG), strict=True):
-            foot = FootPose(ahead, side.hip_y, -height, 0.0, 0.0, 0.0)
-            if side is leg:
-                foot = FootPose(ahead + forward, side.hip_y, up - height, 0.0, 0.0, 0.0)
-            q[part] = leg_angles(side, foot)[0]
+            moved, raised = (forward, up) if side is leg else (0.0, 0.0)
+            foot = FootPose(ahead + moved, side.foot[1], raised - height)
+            q[part] = side.angles(foot)[0]
         return q
 
     middle = 0.5 * lift
@@ -86,7 +85,7 @@ def leg_reaction(robot: RobotModel, height: float, lift: float) -> LegReaction:
 
     return LegReaction(
         thrust=moment(thrust)[1] / load,
-        weight=moment(raised)[0] / (leg.hip_y * load),
+        weight=moment(raised)[0] / (leg.foot[1] * load),
         knee=moment(raised)[1] / load,
     )
 

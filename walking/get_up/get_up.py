@@ -38,7 +38,7 @@ class GetUp:
     Args:
         robot: joint limits and ready posture.
         parameters: speeds and number of attempts.
-        angles: setpoints at the fall (26,) [rad].
+        angles: setpoints at the fall (n,) [rad].
         motions: key postures.
 
     Attributes:

@@ -46,7 +46,7 @@ class KeyPosture:
     pitch: tuple[float, float] | None = None
 
     def angles(self) -> list[float]:
-        """Return the angles of all joints, the head straight (26,) [rad]."""
+        """Return the angles of all joints, the head straight (n,) [rad]."""
         right_leg = [m * a for m, a in zip(_LEG_MIRROR, self.legs[1], strict=True)]
         right_arm = [m * a for m, a in zip(_ARM_MIRROR, self.arms[1], strict=True)]
         return [*self.legs[0], *right_leg, 0.0, 0.0, *self.arms[0], *right_arm]

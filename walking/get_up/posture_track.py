@@ -16,10 +16,10 @@ class PostureTrack:
     Args:
         robot: joint limits.
         speed: maximum joint rate [rad/s].
-        angles: initial joint angles (26,) [rad].
+        angles: initial joint angles (n,) [rad].
 
     Attributes:
-        angles: present setpoints (26,) [rad].
+        angles: present setpoints (n,) [rad].
     """
 
     def __init__(self, robot: RobotModel, speed: float, angles: Array) -> None:
@@ -38,7 +38,7 @@ class PostureTrack:
         """Start a motion to a posture.
 
         Args:
-            angles: of the posture, clipped to the joint limits (26,) [rad].
+            angles: of the posture, clipped to the joint limits (n,) [rad].
             time: of the motion, extended if a joint would be too fast [s].
             hold: time in the posture [s].
         """
@@ -49,7 +49,7 @@ class PostureTrack:
         self._last = self._ticks + round(hold / CONTROL_PERIOD)
 
     def advance(self) -> Array:
-        """Return the setpoints of the next tick (26,) [rad]."""
+        """Return the setpoints of the next tick (n,) [rad]."""
         self._tick += 1
         fraction = minimum_jerk(self._tick / self._ticks)
         self.angles = self._origin + fraction * (self._goal - self._origin)

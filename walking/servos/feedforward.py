@@ -3,10 +3,10 @@
 import numpy as np
 
 from walking.arrays import Array, Point, Vector
-from walking.body import leg_kernel
-from walking.body.joints import LEFT_LEG, RIGHT_LEG
-from walking.body.leg_kernel import AnkleTask
+from walking.body import feedforward_kernel
+from walking.body.feedforward_kernel import AnkleTask
 from walking.body.robot_model import RobotModel
+from walking.body.tree import LEFT_LEG, RIGHT_LEG
 from walking.parameters import CONTROL_PERIOD, GRAVITY, StabilizerParameters
 
 
@@ -25,10 +25,14 @@ class FeedForward:
         gain = np.full(robot.damping.size, parameters.upper_velocity_gain)
         gain[LEFT_LEG] = gain[RIGHT_LEG] = parameters.velocity_gain
         self._servos = np.array(
-            [parameters.load_gain / robot.stiffness, gain * robot.damping / robot.stiffness]
+            [
+                parameters.load_gain / robot.stiffness,
+                gain * robot.damping / robot.stiffness,
+                1.0 / robot.stiffness,
+            ]
         )
-        pitch, roll = robot.stiffness[4:6].tolist()
-        self._ankles = np.array([robot.mass * GRAVITY, pitch, roll, parameters.gyro_gain])
+        ankles = robot.mass * GRAVITY, parameters.gyro_gain, float(robot.legs[0].ankle)
+        self._ankles = np.array(ankles)
         inertia = parameters.inertia_gain, parameters.max_inertia_acceleration, CONTROL_PERIOD
         self._inertia = np.array(inertia)
         self._started = False
@@ -43,26 +47,28 @@ class FeedForward:
         right_load: float,
         acceleration: Point,
         *,
+        legs: tuple[Array, Array],
         task: AnkleTask,
     ) -> Array:
-        """Return the offsets of all setpoints (26,) [rad].
+        """Return the offsets of all setpoints (n,) [rad].
 
         Inverse dynamics gives the contact wrench of the whole-body motion; the legs share it by
         load, with the force under each sole at the planned ZMP.
 
         Args:
-            position: joint angles of this tick (26,) [rad].
+            position: joint angles of this tick (n,) [rad].
             pelvis: x, y [m], heading [rad] in the plan frame.
             foot_zmps: planned ZMP under each foot, in the plan frame [m].
             right_load: planned load fraction of the right foot [1].
             acceleration: planned, of the base, in the plan frame [m/s²].
+            legs: axes (2, 6, 3) and origins (2, 6, 3) [m] of their joints in the base frame.
             task: of the ankles.
         """
         if not self._started:
             self._started = True
             self._position[:] = position
         robot = self._robot
-        leg_kernel.rates(
+        feedforward_kernel.rates(
             position,
             self._position,
             self._velocity,
@@ -73,17 +79,16 @@ class FeedForward:
             self._inertia,
         )
         offset = np.empty(position.size)
-        leg_kernel.offsets(
+        feedforward_kernel.offsets(
             robot.forces(),
             robot.indices[1],
-            position,
             self._velocity,
             self._servos,
             pelvis,
             foot_zmps,
             right_load,
             self._height,
-            robot.leg_rows,
+            *legs,
             task,
             self._ankles,
             offset,

@@ -12,13 +12,13 @@ class Head:
     """Time-optimal motion of pan and tilt.
 
     Args:
-        angles: initial pan and tilt (2,) [rad].
-        limits: lower and upper joint limit of each (2, 2) [rad].
+        angles: initial pan and tilt [rad].
+        limits: lower and upper limit of each (2, 2) [rad].
         parameters: maximum rate and acceleration.
     """
 
-    def __init__(self, angles: Array, limits: Array, parameters: HeadParameters) -> None:
-        self._position, self._velocity, self._limits = angles.copy(), np.zeros(2), limits
+    def __init__(self, angles: Point, limits: Array, parameters: HeadParameters) -> None:
+        self._position, self._velocity, self._limits = np.array(angles), np.zeros(2), limits
         motion = parameters.max_rate, parameters.max_acceleration, CONTROL_PERIOD
         self._motion = np.array(motion)
 

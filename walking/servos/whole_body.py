@@ -75,7 +75,7 @@ class WholeBody:
             zmp: planned [m].
             zmp_shift: of the ankles [m].
             right_load: planned load fraction of the right foot [1].
-            head: pan and tilt [rad].
+            head: angles of the head joints [rad].
             offset: of the body from the pendulum, forward and left [m].
         """
         gait, pendulum = self._gait, self._pendulum
@@ -87,14 +87,15 @@ class WholeBody:
         com = pendulum.x + (ox + dx), pendulum.y + (oy + dy)
         position, pelvis = self._posture.joints(gait, com, tilt, head)
         self.pelvis, self.turn_rate = pelvis, (pelvis[2] - before) / CONTROL_PERIOD
-        w2, (left, right) = self._w2, gait.footholds
+        w2 = self._w2
         offsets = self._feedforward.offsets(
             position,
             pelvis,
             gait.foot_zmps,
             right_load,
             (w2 * (pendulum.x - zmp[0]) + ex, w2 * (pendulum.y - zmp[1]) + ey),
-            task=((left.yaw, right.yaw), zmp_shift, gyro),
+            legs=self._posture.legs,
+            task=(zmp_shift, gyro),
         )
         self.com = self._robot.moved_com()
         setpoint = np.minimum(np.maximum(position + offsets, self._robot.lower), self._robot.upper)

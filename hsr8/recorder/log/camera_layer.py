@@ -14,7 +14,7 @@ from hsr8.recorder.frame_record import FrameRecord, Image
 from hsr8.recorder.log.block_stream import BlockStream
 from hsr8.recorder.log.channel import Channel
 from hsr8.recorder.log.geometry import quaternions
-from hsr8.world.model.assembly import HEAD_CAMERA
+from hsr8.robots.normal_form import HEAD_CAMERA
 from navigation.decision import GazeDecision
 from navigation.parameters.gaze import GazeParameters
 

@@ -15,12 +15,12 @@ from numpy.typing import NDArray
 
 from hsr8.recorder.log.block_stream import BlockStream
 from hsr8.recorder.log.channel import Channel
-from hsr8.world.model.assembly import HEAD_CAMERA
+from hsr8.robots.normal_form import HEAD_CAMERA
+from walking.body.sole import Sole
 
 Array = NDArray[np.float64]
 
 VISUAL_GROUPS = (0, 1, 2)  # groups 3 and up are collision shapes
-BASE = "base_link"
 STATIC = {  # prefix of the names by entity; walls for the robot's camera are left out
     "/world/beacons": "beacon",
     "/world/obstacles": "obstacle",
@@ -91,11 +91,10 @@ def colors(model: mujoco.MjModel, geoms: NDArray[np.intp]) -> NDArray[np.uint8]:
     return result
 
 
-def sole_outline(model: mujoco.MjModel, side: str) -> Array:
-    """Return the outline of the sole of the "l" or "r" foot in the frame of the foot (5, 2) [m]."""
-    sole, foot = model.geom(f"{side}_sole"), model.site(f"{side}_foot")
+def sole_outline(sole: Sole) -> Array:
+    """Return the outline of a sole in the frame of the foot (5, 2) [m]."""
     corners = np.array([(1.0, 1.0), (1.0, -1.0), (-1.0, -1.0), (-1.0, 1.0), (1.0, 1.0)])
-    outline: Array = (sole.pos - foot.pos)[:2] + sole.size[:2] * corners
+    outline: Array = (sole.centre, 0.0) + corners * (sole.half_length, sole.half_width)
     return outline
 
 
@@ -153,7 +152,7 @@ class Scene:
         self._camera = model.camera(HEAD_CAMERA).id
         mujoco.mj_kinematics(model, self._data)
         root = model.body_rootid[model.geom_bodyid]
-        on_robot = root == model.body(BASE).id
+        on_robot = root == model.body_rootid[model.jnt_bodyid[0]]
         visible = np.isin(model.geom_group, VISUAL_GROUPS) & (model.geom_type != _PLANE)
         mobile = model.body_mocapid[model.geom_bodyid] >= 0
         self._robot = batches_of(model, on_robot & visible)

@@ -26,6 +26,7 @@ from hsr8.recorder.log_level import RATES, LogLevel
 from hsr8.recorder.record import TickRecord
 from hsr8.recorder.record_buffer import PERIOD, RecordBuffer
 from hsr8.recorder.run.walking_table import OdometryToWorld
+from hsr8.robots.loaded import LoadedRobot
 from hsr8.world.field.layout import Layout
 from navigation.parameters.gaze import GazeParameters
 
@@ -49,6 +50,7 @@ class RerunLog:
     Args:
         path: file to write.
         model: compiled world.
+        robot: in it.
         layout: of the run's world.
         image_size: width and height of the head camera's image [pixel].
         name: name of the recording in the viewer.
@@ -65,8 +67,7 @@ class RerunLog:
     def __init__(
         self,
         path: Path,
-        model: mujoco.MjModel,
-        layout: Layout,
+        world: tuple[mujoco.MjModel, LoadedRobot, Layout],
         image_size: tuple[int, int],
         name: str,
         *,
@@ -75,6 +76,7 @@ class RerunLog:
         live: str = "",
         duration: float = 0.0,
     ) -> None:
+        model, robot, layout = world
         rates = RATES[level]
         self._pose_throttle, self._frame_throttle = Throttle(rates.pose), Throttle(rates.frame)
         self._trail_throttle = Throttle(TRAIL_PERIOD)
@@ -102,7 +104,7 @@ class RerunLog:
         self._n_movers = len(layout.movers)
         width, depth = (side + APRON * layout.scale for side in layout.field_size)
         self._scene = Scene(self._stream, model, (width, depth))
-        self._soles = tuple(sole_outline(model, side) for side in "lr")
+        self._soles = (sole_outline(robot.model.sole),) * 2
         self._camera: CameraLayer | None = None
         self._belief_layers: tuple[BeliefLayer | PlanLayer, ...] = ()
         if rates.jpeg:
@@ -112,7 +114,7 @@ class RerunLog:
                 PlanLayer(self._stream, rates.map, layout.scale),
             )
         self._plots = PlotLayer(self._stream)
-        self._walk = WalkLayer(self._stream, layout.scale)
+        self._walk = WalkLayer(self._stream, robot.model, layout.scale)
         self._footsteps = Channel(self._stream, "/world/footsteps", rr.LineStrips3D)
         self._path = Channel(self._stream, "/world/path", rr.LineStrips3D)
         self._trail: list[list[float]] = []

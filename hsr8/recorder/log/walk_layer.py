@@ -13,8 +13,9 @@ from hsr8.recorder.log.block_stream import BlockStream
 from hsr8.recorder.log.channel import Channel
 from hsr8.recorder.log.plot_layer import BLUE, GREEN, GREY, ORANGE, RED, SAND, VIOLET, Curves, Lane
 from hsr8.recorder.record import TickRecord
-from hsr8.recorder.run.walking_table import LEG_JOINTS, LIGHT, OdometryToWorld
+from hsr8.recorder.run.walking_table import LIGHT, OdometryToWorld
 from navigation.angles import wrap
+from walking.body.robot_model import RobotModel
 from walking.command_limits import Limit
 from walking.state import WalkingState
 
@@ -37,8 +38,7 @@ GAP = 0.07  # between the tip of an arrow and the point of action [m]
 STRIDE = 2  # footsteps over which the achieved velocity is measured
 IDLE_WINDOW = 1.0  # of the achieved velocity without footsteps [s]
 ROUTINE = Limit.LANDING_FROZEN  # active at the end of every step, not logged
-TORQUES = ("hip", "knee", "ankle")
-SIDES = {"l": (BLUE, SAND, GREEN), "r": (ORANGE, RED, VIOLET)}
+SIDES = ((BLUE, SAND, GREEN, GREY), (ORANGE, RED, VIOLET, GREY))  # of left and right leg
 
 
 class WalkLayer:
@@ -46,10 +46,11 @@ class WalkLayer:
 
     Args:
         stream: recording.
+        robot: that walks.
         scale: of the world [1].
     """
 
-    def __init__(self, stream: BlockStream, scale: float = 1.0) -> None:
+    def __init__(self, stream: BlockStream, robot: RobotModel, scale: float = 1.0) -> None:
         self._pin, self._gap, self._arrow = PIN * scale, GAP * scale, ARROW / scale**2
         self._points = Channel(
             stream,
@@ -83,7 +84,10 @@ class WalkLayer:
             )
             for name in speeds
         )
-        self._torque = tuple(self._torque_curves(stream, group) for group in TORQUES)
+        self._torque = tuple(
+            self._torque_curves(stream, robot.names, group, joints)
+            for group, joints in robot.leg_groups().items()
+        )
         self._tilt = Curves(stream, "/plots/tilt", (("roll [deg]", BLUE), ("pitch [deg]", ORANGE)))
         self._phase = Lane(stream, "/state/gait", GAIT)
         self._limits = Channel(stream, "/command_limits", rr.TextLog)
@@ -141,13 +145,15 @@ class WalkLayer:
             self._pushes.add(record.time, origins=origins, vectors=vectors)
 
     @staticmethod
-    def _torque_curves(stream: BlockStream, group: str) -> tuple[Curves, list[int]]:
-        columns = [k for k, name in enumerate(LEG_JOINTS) if f"_{group}" in name]
-        named = []
-        shades = {side: iter(colors) for side, colors in SIDES.items()}
-        for k in columns:
-            side, _, joint = LEG_JOINTS[k].partition("_")
-            named.append((f"{side} {joint.replace('_', ' ')} [N m]", next(shades[side])))
+    def _torque_curves(
+        stream: BlockStream, names: Sequence[str], group: str, joints: Sequence[int]
+    ) -> tuple[Curves, list[int]]:
+        columns = [*joints, *(6 + k for k in joints)]
+        shades = [color for side in SIDES for color, _ in zip(side, joints, strict=False)]
+        named = [
+            (f"{names[k].replace('_', ' ')} [N m]", shade)
+            for k, shade in zip(columns, shades, strict=True)
+        ]
         return Curves(stream, f"/plots/torque_{group}", named), columns
 
     def _add_curves(

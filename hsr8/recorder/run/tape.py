@@ -1,9 +1,9 @@
 """Tape: the exact setpoints of every control tick and a hash of the world every second.
 
-The file holds one guarded payload, a block, per second: number of the first tick, hashes of world
-and robot before it, and the setpoints of each tick as little-endian doubles. The last block of a
-finished run has no ticks, only the final hashes. Physics driven by the same setpoints must
-reproduce the hashes.
+The file holds one guarded payload, a block, per second: number of the first tick, number of joints,
+hashes of world and robot before it, and the setpoints of each tick as little-endian doubles. The
+last block of a finished run has no ticks, only the final hashes. Physics driven by the same
+setpoints must reproduce the hashes.
 """
 
 import hashlib
@@ -17,14 +17,12 @@ from numpy.typing import NDArray
 from hsr8.errors import UsageError
 from hsr8.recorder.files.binary import guarded, read_payloads
 from hsr8.recorder.files.writing import GrowingFile
-from walking.body.joints import JOINT_NAMES
 
 Array = NDArray[np.float64]
 
-MAGIC = b"HSR8TAP1"
+MAGIC = b"HSR8TAP2"
 HASH = 16  # bytes of a hash
-_FIRST = struct.Struct("<q")
-_ROW = 8 * len(JOINT_NAMES)
+_FIRST = struct.Struct("<qi")
 
 
 @dataclass(frozen=True, slots=True)
@@ -35,7 +33,7 @@ class Block:
         tick: number of its first control tick.
         world: hash of the state of the world before it, hexadecimal.
         robot: hash of world and belief before it.
-        setpoints: of each tick (n, 26) [rad].
+        setpoints: of each tick (n, joints) [rad].
     """
 
     tick: int
@@ -49,12 +47,14 @@ class TapeWriter:
 
     Args:
         path: file to create.
+        joints: number of joints.
 
     Raises:
         RecordingFailed: here and in every method, it cannot be written.
     """
 
-    def __init__(self, path: Path) -> None:
+    def __init__(self, path: Path, joints: int) -> None:
+        self._joints = joints
         self._file = GrowingFile(path, MAGIC)
         self._payload = b""
         self._rows: list[bytes] = []
@@ -70,12 +70,12 @@ class TapeWriter:
         if self._rows:
             self._write()
         state = hashlib.blake2b(world, digest_size=HASH)
-        self._payload = _FIRST.pack(tick) + state.digest()
+        self._payload = _FIRST.pack(tick, self._joints) + state.digest()
         state.update(robot)
         self._payload += state.digest()
 
     def add(self, setpoints: Array) -> None:
-        """Append one control tick (26,) [rad]."""
+        """Append one control tick (joints,) [rad]."""
         self._rows.append(setpoints.tobytes())
 
     def close(self) -> None:
@@ -106,16 +106,17 @@ def read_tape(path: Path, *, whole: bool) -> list[Block]:
     """
     blocks: list[Block] = []
     for where, payload in read_payloads(path, MAGIC, file="tape", payload="block", whole=whole):
-        rows = len(payload) - _FIRST.size - 2 * HASH
-        if rows < 0 or rows % _ROW:
-            raise UsageError(f"{path}: damaged {where}")
-        blocks.append(_block(payload))
+        try:
+            blocks.append(_block(payload))
+        except (struct.error, ValueError) as error:
+            raise UsageError(f"{path}: damaged {where}") from error
     return blocks
 
 
 def _block(payload: bytes) -> Block:
+    """Return the block of a payload; a ValueError or `struct.error` means that it is damaged."""
     offset = _FIRST.size
     world, robot = payload[offset : offset + HASH], payload[offset + HASH : offset + 2 * HASH]
     rows = np.frombuffer(payload, "<f8", offset=offset + 2 * HASH).astype(np.float64)
-    (tick,) = _FIRST.unpack_from(payload)
-    return Block(tick, world.hex(), robot.hex(), rows.reshape(-1, len(JOINT_NAMES)))
+    tick, joints = _FIRST.unpack_from(payload)
+    return Block(tick, world.hex(), robot.hex(), rows.reshape(-1, max(joints, 1)))

@@ -8,10 +8,9 @@ pose of the robot, so that planned and true curves can be compared.
 """
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
-import mujoco
 import numpy as np
 from numpy.typing import NDArray
 
@@ -20,17 +19,15 @@ from hsr8.recorder.files.binary import head, read_rows
 from hsr8.recorder.files.writing import GrowingFile
 from hsr8.recorder.record import Listener, TickRecord
 from hsr8.recorder.record_buffer import RecordBuffer
-from hsr8.world.model.index import ModelIndex
 from hsr8.world.truth.truth import Truth
-from walking.body.joints import JOINT_NAMES
+from walking.body.robot_model import RobotModel
 from walking.command_limits import Limit
 from walking.phase import Phase
 from walking.state import WalkingState
 
 Array = NDArray[np.float64]
 
-MAGIC = b"HSR8WLK2"
-LEG_JOINTS = JOINT_NAMES[:12]
+MAGIC = b"HSR8WLK3"
 PHASES = tuple(Phase)
 LIMITS = tuple(Limit)
 COLUMNS = (
@@ -51,8 +48,8 @@ COLUMNS = (
     "pitch",
     "limits",
     *(f"push_{c}" for c in ("x", "y", "z", "fx", "fy", "fz", "begin", "impulse")),
-    *(f"torque_{name}" for name in LEG_JOINTS),
 )
+"""Columns of every robot; the torques of the leg joints follow."""
 LIGHT = 1.0  # feet that carry less have no centre of pressure [N]
 
 
@@ -64,13 +61,15 @@ class WalkingTable:
         time: of each row (n,) [s].
         columns: by name (n,); lengths [m], angles [rad], forces [N], torques [N m].
         sole: centre ahead of the ankle, half length and half width of a sole [m].
-        torque_limit: of each leg joint [N m].
+        torque_limit: of each leg joint by name, left leg first [N m].
+        groups: indices of hip, knee and ankle joints within a leg.
     """
 
     time: Array
     columns: dict[str, Array]
     sole: tuple[float, float, float]
     torque_limit: dict[str, float]
+    groups: dict[str, tuple[int, ...]]
 
     def __len__(self) -> int:
         return len(self.time)
@@ -97,7 +96,7 @@ class WalkingTable:
         """Return the rows from `start` to `stop` [s]."""
         chosen = (self.time >= start - 1e-9) & (self.time <= stop + 1e-9)
         columns = {name: values[chosen] for name, values in self.columns.items()}
-        return WalkingTable(self.time[chosen], columns, self.sole, self.torque_limit)
+        return replace(self, time=self.time[chosen], columns=columns)
 
     def active_limits(self) -> dict[Limit, NDArray[np.bool_]]:
         """Return the rows (n,) in which each limit was active, without limits that never were."""
@@ -111,19 +110,21 @@ class WalkingTableWriter(Listener):
 
     Args:
         path: file to create.
-        model: compiled world.
-        index: addresses in it.
+        robot: that walks.
 
     Raises:
         RecordingFailed: here and in every method, it cannot be written.
     """
 
-    def __init__(self, path: Path, model: mujoco.MjModel, index: ModelIndex) -> None:
-        sole = index.foot_geoms[0]
+    def __init__(self, path: Path, robot: RobotModel) -> None:
+        names, sole = robot.names[:12], robot.sole
+        self._columns = (*COLUMNS, *(f"torque_{name}" for name in names))
         header = {
-            "columns": COLUMNS,
-            "sole": [float(v) for v in (model.geom_pos[sole][0], *model.geom_size[sole][:2])],
-            "torque_limit": model.actuator_forcerange[index.actuators[:12], 1].tolist(),
+            "columns": self._columns,
+            "sole": [sole.centre, sole.half_length, sole.half_width],
+            "joints": names,
+            "torque_limit": robot.tree.effort[:12].tolist(),
+            "groups": robot.leg_groups(),
         }
         self._buffer = RecordBuffer()
         self._file = GrowingFile(path, head(MAGIC, header))
@@ -143,7 +144,7 @@ class WalkingTableWriter(Listener):
 
     def _write_buffer(self) -> None:
         records = self._buffer.take()
-        table = np.empty(len(records), dtype=_row_type(len(COLUMNS)))
+        table = np.empty(len(records), dtype=_row_type(len(self._columns)))
         table["time"] = [record.time for record in records]
         if records:
             table["values"] = _values(records)
@@ -159,13 +160,15 @@ def read_walking_table(path: Path) -> WalkingTable:
     header, content = read_rows(path, MAGIC, "walking table")
     try:
         centre, half_length, half_width = map(float, header["sole"])
-        limits = dict(zip(LEG_JOINTS, map(float, header["torque_limit"]), strict=True))
-        complete = tuple(header["columns"]) == COLUMNS
-    except (ValueError, TypeError, KeyError) as error:
+        limits = dict(zip(header["joints"], map(float, header["torque_limit"]), strict=True))
+        groups = {name: tuple(map(int, joints)) for name, joints in header["groups"].items()}
+        columns = (*COLUMNS, *(f"torque_{name}" for name in limits))
+        complete = tuple(header["columns"]) == columns
+    except (ValueError, TypeError, KeyError, AttributeError) as error:
         raise UsageError(f"{path}: incomplete header") from error
     if not complete:
         raise UsageError(f"{path}: incomplete header")
-    row = _row_type(len(COLUMNS))
+    row = _row_type(len(columns))
     table = np.frombuffer(content, dtype=row, count=len(content) // row.itemsize)
     time, values = table["time"].astype(np.float64), table["values"].astype(np.float64)
     known = np.isin(values[:, COLUMNS.index("phase")], range(len(PHASES)))
@@ -174,9 +177,10 @@ def read_walking_table(path: Path) -> WalkingTable:
         raise UsageError(f"{path}: damaged in row {int(np.argmin(whole))}")
     return WalkingTable(
         time=time,
-        columns={name: values[:, k] for k, name in enumerate(COLUMNS)},
+        columns={name: values[:, k] for k, name in enumerate(columns)},
         sole=(centre, half_length, half_width),
         torque_limit=limits,
+        groups=groups,
     )
 
 
@@ -238,7 +242,7 @@ def _values(records: Sequence[TickRecord]) -> Array:
             [(w.balance.zmp_depth, w.roll, w.pitch) for w in walks],
             [_limit_bits(walking) for walking in walks],
             [_push(truth) for truth in truths],
-            np.array([truth.joint_torque for truth in truths])[:, : len(LEG_JOINTS)],
+            np.array([truth.joint_torque for truth in truths])[:, :12],
         ]
     )
 

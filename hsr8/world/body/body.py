@@ -25,7 +25,7 @@ class Body(Protocol):
         """Read encoders, IMU and foot pads."""
 
     def setpoints(self, targets: JointTargets) -> NDArray[np.float64]:
-        """Return the servo setpoints (26,) [rad]; as `targets` they have the same effect."""
+        """Return the servo setpoints (n,) [rad]; as `targets` they have the same effect."""
 
     def apply(self, targets: JointTargets) -> None:
         """Advance one control tick towards `targets`."""

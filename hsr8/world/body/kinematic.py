@@ -8,6 +8,7 @@ import mujoco
 import numpy as np
 from numpy.typing import NDArray
 
+from hsr8.robots.loaded import LoadedRobot
 from hsr8.scenario.sensor_noise import SensorNoise
 from hsr8.world.body.kinematic_kernel import GRAVITY, base_pose, imu_motion
 from hsr8.world.body.physics import place_robot
@@ -40,20 +41,26 @@ class KinematicBody:
 
     Args:
         model: compiled world.
+        robot: in it.
         layout: obstacles, beacons and start pose.
         noise: sensor noise.
         rng: generator of sensors and slip.
     """
 
     def __init__(
-        self, model: mujoco.MjModel, layout: Layout, noise: SensorNoise, rng: np.random.Generator
+        self,
+        model: mujoco.MjModel,
+        robot: LoadedRobot,
+        layout: Layout,
+        noise: SensorNoise,
+        rng: np.random.Generator,
     ) -> None:
         self.model = model
         self.data = mujoco.MjData(model)
-        self._surroundings = Surroundings(model, layout)
+        self._surroundings = Surroundings(model, robot, layout)
         self._index = self._surroundings.index
         sensor_rng, self._slip_rng = rng.spawn(2)
-        self._suite = SensorSuite(noise, sensor_rng, CONTROL_PERIOD)
+        self._suite = SensorSuite(noise, sensor_rng, CONTROL_PERIOD, len(self._index.names))
         self._weight = float(model.body_subtreemass[self._index.base_body]) * GRAVITY
         self._slip = np.array([SLIP * layout.scale, SLIP * layout.scale, YAW_SLIP])
         self._landed, self._lifted = LANDED * layout.scale, LIFTED * layout.scale
@@ -61,7 +68,7 @@ class KinematicBody:
         sites = list(self._index.foot_sites)
         self._feet = model.site_bodyid[sites].astype(np.intp)
         self._soles = np.hstack([model.site_pos[sites], model.site_quat[sites]])
-        place_robot(model, self.data, np.array(layout.start))
+        place_robot(model, self.data, robot, np.array(layout.start))
         mujoco.mj_kinematics(model, self.data)
         self._joints = self.data.qpos[self._index.joint_qpos].copy()
         self._rates = np.zeros_like(self._joints)

@@ -1,4 +1,4 @@
-"""Physics body: MuJoCo, two physics steps per control tick."""
+"""Physics body: MuJoCo, several physics steps per control tick."""
 
 from collections.abc import Sequence
 from math import isfinite
@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from hsr8.errors import SimulationDiverged
-from hsr8.robots.models import reading_models
+from hsr8.robots.loaded import LoadedRobot
 from hsr8.scenario.fault import Fault
 from hsr8.scenario.sensor_noise import SensorNoise
 from hsr8.world.body.pushes import Pusher, ScheduledPush
@@ -16,34 +16,33 @@ from hsr8.world.body.sensors import SensorSuite
 from hsr8.world.body.surroundings import Surroundings
 from hsr8.world.body.world_faults import WorldFaults
 from hsr8.world.field.layout import Layout
-from hsr8.world.rotation import heading, quaternion_from_yaw, quaternion_product, up_component
+from hsr8.world.rotation import heading, quaternion_from_yaw, up_component
 from hsr8.world.truth.saturation import SaturationWatch
 from hsr8.world.truth.truth import Truth
-from walking.body.joints import JOINT_NAMES
 from walking.parameters import CONTROL_PERIOD
 from walking.sensing import BodySensors
 from walking.targets import JointTargets
 
 Array = NDArray[np.float64]
 
-FALLEN_RATIO = 0.64  # pelvis height over its height in walk_ready, below which it has fallen [1]
+FALLEN_RATIO = 0.64  # base height over that in the ready posture, below which it has fallen [1]
 FALLEN_TILT = 0.5  # cosine of the tilt, below which the robot has fallen [1]
 
 
-@reading_models()
-def place_robot(model: mujoco.MjModel, data: mujoco.MjData, start: Array) -> None:
-    """Set the robot to ``walk_ready`` at x, y, heading `start` (3,) [m, m, rad].
-
-    Raises:
-        ModelError: the model has no such keyframe.
-    """
-    mujoco.mj_resetDataKeyframe(model, data, model.key("walk_ready").id)
-    root = int(model.joint("root").qposadr[0])
+def place_robot(
+    model: mujoco.MjModel, data: mujoco.MjData, robot: LoadedRobot, start: Array
+) -> None:
+    """Set a robot to its ready posture at x, y, heading `start` (3,) [m, m, rad]."""
+    mujoco.mj_resetData(model, data)
+    ready = dict(zip(robot.model.names, robot.model.ready.tolist(), strict=True))
+    for name, angle in {**robot.held, **ready}.items():
+        data.qpos[model.joint(name).qposadr[0]] = angle
+    root = int(model.jnt_qposadr[model.body_jntadr[model.body(robot.roles.base).id]])
     x, y, yaw = np.asarray(start, float).tolist()
-    data.qpos[root : root + 2] = x, y
-    data.qpos[root + 3 : root + 7] = quaternion_product(
-        quaternion_from_yaw(yaw), data.qpos[root + 3 : root + 7]
-    )
+    data.qpos[root : root + 3] = x, y, robot.height
+    data.qpos[root + 3 : root + 7] = quaternion_from_yaw(yaw)
+    mujoco.mj_fwdPosition(model, data)
+    data.ctrl[:] = data.actuator_length  # also of the joints that walking does not move
 
 
 class PhysicsBody:
@@ -51,6 +50,7 @@ class PhysicsBody:
 
     Args:
         model: compiled world.
+        robot: in it.
         layout: obstacles, beacons and start pose.
         noise: sensor noise.
         rng: generator of the sensors.
@@ -64,6 +64,7 @@ class PhysicsBody:
     def __init__(
         self,
         model: mujoco.MjModel,
+        robot: LoadedRobot,
         layout: Layout,
         noise: SensorNoise,
         rng: np.random.Generator,
@@ -73,12 +74,12 @@ class PhysicsBody:
     ) -> None:
         self.model = model
         self.data = mujoco.MjData(model)
-        self._surroundings = Surroundings(model, layout)
+        self._surroundings = Surroundings(model, robot, layout)
         self._index = self._surroundings.index
         self._pusher = Pusher(model, pushes, CONTROL_PERIOD)
         self._faults = WorldFaults(model, self._index, faults, layout.scale)
         self._saturation = SaturationWatch(model, self._index)
-        self._suite = SensorSuite(noise, rng, CONTROL_PERIOD)
+        self._suite = SensorSuite(noise, rng, CONTROL_PERIOD, len(self._index.names))
         self._substeps = round(CONTROL_PERIOD / model.opt.timestep)
         if abs(self._substeps * model.opt.timestep - CONTROL_PERIOD) > 1e-9:
             raise ValueError(
@@ -88,7 +89,7 @@ class PhysicsBody:
         self._substep = 0
         self._timestep = float(model.opt.timestep)
         self._state = np.empty(mujoco.mj_stateSize(model, mujoco.mjtState.mjSTATE_INTEGRATION))
-        place_robot(model, self.data, np.array(layout.start))
+        place_robot(model, self.data, robot, np.array(layout.start))
         self._fallen_height = FALLEN_RATIO * float(self.data.qpos[self._index.root_qpos + 2])
         self._surroundings.move(self.data, 0.0)
         # `apply` counts and raises warnings; MuJoCo must not write its log file.
@@ -183,6 +184,6 @@ class PhysicsBody:
         raise SimulationDiverged(
             f"the physics diverged at tick {round(self.time / CONTROL_PERIOD)} "
             f"(t = {self.time:.3f} s): body {body!r} moves at {speeds[dof]:.3g} rad/s or m/s; "
-            f"largest setpoint of the last command: {JOINT_NAMES[worst]} at "
+            f"largest setpoint of the last command: {self._index.names[worst]} at "
             f"{self.data.ctrl[self._index.actuators[worst]]:.3f} rad"
         )

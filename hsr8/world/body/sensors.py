@@ -4,7 +4,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from hsr8.scenario.sensor_noise import SensorNoise
-from hsr8.world.body.sensor_kernel import ATTITUDE, ERRORS, FORCE, GYRO, PADS, RATE, reading
+from hsr8.world.body.sensor_kernel import ATTITUDE, FORCE, GYRO, PADS, reading
 from walking.sensing import BodySensors
 
 Array = NDArray[np.float64]
@@ -19,16 +19,20 @@ class SensorSuite:
         noise: magnitudes.
         rng: generator of this subsystem.
         period: control tick [s].
+        joints: number of joints.
     """
 
-    def __init__(self, noise: SensorNoise, rng: np.random.Generator, period: float) -> None:
+    def __init__(
+        self, noise: SensorNoise, rng: np.random.Generator, period: float, joints: int
+    ) -> None:
         self._tilt_bias = noise.roll_bias, noise.pitch_bias
         self._gyro_bias = float(noise.gyro_bias)
         self._rng = rng
         self._bias_step = noise.gyro_bias * period
         self._yaw_drift = 0.0  # at the last drawn error
         self._gain = 1.0 + noise.foot_force_gain * rng.standard_normal((2, 4))
-        widths = (26, 26, 3, 3, 8, 1, 1, 1)
+        widths = (joints, joints, 3, 3, 8, 1, 1, 1)
+        self._joints, self._body = joints, 2 * joints
         sigmas = (
             noise.encoder,
             noise.encoder_rate,
@@ -40,7 +44,7 @@ class SensorSuite:
             noise.yaw_drift * float(np.sqrt(period)),
         )
         self._sigma = np.repeat(sigmas, widths)
-        self._errors = np.zeros((0, ERRORS))  # of the next readings
+        self._errors = np.zeros((0, len(self._sigma)))  # of the next readings
         self._next = 0
 
     def read(
@@ -69,20 +73,21 @@ class SensorSuite:
             self._gain,
             self._gyro_bias,
         )
+        body = read[self._body :]
         return BodySensors(
-            joint_position=read[:RATE],
-            joint_velocity=read[RATE:GYRO],
-            gyro=read[GYRO:FORCE],
-            accelerometer=read[FORCE:PADS],
-            orientation=read[ATTITUDE:],
-            foot_force=read[PADS:ATTITUDE].reshape(2, 4),
+            joint_position=read[: self._joints],
+            joint_velocity=read[self._joints : self._body],
+            gyro=body[GYRO:FORCE],
+            accelerometer=body[FORCE:PADS],
+            orientation=body[ATTITUDE:],
+            foot_force=body[PADS:ATTITUDE].reshape(2, 4),
         )
 
     def _draw(self) -> None:
         """Draw the errors of the next readings."""
-        errors = self._sigma * self._rng.standard_normal((BLOCK, ERRORS))
-        errors[:, ATTITUDE : ATTITUDE + 2] += self._tilt_bias
-        steps = errors[:, ATTITUDE + 2] + self._bias_step
-        errors[:, ATTITUDE + 2] = np.cumsum([self._yaw_drift, *steps])[1:]
-        self._yaw_drift = float(errors[-1, ATTITUDE + 2])
+        errors = self._sigma * self._rng.standard_normal((BLOCK, len(self._sigma)))
+        errors[:, -3:-1] += self._tilt_bias
+        steps = errors[:, -1] + self._bias_step
+        errors[:, -1] = np.cumsum([self._yaw_drift, *steps])[1:]
+        self._yaw_drift = float(errors[-1, -1])
         self._errors, self._next = errors, 0

@@ -4,6 +4,7 @@ import mujoco
 import numpy as np
 from numpy.typing import NDArray
 
+from hsr8.robots.loaded import LoadedRobot
 from hsr8.world.field.layout import Layout
 from hsr8.world.model.index import ModelIndex
 from hsr8.world.truth.contacts import ContactWatch
@@ -18,6 +19,7 @@ class Surroundings:
 
     Args:
         model: compiled world.
+        robot: in it.
         layout: obstacles and beacons.
 
     Attributes:
@@ -25,14 +27,14 @@ class Surroundings:
         watch: contacts of the robot.
     """
 
-    def __init__(self, model: mujoco.MjModel, layout: Layout) -> None:
+    def __init__(self, model: mujoco.MjModel, robot: LoadedRobot, layout: Layout) -> None:
         static = layout.static
         self._movers = layout.motion()
         self._n_static = len(static)
         self._positions = np.zeros((len(layout.obstacles), 2))  # static obstacles, then movers
         self._positions[: len(static)] = np.reshape([o.position for o in static], (-1, 2))
         self._zeros = np.zeros_like(self._positions)
-        self.index = ModelIndex.of(model, len(static), len(self._movers))
+        self.index = ModelIndex.of(model, robot, len(static), len(self._movers))
         self.watch = ContactWatch(model, self.index, layout)
         self._timestep = float(model.opt.timestep)
         self._first, self._block = -BLOCK, np.zeros((BLOCK, model.nmocap, 3))

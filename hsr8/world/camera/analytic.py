@@ -9,13 +9,13 @@ from math import atan2, cos, hypot, pi, sin
 
 import numpy as np
 
+from hsr8.robots.normal_form import HEAD_CAMERA
 from hsr8.scenario.camera import Camera
 from hsr8.scenario.fault import ticks
 from hsr8.world.body.body import Body
 from hsr8.world.camera.analytic_kernel import project, project_all
 from hsr8.world.camera.faults import CameraFaults
 from hsr8.world.field.layout import Beacon, Layout, Obstacle
-from hsr8.world.model.assembly import HEAD_CAMERA
 from hsr8.world.rotation import heading
 from vision.camera import PinholeCamera
 from vision.color import COLOR_CLASSES
@@ -78,7 +78,7 @@ class AnalyticCamera:
         """Return the detections in the present world, by distance and label."""
         body.update_kinematics()
         model, data = body.model, body.data
-        camera_id, root = model.camera(HEAD_CAMERA).id, int(model.joint("root").qposadr[0])
+        camera_id, root = model.camera(HEAD_CAMERA).id, int(model.jnt_qposadr[0])
         # MuJoCo cameras look along -z with y up, frame C along +z with y down.
         rotation = data.cam_xmat[camera_id].reshape(3, 3) * (1.0, -1.0, -1.0)
         self._eye[:3], self._eye[3:12] = data.cam_xpos[camera_id], rotation.ravel()

@@ -8,6 +8,7 @@ import mujoco
 import numpy as np
 from numpy.typing import NDArray
 
+from hsr8.robots.normal_form import HEAD_CAMERA
 from hsr8.scenario.camera import Camera
 from hsr8.scenario.fault import ticks
 from hsr8.world.camera.faults import CameraFaults
@@ -15,7 +16,6 @@ from hsr8.world.camera.frustum import Frustum
 from hsr8.world.camera.image_noise import ImageNoise
 from hsr8.world.camera.motion_blur import MotionBlur
 from hsr8.world.camera.offscreen import Offscreen
-from hsr8.world.model.assembly import HEAD_CAMERA
 from vision.camera import PinholeCamera
 
 if TYPE_CHECKING:

@@ -5,7 +5,9 @@ fast, for the camera of the robot; ``show`` for people. Parts that do not depend
 in ``models/field/``.
 """
 
-from collections.abc import Callable
+import warnings
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from dataclasses import dataclass
 from math import hypot
 from typing import Any, Literal
@@ -13,7 +15,9 @@ from typing import Any, Literal
 import mujoco
 import numpy as np
 
+from hsr8.robots.loaded import LoadedRobot
 from hsr8.robots.models import models_dir, reading_models
+from hsr8.robots.normal_form import COLLISION_GROUP, HEAD_CAMERA
 from hsr8.scenario.fault import Bump
 from hsr8.world.field.layout import Beacon, Layout, Obstacle
 from hsr8.world.model.model_check import check_model
@@ -30,9 +34,9 @@ SHOW_GAMMA = (
 )
 APRON = 1.5  # distance of the walls from the border of the field [m]
 WALL_HEIGHT = 4.0  # [m]
+SHOWN_GROUP = 2  # of geoms that MuJoCo draws
 SHADOW_SIZE = 2048  # resolution of the shadow map [texel]
 REFERENCE_SIDE = 5.0  # of the field that the lights of models/field/ are made for [m]
-HEAD_CAMERA = "egocentric"
 
 _SOLID: dict[str, Any] = {
     "contype": 3,
@@ -63,8 +67,10 @@ class Optics:
 
 
 @reading_models()
-def assemble(layout: Layout, quality: Quality, optics: Optics) -> mujoco.MjModel:
-    """Compile the world of `layout`.
+def assemble(
+    robot: LoadedRobot, layout: Layout, quality: Quality, optics: Optics
+) -> mujoco.MjModel:
+    """Compile the world of `layout` with a robot.
 
     Static obstacles are bodies ``obstacle_00`` ..., movers are mocap bodies ``mover_00`` ...,
     beacons are ``beacon_<top>_<bottom>``, bumps are geoms ``bump_00`` ... of the world. The
@@ -75,6 +81,8 @@ def assemble(layout: Layout, quality: Quality, optics: Optics) -> mujoco.MjModel
     """
     spec = mujoco.MjSpec.from_file(str(models_dir() / "field" / f"{quality}.xml"))
     spec.modelname = f"hsr8_{quality}"
+    spec.option.timestep = robot.spec.option.timestep
+    _attach(spec, robot, quality)
     spec.visual.global_.offwidth = optics.width
     spec.visual.global_.offheight = optics.height
     spec.visual.map.zfar *= max(1.0, layout.scale)
@@ -96,9 +104,34 @@ def assemble(layout: Layout, quality: Quality, optics: Optics) -> mujoco.MjModel
         _add_beacon(spec, beacon, quality)
     for i, bump in enumerate(layout.bumps):
         _add_bump(spec, f"bump_{i:02d}", bump)
-    model = spec.compile()
+    with _unwarned():
+        model = spec.compile()
     check_model(model)
     return model
+
+
+@contextmanager
+def _unwarned() -> Iterator[None]:
+    """Context without MuJoCo's warning that the names of the robot have no prefix."""
+    mujoco.set_mju_user_warning(lambda _message: None)
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")
+        yield
+    mujoco.set_mju_user_warning(None)
+
+
+def _attach(spec: mujoco.MjSpec, robot: LoadedRobot, quality: Quality) -> None:
+    """Add the robot, for the head camera in its collision shapes instead of meshes."""
+    own = robot.spec.copy()
+    if quality == "vision":
+        for geom in list(own.geoms):
+            solid = geom.contype or geom.conaffinity
+            if geom.type == mujoco.mjtGeom.mjGEOM_MESH and not solid:
+                own.delete(geom)
+            elif solid and robot.has_meshes:
+                geom.group = SHOWN_GROUP if geom.group == COLLISION_GROUP else geom.group
+    with _unwarned():
+        spec.attach(own, prefix="", frame=spec.worldbody.add_frame())
 
 
 def _part(find: Callable[[str], Any], name: str) -> Any:

@@ -6,12 +6,11 @@ import mujoco
 import numpy as np
 from numpy.typing import NDArray
 
+from hsr8.robots.loaded import LoadedRobot
 from hsr8.robots.models import reading_models
-from walking.body.joints import JOINT_NAMES
+from hsr8.robots.normal_form import ACCELEROMETER, FEET, PADS, SOLES, pad
 
 Ints = NDArray[np.intp]
-
-PADS = ("fl", "fr", "bl", "br")
 
 
 @dataclass(frozen=True, slots=True)
@@ -19,16 +18,18 @@ class ModelIndex:
     """Addresses of the parts that the simulator uses in a compiled model.
 
     Attributes:
+        names: of the joints (n,).
         root_qpos, root_dof: addresses of the free joint of the robot.
-        joint_qpos, joint_dof: addresses of the joints in the order of ``JOINT_NAMES`` (26,).
-        actuators: addresses of the actuators in the same order (26,).
+        joint_qpos, joint_dof: addresses of the joints in the order of walking (n,).
+        actuators: addresses of the actuators in the same order (n,).
         foot_force: sensor addresses, left and right foot by pad (2, 4).
         accelerometer: sensor addresses (3,).
         foot_sites: site ids of the left and the right foot.
         foot_geoms: geom ids of the left and the right sole.
         floor: geom id of the floor.
         bumps: geom ids of the bumps on the floor.
-        base_body: body id of ``base_link``.
+        base_body: body id of the base.
+        trunk: body id of the trunk.
         robot_geoms: ids of the robot's colliding geoms.
         obstacle_of_geom: number of the obstacle of every geom, or of the beacon, counted after all
             obstacles; -1 for other geoms (ngeom,).
@@ -37,6 +38,7 @@ class ModelIndex:
         mover_mocap: mocap index of every mover, layout order.
     """
 
+    names: tuple[str, ...]
     root_qpos: int
     root_dof: int
     joint_qpos: Ints
@@ -49,6 +51,7 @@ class ModelIndex:
     floor: int
     bumps: tuple[int, ...]
     base_body: int
+    trunk: int
     robot_geoms: Ints
     obstacle_of_geom: Ints
     obstacle_geoms: Ints
@@ -57,15 +60,19 @@ class ModelIndex:
 
     @classmethod
     @reading_models()
-    def of(cls, model: mujoco.MjModel, n_static: int, n_moving: int) -> "ModelIndex":
-        """Resolve the names in `model` with some static and moving obstacles.
+    def of(
+        cls, model: mujoco.MjModel, robot: LoadedRobot, n_static: int, n_moving: int
+    ) -> "ModelIndex":
+        """Resolve the names in `model` with a robot, and some static and moving obstacles.
 
         Raises:
             ModelError: a name is missing.
         """
-        joints = [model.joint(name) for name in JOINT_NAMES]
-        base = model.body("base_link").id
-        root = model.joint("root")
+        names = robot.model.names
+        joints = [model.joint(name) for name in names]
+        servo = {int(model.actuator_trnid[a, 0]): a for a in range(model.nu)}
+        base = model.body(robot.roles.base).id
+        root = model.joint(int(model.body_jntadr[base]))
         obstacle_names = [
             *(f"obstacle_{i:02d}" for i in range(n_static)),
             *(f"mover_{i:02d}" for i in range(n_moving)),
@@ -81,23 +88,23 @@ class ModelIndex:
         collides = (model.geom_contype != 0) | (model.geom_conaffinity != 0)
         on_robot = np.array([model.body_rootid[b] == base for b in model.geom_bodyid])
         return cls(
+            names=names,
             root_qpos=int(root.qposadr[0]),
             root_dof=int(root.dofadr[0]),
             joint_qpos=np.array([j.qposadr[0] for j in joints], dtype=np.intp),
             joint_dof=np.array([j.dofadr[0] for j in joints], dtype=np.intp),
-            actuators=np.array(
-                [model.actuator(f"{name}_act").id for name in JOINT_NAMES], dtype=np.intp
-            ),
+            actuators=np.array([servo[j.id] for j in joints], dtype=np.intp),
             foot_force=np.array(
-                [[model.sensor(f"{s}_sole_{p}_force").adr[0] for p in PADS] for s in "lr"],
+                [[model.sensor(pad(s, p)).adr[0] for p, _, _ in PADS] for s in range(2)],
                 dtype=np.intp,
             ),
-            accelerometer=np.arange(3, dtype=np.intp) + model.sensor("imu_accelerometer").adr[0],
-            foot_sites=(model.site("l_foot").id, model.site("r_foot").id),
-            foot_geoms=(model.geom("l_sole").id, model.geom("r_sole").id),
+            accelerometer=np.arange(3, dtype=np.intp) + model.sensor(ACCELEROMETER).adr[0],
+            foot_sites=(model.site(FEET[0]).id, model.site(FEET[1]).id),
+            foot_geoms=(model.geom(SOLES[0]).id, model.geom(SOLES[1]).id),
             floor=model.geom("floor").id,
             bumps=tuple(g for g in range(model.ngeom) if model.geom(g).name.startswith("bump_")),
             base_body=base,
+            trunk=model.body(robot.roles.trunk).id,
             robot_geoms=np.flatnonzero(collides & on_robot),
             obstacle_of_geom=obstacle_of_geom,
             obstacle_geoms=obstacle_geoms,

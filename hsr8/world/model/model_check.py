@@ -3,7 +3,6 @@
 import mujoco
 import numpy as np
 
-FREE = int(mujoco.mjtJoint.mjJNT_FREE)
 FINITE = (
     "body_pos",
     "body_mass",
@@ -20,7 +19,7 @@ FINITE = (
 
 
 def check_model(model: mujoco.MjModel) -> None:
-    """Check that numbers are finite, joints limited and servo gains positive.
+    """Check that numbers are finite, damping not negative and servo gains positive.
 
     Raises:
         ValueError: a check failed; the message names the part, the attribute and the value.
@@ -29,19 +28,12 @@ def check_model(model: mujoco.MjModel) -> None:
         if not np.isfinite(getattr(model, name)).all():
             raise ValueError(f"{name}: a value is not finite")
     for joint in (model.joint(i) for i in range(model.njnt)):
-        if joint.type[0] != FREE and not model.jnt_limited[joint.id]:
-            raise ValueError(
-                f"joint {joint.name!r}: range: got {_text(joint.range)}; expected lower < upper"
-            )
         for name in ("armature", "damping", "frictionloss"):
             value = getattr(joint, name)
             if (value < 0.0).any():
                 raise ValueError(f"joint {joint.name!r}: {name}: got {_text(value)}; expected >= 0")
     for servo in (model.actuator(i) for i in range(model.nu)):
         who = f"actuator {servo.name!r}"
-        if not model.actuator_forcelimited[servo.id]:
-            forces = _text(servo.forcerange)
-            raise ValueError(f"{who}: forcerange: got {forces}; expected lower < upper")
         if servo.gainprm[0] <= 0.0:
             raise ValueError(f"{who}: kp: got {servo.gainprm[0]:g}; expected > 0")
 

@@ -6,6 +6,7 @@ import mujoco
 import numpy as np
 from numpy.typing import NDArray
 
+from hsr8.robots.tree import max_torque
 from hsr8.world.model.index import ModelIndex
 
 Array = NDArray[np.float64]
@@ -17,17 +18,19 @@ BLOCK = 64  # control ticks evaluated at a time
 
 @dataclass(frozen=True, slots=True)
 class Saturation:
-    """Saturation of the servos since the start of the run, order of ``JOINT_NAMES``.
+    """Saturation of the servos since the start of the run, in the order of walking.
 
     Attributes:
+        names: of the joints (n,).
         torque_any: control ticks with any joint at its maximum torque.
-        torque_ticks: control ticks at maximum torque, by joint (26,).
+        torque_ticks: control ticks at maximum torque, by joint (n,).
         stop_any: control ticks with any joint at the end of its range.
-        stop_ticks: control ticks at the end of the range, by joint (26,).
-        peak_torque: peak torque over maximum torque (26,) [1].
-        peak_speed: peak speed (26,) [rad/s].
+        stop_ticks: control ticks at the end of the range, by joint (n,).
+        peak_torque: peak torque over maximum torque (n,) [1].
+        peak_speed: peak speed (n,) [rad/s].
     """
 
+    names: tuple[str, ...]
     torque_any: int
     torque_ticks: NDArray[np.int64]
     stop_any: int
@@ -46,8 +49,10 @@ class SaturationWatch:
 
     def __init__(self, model: mujoco.MjModel, index: ModelIndex) -> None:
         self._index = index
-        self._max_torque = np.array(model.actuator_forcerange[index.actuators, 1])
-        ranges = model.jnt_range[model.dof_jntid[index.joint_dof]]
+        joints = model.dof_jntid[index.joint_dof]
+        self._max_torque = max_torque(model, joints, index.actuators)
+        limited = model.jnt_limited[joints, None] != 0
+        ranges = np.where(limited, model.jnt_range[joints], [-np.inf, np.inf])
         self._lower, self._upper = ranges[:, 0] - TOUCHING, ranges[:, 1] + TOUCHING
         # Pending ticks: copying one is cheap, evaluating one is not.
         self._force = np.zeros((BLOCK, model.nu))
@@ -55,7 +60,7 @@ class SaturationWatch:
         self._pending = 0
         n = len(index.actuators)
         none = np.zeros(n, dtype=np.int64)
-        self._total = Saturation(0, none, 0, none, np.zeros(n), np.zeros(n))
+        self._total = Saturation(index.names, 0, none, 0, none, np.zeros(n), np.zeros(n))
 
     def watch(self, data: mujoco.MjData) -> None:
         """Add the state after a control tick."""
@@ -81,6 +86,7 @@ class SaturationWatch:
         stopped = (angle < self._lower) | (angle > self._upper)
         speed = np.abs(self._speed[rows, index.joint_dof])
         self._total = Saturation(
+            names=index.names,
             torque_any=before.torque_any + int(saturated.any(axis=1).sum()),
             torque_ticks=before.torque_ticks + saturated.sum(axis=0),
             stop_any=before.stop_any + int(stopped.any(axis=1).sum()),

@@ -80,7 +80,7 @@ class Truth:
         obstacle_velocities: (n, 2) [m/s].
         contacts: since the previous record.
         clearance: distance of the robot to the nearest obstacle or beacon [m].
-        joint_torque: (26,) [N m].
+        joint_torque: (n,) [N m].
         foot_force: true normal force under the left and right foot (2,) [N].
         zmp: centre of pressure under both feet in W (2,) [m], NaN when airborne.
         fallen: whether the robot has fallen.

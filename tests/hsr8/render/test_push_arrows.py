@@ -17,7 +17,7 @@ def run():
     columns["push_x"][10:15], columns["push_z"][10:15] = 1.0, 0.3
     qpos = np.zeros((100, 33))
     qpos[:, 0] = 1.0
-    table = WalkingTable(time, columns, (0.01, 0.05, 0.03), {})
+    table = WalkingTable(time, columns, (0.01, 0.05, 0.03), {}, {})
     return table, Trajectory(time, qpos, np.zeros((100, 0, 2)))
 
 

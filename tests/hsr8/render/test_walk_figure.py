@@ -5,7 +5,7 @@ import pytest
 
 from hsr8.errors import UsageError
 from hsr8.recorder.log.walk_layer import GAIT
-from hsr8.recorder.run.walking_table import COLUMNS, LEG_JOINTS, LIMITS, WalkingTable
+from hsr8.recorder.run.walking_table import COLUMNS, LIMITS, WalkingTable
 from hsr8.render import walk_panels
 from hsr8.render.walk_figure import TIME_PANELS, draw, save
 from walking.command_limits import Limit
@@ -38,7 +38,11 @@ def table():
     columns["limits"][50:60] = 1 << LIMITS.index(Limit.BALANCE)
     columns["push_fx"][100:103] = 5.0
     columns["push_impulse"][100:103], columns["push_begin"][100:103] = 0.25, 1.985
-    return WalkingTable(time, columns, (0.01, 0.0525, 0.03), dict.fromkeys(LEG_JOINTS, 6.0))
+    joints = [f"{side}_{k}" for side in ("left", "right") for k in range(6)]
+    columns |= {f"torque_{joint}": np.zeros(len(time)) for joint in joints}
+    groups = {"hip": (0, 1, 2), "knee": (3,), "ankle": (4, 5)}
+    limits = dict.fromkeys(joints, 6.0)
+    return WalkingTable(time, columns, (0.01, 0.0525, 0.03), limits, groups)
 
 
 def test_every_phase_has_a_color_and_a_name():

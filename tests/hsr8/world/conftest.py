@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 
+from hsr8.robots.loaded import load_robot
 from hsr8.scenario.sensor_noise import SensorNoise
 from hsr8.world.body.kinematic import KinematicBody
 from hsr8.world.field.layout import Layout, Obstacle, standard_beacons
@@ -31,7 +32,7 @@ def world():
             goal_heading=None,
             endless=False,
         )
-        return layout, assemble(layout, "vision", Optics())
+        return layout, assemble(load_robot("hsr8"), layout, "vision", Optics())
 
     return make
 
@@ -40,7 +41,7 @@ def world():
 def body(world, silent):
     """A robot that looks down a little at a red obstacle ahead."""
     layout, model = world(Obstacle((1.0, 0.2), 0.08, 0.3, "red"))
-    body = KinematicBody(model, layout, silent, np.random.default_rng(0))
+    body = KinematicBody(model, load_robot("hsr8"), layout, silent, np.random.default_rng(0))
     body.data.joint("head_tilt").qpos[0] = -0.3
     body.update_kinematics()
     return body

@@ -4,7 +4,6 @@ import numpy as np
 import pytest
 
 from walking.body.joints import HEAD, LEFT_ARM, LEFT_LEG, RIGHT_ARM, RIGHT_LEG
-from walking.body.leg_kinematics import foot_pose
 from walking.foothold import Foothold
 from walking.footsteps.planner import FootstepPlanner
 from walking.gait.gait import Gait
@@ -27,8 +26,7 @@ def test_feet_are_where_the_plan_has_them(robot, gait):
     assert yaw == pytest.approx(0.05)
     c, s = np.cos(yaw), np.sin(yaw)
     for leg, part, foot in zip(robot.legs, (LEFT_LEG, RIGHT_LEG), gait.footholds, strict=True):
-        a, b, k, d, e, f = q[part]
-        pose = foot_pose(leg, (a, b, k, d, e, f))
+        pose = leg.pose(q[part])
         x = px + c * pose.x - s * pose.y
         y = py + s * pose.x + c * pose.y
         assert (x, y, pose.yaw + yaw) == pytest.approx((foot.x, foot.y, foot.yaw))
@@ -61,9 +59,7 @@ def test_a_foot_in_the_air_stays_level_under_a_tilted_trunk(robot, gait):
     for _ in range(30):
         angles = posture.joints(gait, com, (0.0, 0.15), (0.0, 0.0))[0][RIGHT_LEG]
     wanted = PARAMETERS.stabilizer.tilt_gain * (0.15 - PARAMETERS.stabilizer.tilt_dead_zone)
-    assert foot_pose(robot.legs[1], tuple(angles.tolist())).pitch == pytest.approx(
-        -wanted, abs=5e-3
-    )
+    assert robot.legs[1].pose(angles).pitch == pytest.approx(-wanted, abs=5e-3)
 
 
 @pytest.mark.parametrize(("apart", "swing"), [(0.05, 0.1), (-0.05, -0.1), (0.5, 0.35)])

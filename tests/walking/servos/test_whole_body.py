@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 
+from walking.body.tree import LEFT_LEG, RIGHT_LEG
 from walking.foothold import Foothold
 from walking.footsteps.planner import FootstepPlanner
 from walking.gait.gait import Gait
@@ -74,14 +75,17 @@ def test_the_trunk_turns_as_fast_as_the_feet_between_two_ticks(body):
 def test_feedforward_includes_the_acceleration_of_the_pendulum(robot, body):
     whole, gait = body()
     targets = follow(whole, zmp=(-0.01, 0.005))
-    height = PARAMETERS.pattern.pelvis_height - robot.legs[0].hip_z
+    height = PARAMETERS.pattern.pelvis_height - robot.legs[0].hip[2]
     w2 = GRAVITY / PARAMETERS.pattern.lipm_height
+    parts = (LEFT_LEG, RIGHT_LEG)
+    both = [leg.joints(targets.position[p]) for leg, p in zip(robot.legs, parts, strict=True)]
     expected = FeedForward(robot, PARAMETERS.stabilizer, height).offsets(
         targets.position,
         whole.pelvis,
         gait.foot_zmps,
         0.5,
         (w2 * 0.02, -w2 * 0.005),
-        task=((0.0, 0.0), NONE, STILL),
+        legs=tuple(np.array(part) for part in zip(*both, strict=True)),
+        task=(NONE, STILL),
     )
     assert targets.setpoint - targets.position == pytest.approx(expected, abs=1e-12)

@@ -4,19 +4,18 @@ import pytest
 
 from hsr8.recorder.log.block_stream import BlockStream
 from hsr8.recorder.log.geometry import (
-    BASE,
     Scene,
     batches_of,
     colors,
     sole_outline,
 )
 from hsr8.recorder.log.log_reader import Log
-from hsr8.world.model.assembly import HEAD_CAMERA
+from hsr8.robots.normal_form import HEAD_CAMERA
 
 
 @pytest.fixture(scope="module")
 def robot(model):
-    return model.body_rootid[model.geom_bodyid] == model.body(BASE).id
+    return model.body_rootid[model.geom_bodyid] == model.body("base_link").id
 
 
 def test_every_visible_geom_of_the_robot_is_in_one_batch(model, robot):
@@ -36,7 +35,7 @@ def test_logged_shapes_are_where_the_geoms_are(model, tmp_path):
     stream.send()
     stream.disconnect()
     log = Log(tmp_path / "log.rrd")
-    visible = (model.body_rootid[model.geom_bodyid] == model.body(BASE).id) & (
+    visible = (model.body_rootid[model.geom_bodyid] == model.body("base_link").id) & (
         model.geom_group == 2
     )
     for k, configuration in enumerate(qpos):

@@ -11,7 +11,7 @@ from hsr8.recorder.run.walking_table import (
     WalkingTableWriter,
     read_walking_table,
 )
-from hsr8.world.model.index import ModelIndex
+from hsr8.robots.loaded import load_robot
 from hsr8.world.truth.truth import ActivePush
 from walking.body.odometry import Odometry
 from walking.command import VelocityCommand
@@ -22,7 +22,7 @@ from walking.command_limits import CommandLimits, Limit
 def written(tmp_path, model, walk):
     """A walk of one second, its file, and its records."""
     path, records = tmp_path / "walking.bin", list(walk(1.0))
-    writer = WalkingTableWriter(path, model, ModelIndex.of(model, 2, 1))
+    writer = WalkingTableWriter(path, load_robot("hsr8").model)
     for record in records:
         writer.on_record(record)
     writer.close("goal")
@@ -88,7 +88,7 @@ def test_constraints_and_pushes_have_columns(tmp_path, model, fake):
     )
     records = [fake.record(0.0), fake.record(0.02, pushes=(push,))]
     records[1] = replace(records[1], walking=replace(records[1].walking, command_limits=report))
-    writer = WalkingTableWriter(tmp_path / "w.bin", model, ModelIndex.of(model, 2, 1))
+    writer = WalkingTableWriter(tmp_path / "w.bin", load_robot("hsr8").model)
     for record in records:
         writer.on_record(record)
     writer.close("goal")

@@ -1,11 +1,10 @@
 import numpy as np
 import pytest
 
-from hsr8.robots.models import models_dir
+from hsr8.robots.loaded import load_robot
 from hsr8.world.body.kinematic import KinematicBody
 from hsr8.world.field.layout import Obstacle
 from hsr8.world.field.motion import Line
-from walking.body.robot_model import RobotModel
 from walking.command import HeadTarget, VelocityCommand
 from walking.engine import WalkingEngine
 from walking.parameters import WalkingParameters
@@ -14,26 +13,26 @@ from walking.targets import JointTargets
 
 @pytest.fixture(scope="module")
 def robot_model():
-    return RobotModel.from_mjcf(models_dir() / "hsr8" / "hsr8.xml")
+    return load_robot("hsr8").model
 
 
 def body_in(world, noise, *obstacles, seed=0, **details):
     layout, model = world(*obstacles, **details)
-    return KinematicBody(model, layout, noise, np.random.default_rng(seed))
+    return KinematicBody(model, load_robot("hsr8"), layout, noise, np.random.default_rng(seed))
 
 
 def test_joints_follow_their_targets_and_the_stance_foot_stays(world, silent):
     body = body_in(world, silent)
     position = body.sense().joint_position.copy()
-    foot = body.data.site("l_foot").xpos.copy()
+    foot = body.data.site("hsr8/l_foot").xpos.copy()
     for k in range(20):
         position[2] -= 0.001  # both hips bend: the trunk moves, the planted foot does not
         position[8] -= 0.001
         body.apply(JointTargets(position=position.copy(), setpoint=position + 0.3))
         assert np.allclose(body.sense().joint_position, position)
         body.update_kinematics()
-        assert np.allclose(body.data.site("l_foot").xpos[:2], foot[:2], atol=1e-9), k
-        assert abs(body.data.site("l_foot").xpos[2]) < 1e-9
+        assert np.allclose(body.data.site("hsr8/l_foot").xpos[:2], foot[:2], atol=1e-9), k
+        assert abs(body.data.site("hsr8/l_foot").xpos[2]) < 1e-9
 
 
 @pytest.mark.parametrize(

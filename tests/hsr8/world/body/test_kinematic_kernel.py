@@ -4,6 +4,7 @@ import mujoco
 import numpy as np
 import pytest
 
+from hsr8.robots.loaded import load_robot
 from hsr8.world.body import kinematic_kernel as kernel
 from hsr8.world.model.index import ModelIndex
 
@@ -18,7 +19,7 @@ def _rotated(rng, size):
 @pytest.mark.parametrize("stance", [0, 1])
 def test_the_sole_lies_flat_where_it_is_planted(world, stance):
     _, model = world()
-    data, index = mujoco.MjData(model), ModelIndex.of(model, 0, 0)
+    data, index = mujoco.MjData(model), ModelIndex.of(model, load_robot("hsr8"), 0, 0)
     rng, root = np.random.default_rng(stance), index.root_qpos
     sites = list(index.foot_sites)
     feet = model.site_bodyid[sites].astype(np.intp)

@@ -2,6 +2,7 @@ import numpy as np
 import pytest
 
 from hsr8.errors import SimulationDiverged
+from hsr8.robots.loaded import load_robot
 from hsr8.world.body.physics import PhysicsBody
 from hsr8.world.field.layout import Obstacle
 from hsr8.world.field.motion import Line, Shuttle
@@ -11,7 +12,7 @@ from walking.targets import JointTargets
 
 def body_in(world, noise, *obstacles, seed=0, **details):
     layout, model = world(*obstacles, **details)
-    return PhysicsBody(model, layout, noise, np.random.default_rng(seed))
+    return PhysicsBody(model, load_robot("hsr8"), layout, noise, np.random.default_rng(seed))
 
 
 def hold(body):

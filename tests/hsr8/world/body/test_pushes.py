@@ -2,6 +2,7 @@ import mujoco
 import numpy as np
 import pytest
 
+from hsr8.robots.loaded import load_robot
 from hsr8.scenario.disturbance import Disturbance, PushedBody, RandomPushes
 from hsr8.scenario.fault import Push
 from hsr8.world.body.pushes import Pusher, ScheduledPush, schedule
@@ -14,7 +15,7 @@ EMPTY = Layout((4.0, 4.0), (), (), (0.0, 0.0, 0.0), np.zeros((0, 2)), None, endl
 
 @pytest.fixture(scope="module")
 def model():
-    return assemble(EMPTY, "vision", Optics())
+    return assemble(load_robot("hsr8"), EMPTY, "vision", Optics())
 
 
 def rng():

@@ -2,6 +2,7 @@ import mujoco
 import numpy as np
 import pytest
 
+from hsr8.robots.loaded import load_robot
 from hsr8.scenario.fault import Bump, LowFriction, MoverAppears, ServoWeak
 from hsr8.world.body.physics import place_robot
 from hsr8.world.body.world_faults import WorldFaults
@@ -19,10 +20,10 @@ PLAIN = Layout((4.0, 4.0), MOVERS, (), (0.0, 0.0, 0.0), np.empty((0, 2)), None, 
 
 def world(*faults):
     """Model, data with the robot ready, and the faults in it."""
-    model = assemble(with_faults(PLAIN, faults), "vision", Optics(32, 24))
+    model = assemble(load_robot("hsr8"), with_faults(PLAIN, faults), "vision", Optics(32, 24))
     data = mujoco.MjData(model)
-    place_robot(model, data, np.zeros(3))
-    index = ModelIndex.of(model, 0, 2)
+    place_robot(model, data, load_robot("hsr8"), np.zeros(3))
+    index = ModelIndex.of(model, load_robot("hsr8"), 0, 2)
     mujoco.mj_forward(model, data)
     return model, data, index, WorldFaults(model, index, faults)
 

@@ -1,6 +1,7 @@
 import numpy as np
 import pytest
 
+from hsr8.robots.loaded import load_robot
 from hsr8.scenario.camera import Camera
 from hsr8.world.body.kinematic import KinematicBody
 from hsr8.world.camera.analytic import AnalyticCamera
@@ -18,7 +19,7 @@ def see(world, silent):
 
     def make(*obstacles, start=(0.0, 0.0, 0.0), frames=60, tilt=-0.35, settings=AHEAD):
         layout, model = world(*obstacles, start=start)
-        body = KinematicBody(model, layout, silent, np.random.default_rng(0))
+        body = KinematicBody(model, load_robot("hsr8"), layout, silent, np.random.default_rng(0))
         body.data.joint("head_tilt").qpos[0] = tilt
         camera = AnalyticCamera(layout, CAMERA, np.random.default_rng(1), settings, CameraFaults())
         return [camera.capture(body) for _ in range(frames)]

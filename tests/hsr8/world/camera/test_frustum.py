@@ -2,6 +2,7 @@ import mujoco
 import numpy as np
 import pytest
 
+from hsr8.robots.loaded import load_robot
 from hsr8.world.body.kinematic import KinematicBody
 from hsr8.world.camera.frustum import Frustum
 from hsr8.world.field.layout import Obstacle
@@ -16,7 +17,7 @@ SHAPE = (60, 80)
 @pytest.fixture
 def body(world, silent):
     layout, model = world(*RING)
-    return KinematicBody(model, layout, silent, np.random.default_rng(0))
+    return KinematicBody(model, load_robot("hsr8"), layout, silent, np.random.default_rng(0))
 
 
 def look(body, pan, tilt):

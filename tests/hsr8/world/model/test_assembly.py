@@ -2,6 +2,7 @@ import mujoco
 import numpy as np
 import pytest
 
+from hsr8.robots.loaded import load_robot
 from hsr8.robots.models import models_dir
 from hsr8.scenario.loader import load_scenario
 from hsr8.world.body.physics import place_robot
@@ -18,7 +19,9 @@ def layout():
 
 @pytest.fixture(scope="module")
 def models(layout):
-    return {q: assemble(layout, q, Optics(160, 120)) for q in ("vision", "show")}
+    return {
+        q: assemble(load_robot("hsr8"), layout, q, Optics(160, 120)) for q in ("vision", "show")
+    }
 
 
 def names(model, kind, count):
@@ -27,7 +30,7 @@ def names(model, kind, count):
 
 def ready(model, layout):
     data = mujoco.MjData(model)
-    place_robot(model, data, np.array(layout.start))
+    place_robot(model, data, load_robot("hsr8"), np.array(layout.start))
     data.ctrl[:] = model.key_ctrl[model.key("walk_ready").id]
     return data
 
@@ -60,7 +63,7 @@ def test_the_world_keeps_the_robot_and_names_everything(models):
 @pytest.mark.parametrize("quality", ["vision", "show"])
 def test_obstacles_and_beacons_have_the_poses_of_the_layout(models, layout, quality):
     model = models[quality]
-    index = ModelIndex.of(model, len(layout.static), len(layout.movers))
+    index = ModelIndex.of(model, load_robot("hsr8"), len(layout.static), len(layout.movers))
     data = mujoco.MjData(model)
     for time in (0.0, 12.3):
         data.mocap_pos[index.mover_mocap, :2] = layout.motion().positions(time)
@@ -84,7 +87,7 @@ def test_the_robot_stands_on_the_floor_without_warnings(models, layout):
     assert data.warning.number.sum() == 0
     floor = model.geom("floor").id
     touching = {g for pair in data.contact.geom for g in pair if floor in pair} - {floor}
-    assert touching == {model.geom("l_sole").id, model.geom("r_sole").id}
+    assert touching == {model.geom("hsr8/l_sole").id, model.geom("hsr8/r_sole").id}
 
 
 @pytest.mark.parametrize("geom", ["l_sole", "torso_collision", "l_forearm_collision"])
@@ -96,8 +99,8 @@ def test_obstacles_are_solid_for_every_part_of_the_robot(models, geom):
 
 
 def test_optics_change_the_head_camera_and_the_lights(layout):
-    normal = assemble(layout, "vision", Optics())
-    dim = assemble(layout, "vision", Optics(200, 100, np.radians(45.0), 0.5))
+    normal = assemble(load_robot("hsr8"), layout, "vision", Optics())
+    dim = assemble(load_robot("hsr8"), layout, "vision", Optics(200, 100, np.radians(45.0), 0.5))
     camera = dim.camera("egocentric")
     assert camera.fovy[0] == pytest.approx(45.0)
     assert dim.cam_resolution[camera.id].tolist() == [200, 100]

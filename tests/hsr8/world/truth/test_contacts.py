@@ -2,6 +2,7 @@ import mujoco
 import numpy as np
 import pytest
 
+from hsr8.robots.loaded import load_robot
 from hsr8.world.field.layout import Obstacle, standard_beacons
 from hsr8.world.field.motion import Line
 from hsr8.world.model.index import ModelIndex
@@ -19,7 +20,7 @@ def watched(world):
 
     def build(*obstacles, at=(0.0, 0.0, 0.245), velocity=(0.0, 0.0), beacons=BEACONS):
         layout, model = world(*obstacles, beacons=beacons)
-        index = ModelIndex.of(model, len(layout.static), len(layout.movers))
+        index = ModelIndex.of(model, load_robot("hsr8"), len(layout.static), len(layout.movers))
         data = mujoco.MjData(model)
         data.qpos[index.root_qpos : index.root_qpos + 3] = at
         data.qvel[index.root_dof : index.root_dof + 2] = velocity

@@ -4,6 +4,7 @@ import mujoco
 import numpy as np
 import pytest
 
+from hsr8.robots.loaded import load_robot
 from hsr8.world.body.physics import place_robot
 from hsr8.world.field.layout import Layout
 from hsr8.world.model.assembly import Optics, assemble
@@ -17,11 +18,11 @@ KNEE = JOINT_NAMES.index("l_knee")
 
 @pytest.fixture
 def watched():
-    model = assemble(EMPTY, "vision", Optics())
+    model = assemble(load_robot("hsr8"), EMPTY, "vision", Optics())
     data = mujoco.MjData(model)
-    place_robot(model, data, np.zeros(3))
+    place_robot(model, data, load_robot("hsr8"), np.zeros(3))
     mujoco.mj_forward(model, data)
-    index = ModelIndex.of(model, 0, 0)
+    index = ModelIndex.of(model, load_robot("hsr8"), 0, 0)
     return model, data, index, SaturationWatch(model, index)
 
 

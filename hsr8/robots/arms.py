@@ -1,0 +1,49 @@
+"""Arms of a robot as spheres, for the self mask of vision."""
+
+import mujoco
+import numpy as np
+from numpy.typing import NDArray
+
+from hsr8.robots.posed import Posed
+from hsr8.robots.roles import Roles
+
+Array = NDArray[np.float64]
+
+SWING = 0.12  # room for the motion of an arm, per distance from the shoulder [1]
+
+
+def arm_spheres(robot: Posed, roles: Roles) -> list[tuple[Array, Array]]:
+    """Return centres (n, 3) [m] and radii (n,) [m] of spheres around each arm.
+
+    Args:
+        robot: in the ready posture, on the floor.
+        roles: of the robot's parts.
+    """
+    model, data = robot.model, robot.data
+    arms = []
+    for shoulder in roles.shoulders or ():
+        root = int(model.joint(shoulder).bodyid[0])
+        geoms = [g for g in range(model.ngeom) if _below(model, int(model.geom_bodyid[g]), root)]
+        solid = [g for g in geoms if model.geom_contype[g] or model.geom_conaffinity[g]]
+        spheres = [sphere for g in solid or geoms for sphere in _spheres(model, data, g)]
+        centres = np.array([centre for centre, _ in spheres]).reshape(-1, 3)
+        away = np.linalg.norm(centres - data.xanchor[model.joint(shoulder).id], axis=1)
+        arms.append((centres, np.array([radius for _, radius in spheres]) + SWING * away))
+    return [arm for arm in arms if len(arm[1])]
+
+
+def _below(model: mujoco.MjModel, body: int, root: int) -> bool:
+    """Return whether a body is `root` or hangs on it."""
+    while body > root:
+        body = int(model.body_parentid[body])
+    return body == root
+
+
+def _spheres(model: mujoco.MjModel, data: mujoco.MjData, geom: int) -> list[tuple[Array, float]]:
+    """Return two spheres along the longest side of the box around a geom."""
+    rotation, half = data.geom_xmat[geom].reshape(3, 3), model.geom_aabb[geom, 3:]
+    centre = data.geom_xpos[geom] + rotation @ model.geom_aabb[geom, :3]
+    longest = int(np.argmax(half))
+    radius = float(np.delete(half, longest).max())
+    reach = rotation[:, longest] * max(0.0, float(half[longest]) - radius)
+    return [(centre - reach, radius), (centre + reach, radius)]

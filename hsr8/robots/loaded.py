@@ -1,0 +1,148 @@
+"""Loaded robot: its model in normal form, its kinematics, and its walking parameters."""
+
+from dataclasses import dataclass
+from functools import lru_cache
+from pathlib import Path
+
+import mujoco
+import numpy as np
+from numpy.typing import NDArray
+
+from hsr8.errors import ModelError
+from hsr8.robots.arms import arm_spheres
+from hsr8.robots.description import RobotDescription, read_description
+from hsr8.robots.locate import find_description, find_model
+from hsr8.robots.models import reading_models
+from hsr8.robots.normal_form import normalise
+from hsr8.robots.posed import Posed
+from hsr8.robots.read_model import read_model
+from hsr8.robots.refusals import check_roles
+from hsr8.robots.roles import Roles, find_roles
+from hsr8.robots.servos import choose_servos
+from hsr8.robots.sole import soles_of
+from hsr8.robots.tree import tree_of
+from walking.body.robot_model import RobotModel
+from walking.parameters import WalkingParameters
+from walking.scaling import parameters_for
+
+Array = NDArray[np.float64]
+
+PRECISION = 1e-9  # of masses [kg] and places [m] in the normal form
+STANDING = 1e-9  # maximum error of the legs in the ready posture [rad]
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class LoadedRobot:
+    """Robot that the simulator can place in a world.
+
+    Attributes:
+        name: of its description.
+        file: its model.
+        description: of its parts.
+        roles: of its parts.
+        spec: MuJoCo model in normal form; copy it before a change.
+        model: kinematics and dynamics, in the ready posture.
+        parameters: of walking, derived from the model.
+        arms: centres (n, 3) [m] and radii (n,) [m] of spheres around each arm, in the robot frame.
+        has_meshes: whether meshes show its shapes.
+        held: angles of the joints that walking does not move [rad].
+        height: of the base above the floor in the ready posture [m].
+        notes: derived facts, a line each.
+    """
+
+    name: str
+    file: Path
+    description: RobotDescription
+    roles: Roles
+    spec: mujoco.MjSpec
+    model: RobotModel
+    parameters: WalkingParameters
+    arms: list[tuple[Array, Array]]
+    has_meshes: bool
+    held: dict[str, float]
+    height: float
+    notes: tuple[str, ...]
+
+
+def load_robot(name_or_file: str) -> LoadedRobot:
+    """Return a robot by the name of a shipped description, or by its file.
+
+    Raises:
+        ModelError: a file is missing or wrong, or the robot cannot walk; the message names the
+            element, the reason and the remedy.
+    """
+    file = find_description(name_or_file).resolve()
+    return _loaded(file, file.stat().st_mtime_ns)
+
+
+@lru_cache(maxsize=8)
+def _loaded(file: Path, _changed: int) -> LoadedRobot:
+    description = read_description(file)
+    model_file = find_model(description, file.parent)
+    source = str(model_file)
+    raw = read_model(model_file, description, file.parent)
+    description, model = raw.description, raw.spec.compile()
+    roles = find_roles(model, description, source)
+    zero = Posed.at(model, description.zero)
+    soles, sole_notes = soles_of(zero, roles.feet, description.sole, source)
+    check_roles(model, roles, description, source)
+    servo_notes = choose_servos(raw.spec, model, roles, description, soles[0].height)
+    normal = normalise(raw.spec, zero, roles, soles, description)
+    with reading_models(source):
+        compiled = normal.spec.compile()
+    _compare(model, compiled, description, source)
+    posture = {**description.posture, **description.zero}
+    tree = tree_of(
+        compiled, roles, normal.parts, posture, effort=description.effort, speed=description.speed
+    )
+    robot = RobotModel(tree)
+    parameters = parameters_for(robot)
+    height = parameters.pattern.pelvis_height
+    if robot.stand(height) > STANDING:
+        raise ModelError(
+            f"{source}: ready posture: the legs do not reach the floor with the hips at "
+            f"{height:.3f} m; expected another zero posture"
+        )
+    driven = set(tree.names)
+    held = {name: angle for name, angle in posture.items() if name not in driven}
+    base = height - robot.legs[0].hip[2]
+    angles = dict(zip(tree.names, robot.ready.tolist(), strict=True))
+    standing = Posed.at(compiled, {**held, **angles}, base)
+    return LoadedRobot(
+        name=file.stem,
+        file=model_file,
+        description=description,
+        roles=roles,
+        spec=normal.spec,
+        model=robot,
+        parameters=parameters,
+        arms=arm_spheres(standing, roles),
+        has_meshes=bool(compiled.nmesh),
+        held=held,
+        height=base,
+        notes=(*raw.notes, *sole_notes, *servo_notes, *normal.notes),
+    )
+
+
+def _compare(
+    raw: mujoco.MjModel, normal: mujoco.MjModel, description: RobotDescription, source: str
+) -> None:
+    """Check that mass, centre of mass and joints are those of the file.
+
+    Raises:
+        ModelError: a quantity differs.
+    """
+    before, after = Posed.at(raw, description.zero).data, Posed.at(normal, description.zero).data
+    root = int(raw.jnt_bodyid[0])
+    _same(source, "mass [kg]", raw.body_subtreemass[root], normal.body_subtreemass[1])
+    _same(source, "centre of mass [m]", before.subtree_com[root], after.subtree_com[1])
+    for joint in (raw.joint(j) for j in range(1, raw.njnt)):
+        place = after.joint(joint.name).xanchor
+        _same(source, f"place of joint {joint.name!r} [m]", before.xanchor[joint.id], place)
+
+
+def _same(source: str, quantity: str, before: Array | float, after: Array | float) -> None:
+    if not np.allclose(before, after, rtol=PRECISION, atol=PRECISION):
+        raise ModelError(
+            f"{source}: {quantity}: changed in the normal form, got {after}; expected {before}"
+        )

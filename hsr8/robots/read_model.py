@@ -1,0 +1,76 @@
+"""Reading of a robot's model file, MJCF or URDF."""
+
+from dataclasses import dataclass
+from pathlib import Path
+
+import mujoco
+import numpy as np
+from numpy.typing import NDArray
+
+from hsr8.robots.description import RobotDescription
+from hsr8.robots.models import reading_models
+from hsr8.robots.posture import stated_posture
+from hsr8.robots.urdf import convert
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class RawModel:
+    """Model of a file, before the normal form.
+
+    Attributes:
+        spec: MuJoCo model.
+        description: of the robot, in terms of the model.
+        notes: derived facts, a line each.
+    """
+
+    spec: mujoco.MjSpec
+    description: RobotDescription
+    notes: tuple[str, ...]
+
+
+def read_model(file: Path, description: RobotDescription, folder: Path) -> RawModel:
+    """Read a model.
+
+    Args:
+        file: MJCF or URDF file.
+        description: of the robot.
+        folder: of the description file.
+
+    Raises:
+        ModelError: the file is wrong, or the robot cannot be converted.
+    """
+    if file.suffix.lower() == ".urdf":
+        converted = convert(file, description, folder)
+        return RawModel(converted.spec, converted.description, converted.notes)
+    posture = stated_posture(description, folder)
+    with reading_models(str(file)):
+        spec = mujoco.MjSpec.from_file(str(file))
+        for name in description.rigid:
+            _make_rigid(spec, name, posture.get(name, 0.0))
+        spec.compile()
+    names = {joint.name for joint in spec.joints}
+    known = {name: angle for name, angle in posture.items() if name in names}
+    stated = description.model_copy(update={"posture": known, "rigid": ()})
+    notes = [f"{len(description.rigid)} joints made rigid"] if description.rigid else []
+    return RawModel(spec, stated, tuple(notes))
+
+
+def _make_rigid(spec: mujoco.MjSpec, name: str, angle: float) -> None:
+    """Remove a hinge joint and its actuators; its body keeps the place of an angle [rad]."""
+    joint = spec.joint(name)
+    if joint is None:
+        raise ValueError(f"rigid: the model has no joint {name!r}")
+    body = joint.parent
+    turned, carried, moved = np.empty(4), np.empty(4), np.empty(3)
+    mujoco.mju_axisAngle2Quat(turned, np.asarray(joint.axis, float), angle)
+    anchor = np.asarray(joint.pos, float)
+    mujoco.mju_rotVecQuat(moved, anchor, turned)
+    shift = np.empty(3)
+    mujoco.mju_rotVecQuat(shift, anchor - moved, np.asarray(body.quat, float))
+    mujoco.mju_mulQuat(carried, np.asarray(body.quat, float), turned)
+    body.pos, body.quat = np.asarray(body.pos, float) + shift, carried
+    for servo in [a for a in spec.actuators if a.target == name]:
+        spec.delete(servo)
+    spec.delete(joint)

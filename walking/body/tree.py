@@ -1,0 +1,123 @@
+"""Kinematic tree of a robot: all that the walking engine is told about its body."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from walking.arrays import Array, Indices
+from walking.body.sole import Sole
+
+LEFT_LEG, RIGHT_LEG = slice(0, 6), slice(6, 12)  # joints of the legs in every array
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Frame:
+    """Frame fixed to a part of the robot.
+
+    Attributes:
+        joint: index of the joint that moves it, -1 for the base.
+        rotation: in the frame of that joint (3, 3).
+        position: in the frame of that joint (3,) [m].
+    """
+
+    joint: int
+    rotation: Array
+    position: Array
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class RobotTree:
+    """Joints, masses, servos and roles of a robot.
+
+    The base frame has x forward and z up in the ready posture. Joints are ordered: six of the left
+    leg, six of the right leg, each hip first, then all others, parents before children. In every
+    array they have this order. The frame of a joint is at its axis.
+
+    Attributes:
+        names: of the joints (n,).
+        parents: index of the joint that carries each joint, -1 for the base (n,).
+        rotations: of the joint frames in those of their parents at angle zero (n, 3, 3).
+        positions: of the joint frames in those of their parents (n, 3) [m].
+        axes: of rotation, in the joint frames (n, 3).
+        bodies: frames of the centres of mass of all bodies, along their principal axes (m,).
+        masses: of the bodies (m,) [kg].
+        inertias: principal moments of inertia of the bodies (m, 3) [kg m²].
+        lower, upper: joint limits (n,) [rad].
+        stiffness: of each servo (n,) [N m/rad].
+        servo_damping: of each servo (n,) [N m s/rad].
+        joint_damping: of each joint (n,) [N m s/rad].
+        armature: of each joint (n,) [kg m²].
+        effort: maximum torque, infinite if unknown (n,) [N m].
+        speed: maximum speed, infinite if unknown (n,) [rad/s].
+        posture: angles with straight legs and the other joints as while walking (n,) [rad].
+        feet: on the floor below the left and the right ankle, x forward, in that posture.
+        sole: rectangle of each sole in the foot frame.
+        camera: right, down and forward axes of the camera.
+        head: pan and tilt joint; None of a robot without a movable head.
+        shoulders: left and right shoulder pitch joint; None without arms.
+    """
+
+    names: tuple[str, ...]
+    parents: Indices
+    rotations: Array
+    positions: Array
+    axes: Array
+    bodies: tuple[Frame, ...]
+    masses: Array
+    inertias: Array
+    lower: Array
+    upper: Array
+    stiffness: Array
+    servo_damping: Array
+    joint_damping: Array
+    armature: Array
+    effort: Array
+    speed: Array
+    posture: Array
+    feet: tuple[Frame, Frame]
+    sole: Sole
+    camera: Frame
+    head: tuple[int, int] | None = None
+    shoulders: tuple[int, int] | None = None
+
+    def carries(self, one: int, other: int) -> bool:
+        """Whether a joint carries another one."""
+        joint = int(self.parents[other])
+        while joint >= 0 and joint != one:
+            joint = int(self.parents[joint])
+        return joint == one
+
+    def chain(self, joints: list[int], end: Frame) -> Array:
+        """Return the chain of some joints to a frame, see `kinematics_kernel` (k + 1, 15).
+
+        All other joints between base and frame keep their angle of the posture.
+
+        Args:
+            joints: moving joints, base first.
+            end: frame at the end.
+        """
+        path = []
+        joint = end.joint
+        while joint >= 0:
+            path.append(joint)
+            joint = int(self.parents[joint])
+        rows, rotation, position = [], np.eye(3), np.zeros(3)
+        for joint in reversed(path):
+            position = position + rotation @ self.positions[joint]
+            rotation = rotation @ self.rotations[joint]
+            if joint in joints:
+                rows.append([*rotation.ravel(), *position, *self.axes[joint]])
+                rotation, position = np.eye(3), np.zeros(3)
+            else:
+                rotation = rotation @ turn(self.axes[joint], float(self.posture[joint]))
+        position = position + rotation @ end.position
+        rows.append([*(rotation @ end.rotation).ravel(), *position, 0.0, 0.0, 0.0])
+        return np.array(rows)
+
+
+def turn(axis: Array, angle: float) -> Array:
+    """Return the rotation (3, 3) about a unit axis (3,) by an angle [rad]."""
+    x, y, z = axis
+    cross = np.array([[0.0, -z, y], [z, 0.0, -x], [-y, x, 0.0]])
+    rotation: Array = np.eye(3) + np.sin(angle) * cross + (1.0 - np.cos(angle)) * cross @ cross
+    return rotation
