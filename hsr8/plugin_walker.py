@@ -166,7 +166,7 @@ class PluginEngine:
         self._lower, self._upper = robot.lower, robot.upper
         self._observer = BodyObserver(robot, parameters, odometry)
         self._head = Head(robot.neck.angles(robot.ready), robot.neck.range(), parameters.head)
-        self._head_joints = robot.neck.joints
+        self._neck = robot.neck if robot.tree.head is not None else None
         self._command: VelocityCommand | None = None
 
     @property
@@ -200,7 +200,8 @@ class PluginEngine:
             self._walker.reset()
         self._command = VelocityCommand(*command.velocity)
         estimate = self._observer.update(sensors)
-        angles = np.array(self._head_joints(*self._head.advance(head)))
+        gaze = self._head.advance(head)
+        angles = np.array(self._neck.joints(*gaze) if self._neck is not None else ())
         setpoints = self._walker.step(sensors, self._command, angles, estimate)
         setpoints = np.clip(setpoints, self._lower, self._upper)
         return JointTargets(position=setpoints, setpoint=setpoints)

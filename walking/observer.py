@@ -30,6 +30,7 @@ from walking.value import value
 
 VELOCITY_TIME = 0.05  # time constant of the legs in the velocity filter [s]
 PRESSURE = 20  # index of the centres of pressure in the measurements
+SLIP = 0.1  # standard deviation of the slip of unknown feet, relative to the distance walked [1]
 FULL_LOAD = 0.5  # of the weight on the feet, above which the legs have their full weight [1]
 
 
@@ -77,6 +78,7 @@ class BodyObserver:
         self._zmp: Point = (0.0, 0.0)
         self._feet = np.zeros((2, 4))  # in the odometry frame: x, y, height [m], yaw [rad]
         self._rolling = RollingFeet()
+        self._step_begin = 0, (0.0, 0.0)  # footsteps and position at the last landing
         self._velocity = np.zeros(3)  # axes of the IMU's yaw, z up [m/s]
         self._sensors: BodySensors | None = None
 
@@ -107,6 +109,7 @@ class BodyObserver:
             body.right_load,
             stepping=contacts.phase is not Phase.STANDING,
         )
+        self._add_slip()
         pose, height = self._pose, self._height
         self._follow_velocity(sensors, tilt, yaw)
         for side, foot in enumerate(body.feet):
@@ -197,6 +200,14 @@ class BodyObserver:
         rotations = [tilt @ self._robot.frame_pose(frame, joints)[0] for frame in feet_frames]
         pressure = self._estimation.measured[PRESSURE:].reshape(2, 2)
         self._rolling.update(feet, np.array(rotations), pressure, yaw, self._contacts.on_floor)
+
+    def _add_slip(self) -> None:
+        """Add the unmeasured slip of every footstep to the covariance of the odometry."""
+        steps, (x, y) = self._step_begin
+        if self._contacts.step_count != steps:
+            here, there, _ = self._pose
+            self._odometry.slip(SLIP * hypot(here - x, there - y))
+            self._step_begin = self._contacts.step_count, (here, there)
 
     def _follow_velocity(self, sensors: BodySensors, tilt: Array, yaw: float) -> None:
         """Integrate the accelerometer, corrected by the legs over the points of contact."""

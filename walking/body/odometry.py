@@ -106,6 +106,10 @@ class LegOdometry:
         """
         estimation_kernel.reckon(self.state, heading, feet, right_load, stepping, self.growth)
 
+    def slip(self, displacement: float) -> None:
+        """Add an unmeasured slip of the feet: standard deviation per axis [m]."""
+        estimation_kernel.jump(self.state, displacement, 0.0)
+
     def interrupt(self, displacement: float, turn: float) -> None:
         """Restart from new footholds after an unmeasured motion; the heading is that of the IMU.
 
