@@ -4,7 +4,7 @@ from math import hypot
 
 import numpy as np
 
-from walking.arrays import Point
+from walking.arrays import Array, Point
 from walking.balance.capture_step import CapturePendulum
 from walking.balance.com_offset import ComOffset
 from walking.balance.foot_placement import FootPlacement
@@ -114,6 +114,26 @@ class WalkingEngine:
         """Distance of the last planned ZMP from the edge of the support polygon [m]."""
         return self._polygon.depth(*self._pendulum.zmp)
 
+    @property
+    def heading(self) -> float:
+        """Planned heading of the trunk [rad]."""
+        return self._whole_body.pelvis[2]
+
+    @property
+    def load(self) -> float:
+        """Planned load fraction of the right foot [1]."""
+        return self._gait.right_weight
+
+    @property
+    def leg_angles(self) -> Array:
+        """Planned angles of the leg joints, also beyond their limits (12,) [rad]."""
+        return self._whole_body.leg_angles
+
+    @property
+    def torques(self) -> Array:
+        """Planned torques of all joints in the last tick (n,) [N m]."""
+        return self._whole_body.torques
+
     def step(self, sensors: BodySensors, command: Command, head: HeadTarget) -> JointTargets:
         """Run one control tick.
 
@@ -132,7 +152,7 @@ class WalkingEngine:
         placement.remember()
         self._command(command, error)
         wanted = self._wanted_strides()
-        if not gait.stepping:
+        if not gait.stepping and self._settled:
             self._maybe_start(error)
         self._detect_touchdown()
         polygon.update(gait.support_feet)
@@ -154,6 +174,7 @@ class WalkingEngine:
             zmp,
             self._zmp_shift,
             load,
+            measured=sensors.joint_position,
             head=self._robot.neck.joints(*self._head.advance(head)),
             offset=self._com_offset.offset,
         )
@@ -218,12 +239,16 @@ class WalkingEngine:
         self._ticks += 1
         return self._estimation.update(sensors, gait.feet, plan, stepping=gait.stepping)
 
+    @property
+    def _settled(self) -> bool:
+        """Whether the errors of the start, which are no loss of balance, have decayed."""
+        return self._ticks * CONTROL_PERIOD > self._parameters.gait.settle_time
+
     def _command(self, command: Command, error: Point) -> None:
-        settled = self._ticks * CONTROL_PERIOD > self._parameters.gait.settle_time
         off = hypot(*error)
         balanced = off < self._parameters.stabilizer.max_slew_error
         speed_ratio = self._slowdown.update(off)
-        self._steering.follow(command, speed_ratio, settled=settled, balanced=balanced)
+        self._steering.follow(command, speed_ratio, settled=self._settled, balanced=balanced)
         gait = self._gait
         retimed = gait.retime(self._steering.next_timing(gait.timing, stepping=gait.stepping))
         self._bound = [] if retimed else [Limit.TIMING]

@@ -23,6 +23,9 @@ from hsr8.robots.sole import soles_of
 from hsr8.robots.tree import tree_of
 from walking.body.robot_model import RobotModel
 from walking.parameters import WalkingParameters
+from walking.rehearsal import within_joints
+from walking.robot_measures import HSR_VIII
+from walking.rules import fit
 from walking.scaling import parameters_for
 
 Array = NDArray[np.float64]
@@ -96,9 +99,9 @@ def _loaded(file: Path, _changed: int) -> LoadedRobot:
         compiled, roles, normal.parts, posture, effort=description.effort, speed=description.speed
     )
     robot = RobotModel(tree)
-    parameters = parameters_for(robot)
+    parameters, walk_notes = _fitted(robot)
     height = parameters.pattern.pelvis_height
-    if robot.stand(height) > STANDING:
+    if robot.stand(height, parameters.gait.half_stance) > STANDING:
         raise ModelError(
             f"{source}: ready posture: the legs do not reach the floor with the hips at "
             f"{height:.3f} m; expected another zero posture"
@@ -120,8 +123,24 @@ def _loaded(file: Path, _changed: int) -> LoadedRobot:
         has_meshes=bool(compiled.nmesh),
         held=held,
         height=base,
-        notes=(*raw.notes, *sole_notes, *servo_notes, *normal.notes),
+        notes=(*raw.notes, *sole_notes, *servo_notes, *normal.notes, *walk_notes),
     )
+
+
+def _fitted(robot: RobotModel) -> tuple[WalkingParameters, list[str]]:
+    """Return the walking parameters of a robot, and notes; for HSR-VIII exactly the defaults."""
+    scaled = parameters_for(robot)
+    if robot.measures() == HSR_VIII:
+        return scaled, []
+    fitted = fit(robot, scaled)
+    robot.stand(fitted.pattern.pelvis_height, fitted.gait.half_stance)
+    parameters, notes = within_joints(robot, fitted)
+    hips, before = parameters.pattern.pelvis_height, scaled.pattern.pelvis_height
+    if hips != before:
+        notes.insert(0, f"hips {before:.3f} -> {hips:.3f} m high")
+    if robot.stiffening > 1.0:
+        notes.insert(0, f"leg servos stiffened {robot.stiffening:.2f} times by feedback")
+    return parameters, notes
 
 
 def _compare(

@@ -14,6 +14,7 @@ from walking.body.tree import LEFT_LEG, RIGHT_LEG, Frame, RobotTree
 from walking.parameters import GRAVITY
 from walking.robot_measures import RobotMeasures
 
+MAX_COMPLIANCE, MAX_STIFFENING = 0.9, 3.0  # of an ankle, see `_stiffen` [1]
 BENT = 5.0 / 6.0  # walking height of the hips per length of the leg [1]
 SMALL = 1e-5  # step of finite differences [m]
 BASE = "base"
@@ -38,7 +39,8 @@ class RobotModel:
             input of `forces`.
         indices: of the joints in that position and velocity (n,).
         lower, upper: joint limits (n,) [rad].
-        stiffness: of each servo (n,) [N m/rad].
+        stiffness: of each servo, stiffened in the legs (n,) [N m/rad].
+        stiffening: of the servos of soft legs by feedback of the joint angles, see `_stiffen` [1].
         damping: of each servo and its joint (n,) [N m s/rad].
     """
 
@@ -68,14 +70,16 @@ class RobotModel:
         self.sole = tree.sole
         self.ready = tree.posture.copy()
         self.lower, self.upper = tree.lower, tree.upper
-        self.stiffness = tree.stiffness
+        self.stiffness = tree.stiffness.copy()
         self.damping: Array = tree.servo_damping + tree.joint_damping
+        self.stiffening = self._stiffen()
 
-    def stand(self, height: float) -> float:
+    def stand(self, height: float, half_stance: float) -> float:
         """Set the ready posture: level feet below the centre of mass, legs bent.
 
         Args:
             height: of the hips above the floor [m].
+            half_stance: foot to the middle of the stance [m].
 
         Returns:
             remaining error of the legs; above 1e-9 the posture is out of reach [rad].
@@ -83,10 +87,22 @@ class RobotModel:
         base, error = height - self.legs[0].hip[2], 0.0
         for _ in range(12):  # the legs carry a part of the mass
             ahead = float(self.com(self.ready)[0]) - self.sole.centre
-            for leg, part in zip(self.legs, (LEFT_LEG, RIGHT_LEG), strict=True):
-                angles, error = leg.angles(FootPose(ahead, leg.foot[1], -base))
-                self.ready[part] = angles
+            for leg, part, y in zip(
+                self.legs, (LEFT_LEG, RIGHT_LEG), (half_stance, -half_stance), strict=True
+            ):
+                self.ready[part], error = leg.angles(FootPose(ahead, y, -base))
         return error
+
+    def _stiffen(self) -> float:
+        """Stiffen soft legs and return the factor [1].
+
+        An ankle softer than the weight of the robot cannot hold it upright. Setpoints moved away
+        from the measured angle, s (setpoint - angle) + angle, make a servo s times as stiff.
+        """
+        soft = self.measures().ankle
+        factor = min(MAX_STIFFENING, max(1.0, soft / MAX_COMPLIANCE))
+        self.stiffness[: RIGHT_LEG.stop] *= factor
+        return factor
 
     def com(self, joint_position: Array) -> Array:
         """Return the centre of mass in the base frame (3,) [m] for joint angles (n,) [rad]."""

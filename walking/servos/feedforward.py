@@ -38,6 +38,7 @@ class FeedForward:
         self._started = False
         self._position = np.zeros(robot.damping.size)
         self._velocity = np.zeros(robot.damping.size)
+        self._offset = np.zeros(robot.damping.size)
 
     def offsets(
         self,
@@ -78,7 +79,7 @@ class FeedForward:
             acceleration,
             self._inertia,
         )
-        offset = np.empty(position.size)
+        offset = self._offset
         feedforward_kernel.offsets(
             robot.forces(),
             robot.indices[1],
@@ -93,4 +94,10 @@ class FeedForward:
             self._ankles,
             offset,
         )
-        return offset
+        return offset.copy()
+
+    def torques(self) -> Array:
+        """Return the planned torques of all joints in the last tick (n,) [N m]."""
+        lag, compliance = self._servos[1:]
+        torques: Array = (self._offset - self._velocity * lag) / compliance
+        return torques

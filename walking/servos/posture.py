@@ -22,6 +22,7 @@ class Posture:
         height: of the base above the floor [m].
         legs: axes (2, 6, 3) and origins (2, 6, 3) [m] of the leg joints in the base frame, in the
             last posture.
+        angles: of the legs in the last posture, also beyond their limits (2, 6) [rad].
         error: of the legs in the last posture, see `kinematics_kernel.pose` [rad].
     """
 
@@ -36,7 +37,7 @@ class Posture:
         self._moved = np.array([*(robot.tree.head or none), *(robot.tree.shoulders or none)])
         self._chains, self._limits = robot.chains, np.array([robot.lower, robot.upper])
         self._reach = np.array([leg.reach for leg in robot.legs])
-        self._angles = np.array([robot.ready[LEFT_LEG], robot.ready[RIGHT_LEG]])
+        self.angles = np.array([robot.ready[LEFT_LEG], robot.ready[RIGHT_LEG]])
         self.legs = np.zeros((2, 6, 3)), np.zeros((2, 6, 3))
         self.error = 0.0
         p = parameters.stabilizer
@@ -64,7 +65,7 @@ class Posture:
         position = self._ready.copy()
         pelvis, self.error = kinematics_kernel.pose(
             position,
-            self._angles,
+            self.angles,
             self._tilt,
             gait.feet,
             (gait.support, gait.swing if gait.airborne else -1),

@@ -4,6 +4,7 @@ import numpy as np
 
 from walking.arrays import Array, Point
 from walking.body.robot_model import RobotModel
+from walking.body.tree import RIGHT_LEG
 from walking.gait.gait import Gait
 from walking.gait.swing_reaction import SwingCompensation, leg_reaction
 from walking.parameters import CONTROL_PERIOD, WalkingParameters
@@ -56,6 +57,16 @@ class WholeBody:
         x, y, _ = robot.com(robot.ready).tolist()
         self.com: Point = x, y
 
+    @property
+    def leg_angles(self) -> Array:
+        """Planned angles of the leg joints, also beyond their limits (12,) [rad]."""
+        return self._posture.angles.flatten()
+
+    @property
+    def torques(self) -> Array:
+        """Planned torques of all joints in the last tick (n,) [N m]."""
+        return self._feedforward.torques()
+
     def follow(
         self,
         tilt: Point,
@@ -64,6 +75,7 @@ class WholeBody:
         zmp_shift: Point,
         right_load: float,
         *,
+        measured: Array,
         head: Point,
         offset: Point,
     ) -> JointTargets:
@@ -75,6 +87,7 @@ class WholeBody:
             zmp: planned [m].
             zmp_shift: of the ankles [m].
             right_load: planned load fraction of the right foot [1].
+            measured: joint angles (n,) [rad].
             head: angles of the head joints [rad].
             offset: of the body from the pendulum, forward and left [m].
         """
@@ -98,5 +111,9 @@ class WholeBody:
             task=(zmp_shift, gyro),
         )
         self.com = self._robot.moved_com()
-        setpoint = np.minimum(np.maximum(position + offsets, self._robot.lower), self._robot.upper)
+        robot = self._robot
+        setpoint = np.minimum(np.maximum(position + offsets, robot.lower), robot.upper)
+        if robot.stiffening > 1.0:
+            legs = slice(0, RIGHT_LEG.stop)
+            setpoint[legs] += (robot.stiffening - 1.0) * (setpoint[legs] - measured[legs])
         return JointTargets(position=position, setpoint=setpoint)

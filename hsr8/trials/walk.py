@@ -1,0 +1,180 @@
+"""Walk of a robot on an empty floor, in full physics with sensor noise."""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from math import acos, degrees
+
+import numpy as np
+from numpy.typing import NDArray
+
+from hsr8.robots.loaded import LoadedRobot
+from hsr8.robots.normal_form import HEAD_CAMERA
+from hsr8.scenario.sensor_noise import SensorNoise
+from hsr8.world.body.physics import PhysicsBody
+from hsr8.world.body.pushes import ScheduledPush
+from hsr8.world.field.layout import Layout
+from hsr8.world.model.assembly import Optics, assemble
+from hsr8.world.model.index import ModelIndex
+from hsr8.world.rotation import heading, up_component
+from hsr8.world.truth.saturation import Saturation
+from walking.body.robot_model import RobotModel
+from walking.command import Command, HeadTarget, VelocityCommand
+from walking.engine import WalkingEngine
+from walking.parameters import CONTROL_PERIOD, GRAVITY, WalkingParameters
+from walking.robot_measures import HSR_VIII
+from walking.state import HeadCameraPose
+
+Array = NDArray[np.float64]
+
+EMPTY = Layout((4.0, 4.0), (), (), (0.0, 0.0, 0.0), np.zeros((0, 2)), None, endless=False)
+REFERENCE_FORCE = HSR_VIII.weight  # that the noise of the foot pads is stated for [N]
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Walked:
+    """A walk of n control ticks.
+
+    Attributes:
+        falls: number of falls; the walk ends with the first.
+        poses: x, y [m] and unwrapped heading [rad] of the robot frame (n, 3).
+        odometry: the same by odometry (n, 3).
+        tilt: of the trunk (n,) [deg].
+        targets: joint targets (n, joints) [rad].
+        angles: joint angles after each tick (n, joints) [rad].
+        camera: of the believed minus the true camera pose: tilt, roll, yaw [rad], height [m], at
+            every `CAMERA_TICKS` (m, 4).
+        steps: completed footsteps.
+        saturation: of the joints.
+        parameters: of the walk.
+    """
+
+    falls: int
+    poses: Array
+    odometry: Array
+    tilt: Array
+    targets: Array
+    angles: Array
+    camera: Array
+    steps: int
+    saturation: Saturation
+    parameters: WalkingParameters
+
+    def velocity(self, settling: float = 3.0) -> Array:
+        """Return the mean velocity in the robot frame over whole strides (3,) [m/s, m/s, rad/s].
+
+        Args:
+            settling: time before the first stride that counts, in that of HSR-VIII [s].
+        """
+        step = self.parameters.gait.footstep_time
+        begin = round(settling * step / WalkingParameters().gait.footstep_time / CONTROL_PERIOD)
+        stride = 2 * round(step / CONTROL_PERIOD)
+        poses = self.poses[begin:]
+        ticks = (len(poses) - 1) // stride * stride
+        if ticks <= 0:
+            return np.full(3, np.nan)
+        moved, yaw = np.diff(poses[: ticks + 1, :2], axis=0), poses[:ticks, 2]
+        c, s = np.cos(yaw), np.sin(yaw)
+        forward, left = c * moved[:, 0] + s * moved[:, 1], c * moved[:, 1] - s * moved[:, 0]
+        turned = poses[ticks, 2] - poses[0, 2]
+        time = ticks * CONTROL_PERIOD
+        return np.array([forward.sum(), left.sum(), turned]) / time
+
+
+CAMERA_TICKS = 12  # control ticks between samples of the camera pose
+
+
+class Trial:
+    """Walks of one robot; the model is compiled once.
+
+    Args:
+        robot: that walks.
+        parameters: of its walk; default: those derived.
+        noise: factor on the sensor noise [1].
+    """
+
+    def __init__(
+        self, robot: LoadedRobot, parameters: WalkingParameters | None = None, noise: float = 1.0
+    ) -> None:
+        self.robot = robot
+        self.parameters = parameters or robot.parameters
+        self._model = assemble(robot, EMPTY, "vision", Optics())
+        self._noise = _scaled_noise(noise, robot.model)
+        self._joints = ModelIndex.of(self._model, robot, 0, 0).joint_qpos
+        self._camera = self._model.camera(HEAD_CAMERA).id
+
+    def walk(
+        self,
+        command: Callable[[float], Command] | VelocityCommand,
+        duration: float,
+        seed: int = 0,
+        *,
+        head: Callable[[float], HeadTarget] | None = None,
+        pushes: tuple[ScheduledPush, ...] = (),
+    ) -> Walked:
+        """Walk until a fall or the end.
+
+        Args:
+            command: constant, or by time.
+            duration: [s].
+            seed: of the sensor noise.
+            head: target by time.
+            pushes: on the robot.
+        """
+        rng = np.random.default_rng([seed, 7])
+        body = PhysicsBody(self._model, self.robot, EMPTY, self._noise, rng, pushes=pushes)
+        engine = WalkingEngine(self.robot.model, self.parameters)
+        rows, camera, falls = [], [], 0
+        for tick in range(round(duration / CONTROL_PERIOD)):
+            time = tick * CONTROL_PERIOD
+            now = command if isinstance(command, VelocityCommand) else command(time)
+            targets = engine.step(body.sense(), now, head(time) if head else HeadTarget())
+            state = engine.state()
+            if tick % CAMERA_TICKS == 0:
+                camera.append(self._camera_error(body, state.camera))
+            body.apply(targets)
+            truth, odometry = body.truth(), state.odometry
+            tilt = degrees(acos(min(1.0, up_component(truth.qpos[3:7]))))
+            pose = (odometry.x, odometry.y, odometry.yaw)
+            rows.append([*truth.robot, *pose, tilt, *targets.position, *truth.qpos[self._joints]])
+            if truth.fallen:
+                falls = 1
+                break
+        table, n = np.array(rows), len(self._joints)
+        table[:, 2] = np.unwrap(table[:, 2])
+        assert truth.saturation is not None
+        return Walked(
+            falls=falls,
+            poses=table[:, :3],
+            odometry=table[:, 3:6],
+            tilt=table[:, 6],
+            targets=table[:, 7 : 7 + n],
+            angles=table[:, 7 + n :],
+            camera=np.array(camera),
+            steps=state.step_count,
+            saturation=truth.saturation.so_far(),
+            parameters=self.parameters,
+        )
+
+    def _camera_error(self, body: PhysicsBody, believed: HeadCameraPose) -> Array:
+        """Return believed minus true camera pose: tilt, roll, yaw [rad], height [m] (4,)."""
+        body.update_kinematics()
+        data = body.data
+        # MuJoCo cameras look along -z with y up.
+        true = data.cam_xmat[self._camera].reshape(3, 3) * (1.0, -1.0, -1.0)
+        yaw = heading(data.qpos[3:7])
+        c, s = np.cos(yaw), np.sin(yaw)
+        level = np.array([[c, s, 0.0], [-s, c, 0.0], [0.0, 0.0, 1.0]]) @ true
+        off = believed.rotation.T @ level
+        turned = 0.5 * np.array(
+            [off[2, 1] - off[1, 2], off[0, 2] - off[2, 0], off[1, 0] - off[0, 1]]
+        )
+        height = float(data.cam_xpos[self._camera, 2])
+        return np.array([-turned[0], -turned[2], -turned[1], believed.position[2] - height])
+
+
+def _scaled_noise(factor: float, robot: RobotModel) -> SensorNoise:
+    """Return the usual noise times a factor, that of the foot pads in proportion to the weight."""
+    usual = SensorNoise()
+    scaled = {name: factor * getattr(usual, name) for name in SensorNoise.__dataclass_fields__}
+    scaled["foot_force"] *= robot.mass * GRAVITY / REFERENCE_FORCE
+    return SensorNoise(**scaled)

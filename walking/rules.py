@@ -1,0 +1,140 @@
+"""Rules that fit the scaled parameters to a robot's soles, joints and servos.
+
+Scaling by similarity assumes a robot built like HSR-VIII. Each rule bounds a parameter where
+another build would fall, see `docs/robots.md`.
+"""
+
+from dataclasses import replace
+
+import numpy as np
+
+from walking.arrays import Array
+from walking.body import feedforward_kernel
+from walking.body.leg import FootPose
+from walking.body.robot_model import RobotModel
+from walking.body.tree import LEFT_LEG, RIGHT_LEG
+from walking.parameters import (
+    GRAVITY,
+    GaitParameters,
+    PatternParameters,
+    StabilizerParameters,
+    WalkingParameters,
+)
+
+MAX_GYRO_GAIN = 0.12  # ankle setpoint per angular velocity; above, soft ankles oscillate [s]
+PLAN_FRACTION = 0.6  # maximum margin of the planned ZMP, of the sole's half width [1]
+SOLE_FRACTION = 1.0 / 3.0  # maximum margin of the ZMP moved by the ankles, likewise [1]
+MAX_STANCE = 0.2  # half stance, of the length of the leg [1]
+MAX_LOAD = 0.7  # torque of a pitching joint on one leg, of its maximum [1]
+JOINT_ROOM = 0.05  # of a walking leg to its joint limits [rad]
+REACHED = 1e-6  # error of a leg that reaches its foot [rad]
+STRIDE = 0.12  # of a walking leg forward and backward, of its length [1]
+RAISE, MAX_HEIGHT = 0.01, 0.93  # step and end of the search for a hip height, of the leg [1]
+
+
+def fit(robot: RobotModel, scaled: WalkingParameters) -> WalkingParameters:
+    """Return the scaled parameters of a robot within all rules."""
+    gait = with_clear_stance(robot, scaled.gait)
+    pattern = with_plan_margin(robot, scaled.pattern)
+    pattern = replace(pattern, pelvis_height=hip_height(robot, gait, pattern.pelvis_height))
+    return replace(
+        scaled, gait=gait, pattern=pattern, stabilizer=with_gains(robot, scaled.stabilizer)
+    )
+
+
+def with_gains(robot: RobotModel, stabilizer: StabilizerParameters) -> StabilizerParameters:
+    """Return full feed-forward of the lag, bounded damping, and ankles that use the sole.
+
+    A part of the lag lets slow servos fall behind; damping scaled to soft ankles oscillates with
+    the delay of the servos; a margin scaled to the legs leaves nothing of a narrow sole.
+    """
+    margin = SOLE_FRACTION * robot.sole.half_width
+    return replace(
+        stabilizer,
+        velocity_gain=1.0,
+        gyro_gain=min(stabilizer.gyro_gain, MAX_GYRO_GAIN),
+        sole_margin=min(stabilizer.sole_margin, margin),
+    )
+
+
+def with_plan_margin(robot: RobotModel, pattern: PatternParameters) -> PatternParameters:
+    """Return a planned ZMP with a support area left on the sole."""
+    most = PLAN_FRACTION * robot.sole.half_width
+    return replace(pattern, plan_margin=min(pattern.plan_margin, most))
+
+
+def with_clear_stance(robot: RobotModel, gait: GaitParameters) -> GaitParameters:
+    """Return a stance in which the soles do not overlap, no wider than the legs can shift."""
+    clear = robot.sole.half_width + gait.foot_clearance
+    most = max(clear, MAX_STANCE * robot.legs[0].length)
+    return replace(gait, half_stance=min(most, max(gait.half_stance, clear)))
+
+
+def hip_height(robot: RobotModel, gait: GaitParameters, height: float) -> float:
+    """Return a height of the hips at which the bent legs can walk [m].
+
+    The hips are raised until a stride leaves room to every joint limit, and the weight on one leg
+    leaves torque in its pitching joints; where no height does, to that which comes nearest.
+
+    Args:
+        robot: that walks.
+        gait: its stance.
+        height: wanted [m].
+    """
+    length, pitching = robot.legs[0].length, _pitching(robot)
+    heights = np.arange(height, MAX_HEIGHT * length, RAISE * length).tolist() or [height]
+    lacking = []
+    for each in heights:
+        load = float(one_leg_load(robot, gait.half_stance, each)[pitching].max())
+        room = stride_room(robot, gait.half_stance, each)
+        lacking.append(max(0.0, JOINT_ROOM - room) + max(0.0, load - MAX_LOAD))
+        if lacking[-1] == 0.0:
+            return float(each)
+    return float(heights[int(np.argmin(lacking))])
+
+
+def one_leg_load(robot: RobotModel, half_stance: float, height: float) -> Array:
+    """Return the torque of every leg joint that carries the weight alone, of its maximum (12,) [1].
+
+    The force of the floor on the middle of the sole points to the centre of mass.
+
+    Args:
+        robot: that stands.
+        half_stance: foot to the middle of the stance [m].
+        height: of the hips [m].
+    """
+    loads = np.zeros(12)
+    com = robot.com(robot.ready)
+    for leg, part, side in zip(robot.legs, (LEFT_LEG, RIGHT_LEG), (1.0, -1.0), strict=True):
+        foot = FootPose(leg.foot[0], side * half_stance, leg.hip[2] - height)
+        axes, origins = leg.joints(leg.angles(foot)[0])
+        point = np.array([foot.x + robot.sole.centre, foot.y, foot.z])
+        up = np.array([0.0, com[1] - foot.y, com[2] - foot.z])
+        force = robot.mass * GRAVITY * up / up[2]
+        torques = [
+            feedforward_kernel.support_torque(axis, origin, tuple(point), tuple(force))
+            for axis, origin in zip(axes, origins, strict=True)
+        ]
+        loads[part] = np.abs(torques) / robot.tree.effort[part]
+    return loads
+
+
+def stride_room(robot: RobotModel, half_stance: float, height: float) -> float:
+    """Return the smallest distance of the leg joints to their limits in a stride [rad].
+
+    Where a foot is out of reach, it is negative.
+    """
+    room = np.inf
+    for leg, part, side in zip(robot.legs, (LEFT_LEG, RIGHT_LEG), (1.0, -1.0), strict=True):
+        for ahead in (0.0, STRIDE * leg.length, -STRIDE * leg.length):
+            foot = FootPose(leg.foot[0] + ahead, side * half_stance, leg.hip[2] - height)
+            angles, error = leg.angles(foot)
+            if error > REACHED:
+                return -1.0
+            room = min(room, (angles - robot.lower[part]).min(), (robot.upper[part] - angles).min())
+    return float(room)
+
+
+def _pitching(robot: RobotModel) -> list[int]:
+    """Return the pitching joints of both legs, which a crouch loads."""
+    return [6 * side + k for side in range(2) for k in robot.legs[side].pitching]
