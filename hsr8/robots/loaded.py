@@ -18,6 +18,7 @@ from hsr8.robots.posed import Posed
 from hsr8.robots.read_model import read_model
 from hsr8.robots.refusals import check_roles
 from hsr8.robots.roles import Roles, find_roles
+from hsr8.robots.self_collision import exclude_neighbours
 from hsr8.robots.servos import choose_servos
 from hsr8.robots.sole import soles_of
 from hsr8.robots.tree import tree_of
@@ -111,6 +112,7 @@ def _loaded(file: Path, _changed: int) -> LoadedRobot:
     base = height - robot.legs[0].hip[2]
     angles = dict(zip(tree.names, robot.ready.tolist(), strict=True))
     standing = Posed.at(compiled, {**held, **angles}, base)
+    collision_notes = exclude_neighbours(normal.spec, standing, source)
     return LoadedRobot(
         name=file.stem,
         file=model_file,
@@ -123,7 +125,7 @@ def _loaded(file: Path, _changed: int) -> LoadedRobot:
         has_meshes=bool(compiled.nmesh),
         held=held,
         height=base,
-        notes=(*raw.notes, *sole_notes, *servo_notes, *normal.notes, *walk_notes),
+        notes=(*raw.notes, *sole_notes, *servo_notes, *normal.notes, *collision_notes, *walk_notes),
     )
 
 

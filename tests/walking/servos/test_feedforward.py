@@ -62,7 +62,7 @@ def test_the_ankle_has_the_moment_of_the_whole_body_about_it(robot):
     compliant = feed(robot, velocity_gain=0.0, inertia_gain=0.0)
     q = robot.ready
     offset = compliant.offsets(q, ORIGIN, SOLES, 0.0, (0.0, 0.0), legs=legs(robot), task=STILL)
-    ankle = robot.com(q)[1] - robot.legs[0].foot[1]  # the ankle stands under the hip
+    ankle = robot.com(q)[1] - robot.legs[0].pose(q[LEFT_LEG]).y
     weightless = robot.inverse_dynamics(q, 0.0 * q, 0.0 * q, (0.0, 0.0))[0][5]
     moment = offset[5] * robot.stiffness[5] - weightless
     assert moment == pytest.approx(-robot.mass * 9.81 * ankle, rel=0.05)
@@ -87,8 +87,9 @@ def balanced(robot, right_load, shift, gyro=(0.0, 0.0, 0.0)):
 def test_ankle_torque_matches_the_shift_of_the_zmp(robot):
     added = balanced(robot, 0.0, (0.02, -0.01))
     weight = robot.mass * 9.81
-    assert added[4] * robot.stiffness[4] == pytest.approx(weight * 0.02)
-    assert added[5] * robot.stiffness[5] == pytest.approx(weight * 0.01)
+    # The legs lean by 2 degrees, and their ankle axes with them.
+    assert added[4] * robot.stiffness[4] == pytest.approx(weight * 0.02, rel=2e-3)
+    assert added[5] * robot.stiffness[5] == pytest.approx(weight * 0.01, rel=2e-3)
     # A foot in the air is left alone, and so is everything else.
     assert not np.delete(added, [4, 5]).any()
 
@@ -100,7 +101,7 @@ def test_the_ankles_share_the_shift_and_damp_the_gyro(robot):
     np.testing.assert_allclose(both[10:12], 0.25 * left[4:6])
     still = balanced(robot, 0.0, (0.02, -0.01))
     gain = StabilizerParameters().gyro_gain
-    np.testing.assert_allclose((left - still)[4:6], [gain * 0.2, gain * 0.3])
+    np.testing.assert_allclose((left - still)[4:6], [gain * 0.2, gain * 0.3], rtol=2e-3)
 
 
 def test_offsets_are_those_of_the_robot_wherever_it_stands(robot):

@@ -35,6 +35,7 @@ def body(robot):
 
 def follow(whole, zmp=(0.01, 0.0), shift=NONE, load=0.5, **changes):
     usual = {"tilt": LEVEL, "gyro": STILL, "head": NONE, "offset": NONE} | changes
+    usual |= {"measured": np.zeros(26)}  # soft legs alone need it
     tilt, gyro = usual.pop("tilt"), usual.pop("gyro")
     return whole.follow(tilt, gyro, zmp, shift, load, **usual)
 
