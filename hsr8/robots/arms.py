@@ -1,4 +1,4 @@
-"""Arms of a robot as spheres, for the self mask of vision."""
+"""Extent of a robot: its arms as spheres for the self mask of vision, and its radius."""
 
 import mujoco
 import numpy as np
@@ -9,6 +9,7 @@ from hsr8.robots.roles import Roles
 
 Array = NDArray[np.float64]
 
+CORNERS = np.array([[x, y, z] for x in (-1, 1) for y in (-1, 1) for z in (-1, 1)], float)
 SWING = 0.12  # room for the motion of an arm, per distance from the shoulder [1]
 
 
@@ -47,3 +48,19 @@ def _spheres(model: mujoco.MjModel, data: mujoco.MjData, geom: int) -> list[tupl
     radius = float(np.delete(half, longest).max())
     reach = rotation[:, longest] * max(0.0, float(half[longest]) - radius)
     return [(centre - reach, radius), (centre + reach, radius)]
+
+
+def robot_radius(robot: Posed) -> float:
+    """Return the radius of the upright cylinder around a standing robot's colliding shapes [m].
+
+    Args:
+        robot: in the ready posture, the base above the origin.
+    """
+    model, data, radius = robot.model, robot.data, 0.0
+    for geom in range(model.ngeom):
+        if model.geom_contype[geom] or model.geom_conaffinity[geom]:
+            rotation, half = data.geom_xmat[geom].reshape(3, 3), model.geom_aabb[geom, 3:]
+            centre = data.geom_xpos[geom] + rotation @ model.geom_aabb[geom, :3]
+            corners = centre + (CORNERS * half) @ rotation.T
+            radius = max(radius, float(np.hypot(corners[:, 0], corners[:, 1]).max()))
+    return float(f"{radius:.3g}")

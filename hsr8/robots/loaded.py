@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from hsr8.errors import ModelError
-from hsr8.robots.arms import arm_spheres
+from hsr8.robots.arms import arm_spheres, robot_radius
 from hsr8.robots.description import RobotDescription, read_description
 from hsr8.robots.locate import find_description, find_model
 from hsr8.robots.models import reading_models
@@ -49,6 +49,7 @@ class LoadedRobot:
         parameters: of walking, derived from the model.
         arms: centres (n, 3) [m] and radii (n,) [m] of spheres around each arm, in the robot frame.
         has_meshes: whether meshes show its shapes.
+        radius: of the walking robot seen from above [m].
         held: angles of the joints that walking does not move [rad].
         height: of the base above the floor in the ready posture [m].
         notes: derived facts, a line each.
@@ -63,6 +64,7 @@ class LoadedRobot:
     parameters: WalkingParameters
     arms: list[tuple[Array, Array]]
     has_meshes: bool
+    radius: float
     held: dict[str, float]
     height: float
     notes: tuple[str, ...]
@@ -123,6 +125,7 @@ def _loaded(file: Path, _changed: int) -> LoadedRobot:
         parameters=parameters,
         arms=arm_spheres(standing, roles),
         has_meshes=bool(compiled.nmesh),
+        radius=description.radius or robot_radius(standing),
         held=held,
         height=base,
         notes=(*raw.notes, *sole_notes, *servo_notes, *normal.notes, *collision_notes, *walk_notes),

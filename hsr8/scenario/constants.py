@@ -12,6 +12,7 @@ from hsr8.scenario.schema import Scenario
 from hsr8.suggestion import suggestion
 
 CONSTANTS = "constants"
+DEFAULT = "hsr8"  # robot that scenarios are written for
 Table = dict[str, Any]
 
 
@@ -57,7 +58,11 @@ def separated(data: Table) -> Table:
     defaults["navigation"] = asdict(PROFILES[data["navigation"]["profile"]]())
     values, usual = _flat(libraries), _flat(defaults) | _flat(followers(data))
     settings |= _nested({key: value for key, value in values.items() if key in PUBLIC})
-    constants = {k: v for k, v in values.items() if k not in PUBLIC and v != _plain(usual[k])}
+    # The defaults of another robot are scaled: its scenario has all constants.
+    complete = data["robot"]["model"] != DEFAULT
+    constants = {
+        k: v for k, v in values.items() if k not in PUBLIC and (complete or v != _plain(usual[k]))
+    }
     return {**settings, CONSTANTS: _nested(constants)} if constants else settings
 
 

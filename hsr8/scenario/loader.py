@@ -4,7 +4,7 @@ import json
 import re
 import tomllib
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import asdict, dataclass, field
 from pathlib import Path as FilePath
 from typing import Any
 
@@ -12,14 +12,17 @@ import tomlkit
 from pydantic import ValidationError
 
 from hsr8.errors import ScenarioError
+from hsr8.robots.scale import RobotDefaults
 from hsr8.scenario.checks import check
-from hsr8.scenario.constants import CONSTANTS, misplaced, separated, with_constants
+from hsr8.scenario.constants import CONSTANTS, DEFAULT, misplaced, separated, with_constants
 from hsr8.scenario.key_lines import Path, depth, line_of
-from hsr8.scenario.presets import expand_presets, followers, under
+from hsr8.scenario.presets import PROFILES, expand_presets, followers, under
 from hsr8.scenario.problem import Problem, dotted, problems_of
 from hsr8.scenario.renamed import renamed
+from hsr8.scenario.scaling import completed, scaled
 from hsr8.scenario.schema import Scenario
 from hsr8.suggestion import suggestion
+from navigation.parameters.navigation import NavigationParameters
 
 BUILT_IN = FilePath(__file__).resolve().parents[1] / "scenarios"
 KINDS = ("kind", "motion")  # keys that determine the other keys of their table
@@ -56,12 +59,12 @@ def load_scenario(
     """
     draft = _read(_find(name_or_path), ())
     for option, table in (options or {}).items():
-        draft.add(dict(table), option)
+        draft.add(_Layer(dict(table), option))
     for flag, words in (("--set", as_words(overrides)), ("--vary", varied)):
         for word in words:
-            draft.add(_parse_override(word, draft.data, flag), f"{flag} {word}")
+            draft.override(word, flag)
     if seed is not None:
-        draft.add({"seed": seed}, "--seed")
+        draft.add(_Layer({"seed": seed}, "--seed"))
     return draft.finish(name_or_path)
 
 
@@ -112,7 +115,9 @@ class _Layer:
 
     table: Table
     source: str
-    text: str | None  # of a file
+    text: str | None = None  # of a file
+    built_in: bool = False
+    override: tuple[str, str] | None = None  # ``key=value`` and its option
 
     def location(self, path: Path) -> str:
         """File and line, or option, that gives the key at `path`."""
@@ -127,10 +132,35 @@ class _Draft:
     data: Table = field(default_factory=dict)
     layers: list[_Layer] = field(default_factory=list)
 
-    def add(self, table: Table, source: str, text: str | None = None) -> None:
-        """Merge `table` over the present tables; `text` is that of a file."""
-        self.data = _merged(self.data, table)
-        self.layers.append(_Layer(table, source, text))
+    def add(self, layer: _Layer) -> None:
+        """Merge a layer over the present tables."""
+        self.data = _merged(self.data, layer.table)
+        self.layers.append(layer)
+
+    def override(self, word: str, flag: str) -> None:
+        """Merge ``key=value`` of an option over the present tables."""
+        table = _parse_override(word, self.data, flag)
+        self.add(_Layer(table, f"{flag} {word}", override=(word, flag)))
+
+    def for_robot(self, robot: RobotDefaults) -> Table:
+        """Return the tables with built-in values and defaults scaled to a robot."""
+        data: Table = {}
+        for layer in self.layers:
+            table = layer.table
+            if layer.override is not None:
+                table = _parse_override(layer.override[0], data, layer.override[1])
+            elif layer.built_in:
+                table = scaled(Scenario, with_constants(table), robot.scale)
+            data = _merged(data, with_constants(table))
+        data = under(data, robot.table)
+        data = under(data, followers(data))
+        navigation = data["navigation"]
+        if isinstance(navigation, dict):
+            profile = PROFILES.get(navigation.get("profile", "extended"), PROFILES["extended"])
+            usual = scaled(NavigationParameters, asdict(profile()), robot.scale)
+            data["navigation"] = under(navigation, usual)
+        complete: Table = completed(Scenario, data, robot.scale)
+        return complete
 
     def finish(self, name: str) -> Scenario:
         """Return the scenario after all checks.
@@ -150,8 +180,12 @@ class _Draft:
         problems = list(renamed(self.data)) or list(misplaced(self.data))
         if problems:
             return None, problems
-        data = under(self.data, followers(self.data))
-        data = with_constants(expand_presets(data))
+        robot = robot_defaults(self.data)
+        if robot is None:
+            data = with_constants(under(self.data, followers(self.data)))
+        else:
+            data = self.for_robot(robot)
+        data = expand_presets(data)
         try:
             scenario = Scenario.model_validate_json(json.dumps(data, default=str))
         except ValidationError as error:
@@ -236,7 +270,8 @@ def _layered(
     if "extends" in data:
         key = f"{source}:{line_of(text, ('extends',))}: extends"
         draft = _read(_parent(data.pop("extends"), key, folder, files), files)
-    draft.add(data, source, text)
+    built_in = bool(files) and files[-1].parent == BUILT_IN
+    draft.add(_Layer(data, source, text, built_in))
     return draft
 
 
@@ -305,3 +340,18 @@ def _at(data: Any, parts: Sequence[str]) -> Any:
         else:
             return None
     return data
+
+
+def robot_defaults(data: Table) -> RobotDefaults | None:
+    """Return the defaults of the robot of a scenario; None for HSR-VIII and for malformed tables.
+
+    Raises:
+        ModelError: the robot cannot be loaded.
+    """
+    robot = data.get("robot")
+    model = robot.get("model", DEFAULT) if isinstance(robot, dict) else DEFAULT
+    if model == DEFAULT or not isinstance(model, str):
+        return None
+    from hsr8.robots.defaults import defaults_of  # noqa: PLC0415 (MuJoCo loads slowly)
+
+    return defaults_of(model)
