@@ -92,11 +92,12 @@ def build_walker(scenario: Scenario, walker: CustomWalker | None = None) -> Walk
         UsageError: the walker, given or named by the scenario, is invalid.
     """
     humanoid = load_robot(scenario.robot.model)
-    body, parameters = humanoid.model, walking_parameters(humanoid, scenario)
+    body = humanoid.model
     if walker is None and scenario.plugin.walker:
         walker = load_plugin(scenario.plugin.walker)
     if walker is None:
-        return Walker(body, parameters)
+        return Walker(body, walking_parameters(humanoid, scenario))
+    parameters = override(humanoid.parameters, scenario.walking, WalkingParameters())
     plugin = PluginWalker(walker, RobotInfo.of(body, humanoid.file))
     return Walker(body, parameters, partial(PluginEngine, plugin, body, parameters))
 

@@ -1,7 +1,6 @@
 """State estimation under a walking controller without a plan: measurements only."""
 
-from dataclasses import replace
-from math import hypot
+from math import asin, atan2, hypot
 
 import numpy as np
 
@@ -23,9 +22,8 @@ from walking.pattern.lipm import Lipm
 from walking.pattern.support import SupportPolygon
 from walking.phase import Phase
 from walking.planar import Frame, from_frame, rotate, rotate_back
-from walking.published_state import camera_pose
 from walking.sensing import BodySensors
-from walking.state import Balance, WalkingState
+from walking.state import Balance, HeadCameraPose, WalkingState
 from walking.value import value
 
 VELOCITY_TIME = 0.05  # time constant of the legs in the velocity filter [s]
@@ -148,7 +146,7 @@ class BodyObserver:
         return WalkingState(
             phase=self._contacts.phase,
             odometry=self._odometry.pose(),
-            camera=camera_pose(self._robot, self._sensors, self._over_contacts(body)),
+            camera=self._camera(self._sensors, body),
             applied_velocity=np.array(command.velocity),
             footsteps=(support, other),
             zmp=np.array(self._zmp),
@@ -175,11 +173,21 @@ class BodyObserver:
         assert body is not None
         return body
 
-    def _over_contacts(self, body: BodyMeasurement) -> BodyMeasurement:
-        """Return the body with the heights of the contact points as those of the feet."""
-        heights = self._rolling.contact[:, 2].tolist()
-        left, right = (replace(f, z=z) for f, z in zip(body.feet, heights, strict=True))
-        return replace(body, feet=(left, right))
+    def _camera(self, sensors: BodySensors, body: BodyMeasurement) -> HeadCameraPose:
+        """Return the camera in the robot frame; every joint that carries it may move."""
+        rotation, position = self._robot.frame_pose(self._robot.tree.camera, sensors.joint_position)
+        tilt = np.empty((3, 3))
+        published_state_kernel.incline(body.roll, body.pitch, tilt)
+        ahead, left, up = rotation[:, 2].tolist()
+        pan_rate, tilt_rate = self._robot.neck.rates(sensors.joint_velocity)
+        return HeadCameraPose(
+            rotation=tilt @ rotation,
+            position=tilt @ position + (0.0, 0.0, self._height),
+            pan=atan2(left, ahead),
+            tilt=asin(min(1.0, max(-1.0, up))),
+            pan_rate=pan_rate,
+            tilt_rate=tilt_rate,
+        )
 
     @property
     def _pose(self) -> Frame:

@@ -144,6 +144,8 @@ class RobotDescription(Table):
     """Position servos of the model, or by rule; default: own if the model has them."""
     effort: dict[Name, Positive] = {}
     """Maximum torque by joint, where the model is silent or wrong [N m]."""
+    range: dict[Name, tuple[Angle, Angle]] = {}
+    """Lower and upper limit by joint, where the model is silent or wrong [rad]."""
     speed: dict[Name, Positive] = {}
     """Maximum speed by joint, where the model is silent or wrong [rad/s]."""
     rigid: tuple[Name, ...] = ()

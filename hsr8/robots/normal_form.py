@@ -141,6 +141,10 @@ def _strip(spec: mujoco.MjSpec, model: mujoco.MjModel, roles: Roles) -> None:
     for body in list(spec.worldbody.bodies):
         if model.body(body.name).id != root:
             spec.delete(body)
+    shapes = {geom.name for geom in spec.geoms}
+    for contact in list(spec.pairs):
+        if not {contact.geomname1, contact.geomname2} <= shapes:
+            spec.delete(contact)
     for camera in list(spec.cameras):
         if camera.name == HEAD_CAMERA:
             spec.delete(camera)

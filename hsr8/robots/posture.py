@@ -77,6 +77,7 @@ def check_joint_names(description: RobotDescription, names: Collection[str], fil
         "zero": description.zero,
         "posture": description.posture,
         "effort": description.effort,
+        "range": description.range,
         "speed": description.speed,
         "rigid": description.rigid,
     }

@@ -1,5 +1,6 @@
 """Reading of a robot's model file, MJCF or URDF."""
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -43,18 +44,29 @@ def read_model(file: Path, description: RobotDescription, folder: Path) -> RawMo
     """
     if file.suffix.lower() == ".urdf":
         converted = convert(file, description, folder)
+        _set_ranges(converted.spec, converted.description.range)
         return RawModel(converted.spec, converted.description, converted.notes)
     posture = stated_posture(description, folder)
     with reading_models(str(file)):
         spec = mujoco.MjSpec.from_file(str(file))
         for name in description.rigid:
             _make_rigid(spec, name, posture.get(name, 0.0))
+        _set_ranges(spec, description.range)
         spec.compile()
     names = {joint.name for joint in spec.joints}
     known = {name: angle for name, angle in posture.items() if name in names}
     stated = description.model_copy(update={"posture": known, "rigid": ()})
     notes = [f"{len(description.rigid)} joints made rigid"] if description.rigid else []
     return RawModel(spec, stated, tuple(notes))
+
+
+def _set_ranges(spec: mujoco.MjSpec, ranges: Mapping[str, tuple[float, float]]) -> None:
+    """Set joint limits [rad]; unknown joints are reported with the other names."""
+    for name, limits in ranges.items():
+        joint = spec.joint(name)
+        if joint is not None:
+            joint.range = np.degrees(limits) if spec.compiler.degree else limits
+            joint.limited = mujoco.mjtLimited.mjLIMITED_TRUE
 
 
 def _make_rigid(spec: mujoco.MjSpec, name: str, angle: float) -> None:

@@ -198,7 +198,7 @@ class _Checks:
                     raise self._error(
                         f"joint {right!r}: not the mirror image of {left!r} in the plane y = 0 of "
                         f"the base at zero angles: {reason}: correct the model, or state angles "
-                        "at which the legs are alike as zero"
+                        "at which the legs are alike as zero, or the range"
                     )
 
     def freedom(self) -> None:

@@ -102,7 +102,7 @@ class _Tree:
         if robot.base is not None:
             self._require("base", "body", robot.base, list(self._bodies))
         hinges = [n for n, j in self._joints.items() if self._model.jnt_type[j] == HINGE]
-        for key in ("head", "shoulders", "zero", "posture", "effort", "speed", "rigid"):
+        for key in ("head", "shoulders", "zero", "posture", "effort", "range", "speed", "rigid"):
             for name in getattr(robot, key) or ():
                 if name not in held and name not in robot.rigid:
                     self._require(key, "hinge joint", name, hinges)

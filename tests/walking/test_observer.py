@@ -42,7 +42,9 @@ def test_odometry_and_camera_are_those_of_the_engine(walk):
         pose = odometry.x, odometry.y, odometry.yaw
         assert estimate.pose == pytest.approx(pose, abs=1e-4)
         assert measured.camera.position == pytest.approx(planned.camera.position, abs=1e-4)
-        assert np.array_equal(measured.camera.rotation, planned.camera.rotation)
+        assert measured.camera.rotation == pytest.approx(planned.camera.rotation, abs=1e-9)
+        angles = measured.camera.pan, measured.camera.tilt
+        assert angles == pytest.approx((planned.camera.pan, planned.camera.tilt), abs=1e-9)
         assert (measured.roll, measured.pitch) == (planned.roll, planned.pitch)
         assert measured.com == pytest.approx(planned.com, abs=1e-4)
 
