@@ -24,12 +24,12 @@ class Session:
     """Stands in for a policy: remembers its observations, and acts with a ramp."""
 
     def __init__(self, *_, **__):
-        self.seen = []
+        self.observed = []
 
     def run(self, names, inputs):
         assert names == ["continuous_actions"]
-        self.seen.append(inputs["obs"][0])
-        n = {85: 23, 103: 29}[len(self.seen[-1])]
+        self.observed.append(inputs["obs"][0])
+        n = {85: 23, 103: 29}[len(self.observed[-1])]
         return [np.linspace(0.0, 1.0, n, dtype=np.float32)[None]]
 
 
@@ -86,13 +86,13 @@ def test_the_policy_acts_at_50_hz_on_the_joints_by_name(onnx_walker, name):
     joints, size = SIZES[name]
     for _ in range(9):
         setpoints = walker.step(sensors_of(names), VelocityCommand(0.1), np.zeros(0), ESTIMATE)
-    seen = walker.session.seen
-    assert [len(observation) for observation in seen] == [size] * 3
+    observed = walker.session.observed
+    assert [len(observation) for observation in observed] == [size] * 3
     action = np.linspace(0.0, 1.0, joints)
     pose = np.array(list(walker.default.values()))
     assert setpoints[0] == 0.1
     assert setpoints[:0:-1] == pytest.approx(pose + walker.scale * action)
-    first, second = seen[:2]
+    first, second = observed[:2]
     assert first[:9] == pytest.approx([0.4, 0.5, 0.6, 0.01, 0.02, 0.03, 0.0, 0.0, -1.0])
     assert first[12 : 12 + joints] == pytest.approx(0.2 - pose)
     assert not first[12 + 2 * joints : 12 + 3 * joints].any()
@@ -104,15 +104,15 @@ def test_the_head_of_t1_follows_the_gaze_out_of_sight_of_the_policy(onnx_walker)
     walker, names = started(onnx_walker.BoosterT1, head=("AAHead_yaw", "Head_pitch"))
     setpoints = walker.step(sensors_of(names), VelocityCommand(), np.array([0.7, -0.2]), ESTIMATE)
     assert setpoints[[-1, -2]] == pytest.approx([0.7, -0.2])
-    assert not walker.session.seen[0][[12, 13, 35, 36]].any()
-    assert walker.session.seen[0][-4:] == pytest.approx([-1.0, -1.0, 0.0, 0.0], abs=1e-6)
+    assert not walker.session.observed[0][[12, 13, 35, 36]].any()
+    assert walker.session.observed[0][-4:] == pytest.approx([-1.0, -1.0, 0.0, 0.0], abs=1e-6)
 
 
 def test_the_correction_of_g1_is_bounded(onnx_walker):
     walker, names = started(onnx_walker.UnitreeG1)
     for _ in range(2000):
         walker.step(sensors_of(names), VelocityCommand(), np.zeros(0), ESTIMATE)
-    assert walker.session.seen[-1][9:12] == pytest.approx([-0.4, -0.4, -0.03 * 10 * 0.5], abs=0.02)
+    assert walker.session.observed[-1][9:12] == pytest.approx([-0.4, -0.4, -0.03 * 10 * 0.5], abs=0.02)
 
 
 def test_what_is_missing_is_named(onnx_walker, monkeypatch):
