@@ -42,7 +42,7 @@ class RobotInfo:
         lower, upper: joint limits (n,) [rad].
         head: indices of the head joints, pan and tilt; empty without a movable head.
         period: of control [s].
-        file: MJCF file of the robot.
+        file: MJCF or URDF file of the robot.
     """
 
     joint_names: tuple[str, ...]

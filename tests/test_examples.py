@@ -112,7 +112,9 @@ def test_the_correction_of_g1_is_bounded(onnx_walker):
     walker, names = started(onnx_walker.UnitreeG1)
     for _ in range(2000):
         walker.step(sensors_of(names), VelocityCommand(), np.zeros(0), ESTIMATE)
-    assert walker.session.observed[-1][9:12] == pytest.approx([-0.4, -0.4, -0.03 * 10 * 0.5], abs=0.02)
+    assert walker.session.observed[-1][9:12] == pytest.approx(
+        [-0.4, -0.4, -0.03 * 10 * 0.5], abs=0.02
+    )
 
 
 def test_what_is_missing_is_named(onnx_walker, monkeypatch):

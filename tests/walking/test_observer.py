@@ -81,6 +81,17 @@ def test_the_zmp_is_in_the_polygon_of_the_feet_on_the_floor(walk):
         assert not measured.command_limits.limited
 
 
+def test_the_covariance_allows_for_feet_that_slip(walk):
+    first, last = (measured.odometry for _, measured, *_ in (walk[0], walk[-1]))
+    engine = walk[-1][2].odometry
+    places = np.array([(m.odometry.x, m.odometry.y) for _, m, *_ in walk])
+    walked = np.hypot(*np.diff(places[::70], axis=0).T).sum()
+    steps = walk[-1][1].step_count
+    variance = last.covariance[0, 0] - engine.covariance[0, 0]
+    assert not first.covariance.any()
+    assert variance == pytest.approx((0.1 * walked) ** 2 / steps, rel=0.3)
+
+
 def test_the_dcm_leads_the_centre_of_mass(walk):
     com = np.array([measured.com for _, measured, *_ in walk[600:]])
     lead = np.array([measured.dcm for _, measured, *_ in walk[600:]]) - com
