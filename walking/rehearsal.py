@@ -80,13 +80,14 @@ def rehearse(robot: RobotModel, parameters: WalkingParameters, command: Velocity
 
 
 def within_joints(
-    robot: RobotModel, parameters: WalkingParameters
+    robot: RobotModel, parameters: WalkingParameters, known: dict[str, float] | None = None
 ) -> tuple[WalkingParameters, list[str]]:
     """Return parameters with swing height, footstep time and speed limits the joints can do.
 
     Args:
         robot: that walks.
         parameters: of its walk.
+        known: speed limits found by a calibration, instead of a search.
 
     Returns:
         The parameters, and notes on what was changed.
@@ -94,6 +95,8 @@ def within_joints(
     notes: list[str] = []
     parameters = _with_lift(robot, parameters, notes)
     limits = parameters.limits
+    if known is not None:
+        return replace(parameters, limits=replace(limits, **known)), notes
     for name, command in _COMMANDS.items():
         top = getattr(limits, name)
         fraction, demand = _bisect(robot, parameters, command, top)

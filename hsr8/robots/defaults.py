@@ -13,7 +13,7 @@ SPEED = {"vx": 0.20, "vx_backward": 0.10, "vy": 0.08, "wz": 0.8}
 """Speed limits of HSR-VIII in navigation [m/s, rad/s]."""
 ACCELERATION = 0.3
 """Acceleration of HSR-VIII in navigation [m/s²]."""
-USED = 0.8  # fraction of the speed envelope for navigation [1]
+USED = 0.9  # fraction of the speed envelope for navigation [1]
 HEAD_USED = 0.8  # fraction of the speed of the head joints [1]
 FIXED_PAN = 0.01  # smallest range of the gaze that its map admits [rad]
 HEAD_RANGE = 0.02  # of pan and tilt that the gaze leaves free at both ends [rad]

@@ -86,8 +86,6 @@ class Calibration(Table):
     """Command that measured."""
     speed: SpeedEnvelope
     """Speed envelope."""
-    acceleration: Positive
-    """Acceleration of navigation commands [m/s²]."""
     turn_delay: Sigma
     """Delay from a commanded turn rate to half of it [s]."""
     lag: Sigma

@@ -102,7 +102,7 @@ def _loaded(file: Path, _changed: int) -> LoadedRobot:
         compiled, roles, normal.parts, posture, effort=description.effort, speed=description.speed
     )
     robot = RobotModel(tree)
-    parameters, walk_notes = _fitted(robot)
+    parameters, walk_notes = _fitted(robot, description)
     height = parameters.pattern.pelvis_height
     if robot.stand(height, parameters.gait.half_stance) > STANDING:
         raise ModelError(
@@ -132,14 +132,18 @@ def _loaded(file: Path, _changed: int) -> LoadedRobot:
     )
 
 
-def _fitted(robot: RobotModel) -> tuple[WalkingParameters, list[str]]:
+def _fitted(
+    robot: RobotModel, description: RobotDescription
+) -> tuple[WalkingParameters, list[str]]:
     """Return the walking parameters of a robot, and notes; for HSR-VIII exactly the defaults."""
     scaled = parameters_for(robot)
     if robot.measures() == HSR_VIII:
         return scaled, []
     fitted = fit(robot, scaled)
     robot.stand(fitted.pattern.pelvis_height, fitted.gait.half_stance)
-    parameters, notes = within_joints(robot, fitted)
+    calibration = description.calibration
+    known = None if calibration is None else calibration.speed.model_dump()
+    parameters, notes = within_joints(robot, fitted, known)
     hips, before = parameters.pattern.pelvis_height, scaled.pattern.pelvis_height
     if hips != before:
         notes.insert(0, f"hips {before:.3f} -> {hips:.3f} m high")

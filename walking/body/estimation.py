@@ -108,6 +108,6 @@ class Estimation:
     def _inputs(self, sensors: BodySensors) -> tuple[Array, Array, Array, Array, Array, Array]:
         """Return the first arguments of `observe` and `estimate`."""
         joints, com = sensors.joint_position, self._robot.com(sensors.joint_position)
-        kinematics_kernel.feet_poses(self._robot.chains, joints, self._feet)
+        kinematics_kernel.feet_poses(*self._robot.feet_chains, joints, self._feet)
         pads = sensors.foot_force
         return self._feet, pads, sensors.orientation, sensors.gyro, com, self._filter

@@ -114,17 +114,21 @@ def chain_joints(chain: Array, angles: Array, axes: Array, origins: Array) -> No
 
 
 @njit(cache=True)
-def feet_poses(legs: Array, joints: Array, feet: Array) -> None:
+def feet_poses(chains: Array, moving: Indices, joints: Array, feet: Array) -> None:
     """Set x, y, z [m] and yaw [rad] of both feet in the base frame.
 
     Args:
-        legs: chains of the left and the right leg (2, 7, 15).
-        joints: joint angles, legs first (n,) [rad].
+        chains: from the base to the left and the right foot (2, k + 1, 15).
+        moving: indices of their joints: those of a leg, and of a waist above it (2, k).
+        joints: joint angles (n,) [rad].
         feet: set (2, 4).
     """
-    axes, origins = np.empty((6, 3)), np.empty((6, 3))
+    k = moving.shape[1]
+    axes, origins, angles = np.empty((k, 3)), np.empty((k, 3)), np.empty(k)
     for side in range(2):
-        R, p = _end(legs[side], joints[6 * side : 6 * side + 6], axes, origins)
+        for joint in range(k):
+            angles[joint] = joints[moving[side, joint]]
+        R, p = _end(chains[side], angles, axes, origins)
         feet[side, 0], feet[side, 1], feet[side, 2] = p
         feet[side, 3] = np.arctan2(R[3], R[0])
 

@@ -32,6 +32,8 @@ class RobotModel:
         mass: total mass [kg].
         legs: left and right leg.
         chains: of the legs, for kernels (2, 7, 15).
+        feet_chains: from the base to the feet, with a waist above the legs, and their joints, see
+            `kinematics_kernel.feet_poses`.
         neck: pan and tilt of the camera.
         sole: rectangle of each sole.
         ready: joint angles of the ready posture, see `stand` (n,) [rad].
@@ -62,6 +64,9 @@ class RobotModel:
                 for part, foot in zip((LEFT_LEG, RIGHT_LEG), tree.feet, strict=True)
             ]
         )
+        paths = [tree.path(foot.joint) for foot in tree.feet]
+        ends = zip(paths, tree.feet, strict=True)
+        self.feet_chains = np.array([tree.chain(p, foot) for p, foot in ends]), np.array(paths)
         self.legs = (
             Leg.of(self.chains[0], tree.posture[LEFT_LEG]),
             Leg.of(self.chains[1], tree.posture[RIGHT_LEG]),

@@ -87,6 +87,14 @@ class RobotTree:
             joint = int(self.parents[joint])
         return joint == one
 
+    def path(self, joint: int) -> list[int]:
+        """Return the joints from the base to a joint, itself included."""
+        path = []
+        while joint >= 0:
+            path.append(joint)
+            joint = int(self.parents[joint])
+        return path[::-1]
+
     def chain(self, joints: list[int], end: Frame) -> Array:
         """Return the chain of some joints to a frame, see `kinematics_kernel` (k + 1, 15).
 
@@ -96,13 +104,8 @@ class RobotTree:
             joints: moving joints, base first.
             end: frame at the end.
         """
-        path = []
-        joint = end.joint
-        while joint >= 0:
-            path.append(joint)
-            joint = int(self.parents[joint])
         rows, rotation, position = [], np.eye(3), np.zeros(3)
-        for joint in reversed(path):
+        for joint in self.path(end.joint):
             position = position + rotation @ self.positions[joint]
             rotation = rotation @ self.rotations[joint]
             if joint in joints:
