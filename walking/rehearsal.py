@@ -20,9 +20,11 @@ from walking.sensing import BodySensors
 
 STEPS = 8  # footsteps of a rehearsal
 MAX_SPEED, MAX_TORQUE = 1.2, 1.0  # of the joints, of their maximum [1]
+IN_PLACE_SPEED = 0.55  # of the joints in stepping in place, so that speed is left for the walk [1]
 PERCENTILE = 99.0  # of speed and torque that counts: short peaks do not matter [%]
 ROOM = 0.02  # of a loaded leg to the joint limits [rad]
 AIR_ROOM = 0.12  # by which a leg in the air may exceed them [rad]
+HELPS = 0.97  # of the joint speed after a lower swing that was worth it [1]
 SHRINK, MIN_LIFT = 0.85, 0.03  # of the swing height; its minimum, of the length of the leg [1]
 STRETCH, MAX_STRETCH = 1.1, 1.6  # of the footstep time
 MIN_FRACTION = 0.05  # of a speed limit
@@ -48,11 +50,15 @@ class Demand:
     @property
     def met(self) -> bool:
         """Whether the joints can do it."""
-        return self.speed <= MAX_SPEED and self.torque <= MAX_TORQUE and self.room >= ROOM
+        return self.within(MAX_SPEED)
+
+    def within(self, speed: float) -> bool:
+        """Whether the joints can do it at some part of their maximum speed [1]."""
+        return self.speed <= speed and self.torque <= MAX_TORQUE and self.room >= ROOM
 
     def text(self) -> str:
         """Return the demand in words."""
-        if self.speed > MAX_SPEED:
+        if self.speed > IN_PLACE_SPEED and self.torque <= MAX_TORQUE and self.room >= ROOM:
             return f"{self.speed:.0%} of the speed of {self.joint}"
         if self.torque > MAX_TORQUE:
             return f"{self.torque:.0%} of the torque of {self.joint}"
@@ -121,10 +127,13 @@ def _with_lift(
     slow = VelocityCommand(0.0, 0.0, MIN_FRACTION * parameters.limits.wz)
     lowest = MIN_LIFT * robot.legs[0].length
     fitted, demand = parameters, rehearse(robot, parameters, slow)
-    while not demand.met and SHRINK * fitted.gait.swing_height > lowest:
+    while not demand.within(IN_PLACE_SPEED) and SHRINK * fitted.gait.swing_height > lowest:
         gait = replace(fitted.gait, swing_height=SHRINK * fitted.gait.swing_height)
-        fitted = replace(fitted, gait=gait)
-        demand = rehearse(robot, fitted, slow)
+        lower = replace(fitted, gait=gait)
+        tried = rehearse(robot, lower, slow)
+        if tried.speed > HELPS * demand.speed and tried.room <= demand.room:
+            break  # a joint binds that the lift does not move
+        fitted, demand = lower, tried
     while demand.speed > MAX_SPEED and fitted.gait.footstep_time < (
         MAX_STRETCH * parameters.gait.footstep_time
     ):

@@ -24,6 +24,8 @@ from walking.parameters import (
 MAX_GYRO_GAIN = 0.12  # ankle setpoint per angular velocity; above, soft ankles oscillate [s]
 PLAN_FRACTION = 0.6  # maximum margin of the planned ZMP, of the sole's half width [1]
 SOLE_FRACTION = 1.0 / 3.0  # maximum margin of the ZMP moved by the ankles, likewise [1]
+MAX_SLOWER = 1.4  # footstep time, of that by similarity [1]
+MIN_LAGS = 9.0  # duration of a footstep, of the lag of the slowest leg servo [1]
 MAX_STANCE = 0.2  # half stance, of the length of the leg [1]
 MAX_LOAD = 0.7  # torque of a pitching joint on one leg, of its maximum [1]
 JOINT_ROOM = 0.05  # of a walking leg to its joint limits [rad]
@@ -37,6 +39,7 @@ def fit(robot: RobotModel, scaled: WalkingParameters) -> WalkingParameters:
     gait = with_clear_stance(robot, scaled.gait)
     pattern = with_plan_margin(robot, scaled.pattern)
     pattern = replace(pattern, pelvis_height=hip_height(robot, gait, pattern.pelvis_height))
+    gait = with_servo_time(robot, gait)
     return replace(
         scaled, gait=gait, pattern=pattern, stabilizer=with_gains(robot, scaled.stabilizer)
     )
@@ -68,6 +71,17 @@ def with_clear_stance(robot: RobotModel, gait: GaitParameters) -> GaitParameters
     clear = robot.sole.half_width + gait.foot_clearance
     most = max(clear, MAX_STANCE * robot.legs[0].length)
     return replace(gait, half_stance=min(most, max(gait.half_stance, clear)))
+
+
+def with_servo_time(robot: RobotModel, gait: GaitParameters) -> GaitParameters:
+    """Return footsteps that are long against the lag of the leg servos.
+
+    A swing that ends before slow servos have followed lands short, and the walk is inexact.
+    """
+    pitching = _pitching(robot)
+    lag = float((robot.damping[pitching] / robot.stiffness[pitching]).max())
+    most = MAX_SLOWER * gait.footstep_time
+    return replace(gait, footstep_time=max(gait.footstep_time, min(MIN_LAGS * lag, most)))
 
 
 def hip_height(robot: RobotModel, gait: GaitParameters, height: float) -> float:

@@ -145,12 +145,14 @@ class _Draft:
     def for_robot(self, robot: RobotDefaults) -> Table:
         """Return the tables with built-in values and defaults scaled to a robot."""
         data: Table = {}
-        for layer in self.layers:
+        built_in = [layer for layer in self.layers if layer.built_in]
+        for layer in built_in:
+            data = _merged(data, with_constants(layer.table))
+        data = scaled(Scenario, data, robot.scale)
+        for layer in self.layers[len(built_in) :]:
             table = layer.table
             if layer.override is not None:
                 table = _parse_override(layer.override[0], data, layer.override[1])
-            elif layer.built_in:
-                table = scaled(Scenario, with_constants(table), robot.scale)
             data = _merged(data, with_constants(table))
         data = under(data, robot.table)
         data = under(data, followers(data))
