@@ -7,7 +7,7 @@ from typing import Any
 from rich.console import Console
 
 from hsr8.cli import tables
-from hsr8.cli.command_line import command_words, run_options, settings
+from hsr8.cli.command_line import command_words, option_tables, run_options, settings
 from hsr8.cli.options import Check
 from hsr8.cli.output_file import require_file_name, writing
 from hsr8.plugin_file import require_plugins
@@ -29,7 +29,9 @@ def main(options: Check) -> int:
         ScenarioError: the scenario is invalid or its world cannot be drawn.
         UsageError: a plugin cannot be made, or the image cannot be written.
     """
-    scenario = load_scenario(options.scenario, settings(options), options.seed)
+    scenario = load_scenario(
+        options.scenario, settings(options), options.seed, options=option_tables(options)
+    )
     require_plugins(scenario.plugin)
     if options.image is not None:
         require_file_name("--image", options.image, (".png",))

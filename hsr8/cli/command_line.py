@@ -40,19 +40,26 @@ def command_words(options: Run | Sweep) -> tuple[str, ...]:
 
 def run_options(options: Check | Sweep, seed: int | None, more: Sequence[str] = ()) -> Run:
     """Return the options of ``hsr8 run`` for the same scenario and further settings."""
-    run = Run(options.scenario, seed, set=(*options.set, *((setting,) for setting in more)))
+    run = Run(
+        options.scenario,
+        seed,
+        robot=options.robot,
+        set=(*options.set, *((setting,) for setting in more)),
+    )
     if isinstance(options, Sweep):
         run = replace(run, duration=options.duration, body=options.body, camera=options.camera)
     return run
 
 
-def option_tables(options: Run | Sweep) -> dict[str, dict[str, Any]]:
+def option_tables(options: Run | Check | Sweep) -> dict[str, dict[str, Any]]:
     """Return the settings that each option stands for, by option; ``--set`` overrides them."""
-    tables: dict[str, dict[str, Any]] = {
-        "--duration": {"duration": options.duration},
-        "--body": {"robot": {"body": options.body}},
-        "--camera": {"camera": {"source": options.camera}},
-    }
+    tables: dict[str, dict[str, Any]] = {"--robot": {"robot": {"model": options.robot}}}
+    if not isinstance(options, Check):
+        tables |= {
+            "--duration": {"duration": options.duration},
+            "--body": {"robot": {"body": options.body}},
+            "--camera": {"camera": {"source": options.camera}},
+        }
     return {flag: table for flag, table in tables.items() if getattr(options, flag[2:]) is not None}
 
 

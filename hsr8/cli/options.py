@@ -76,6 +76,8 @@ class Run:
     """Parent folder of run folders."""
     duration: Seconds = None
     """Maximum simulated time [s]; default: that of the scenario."""
+    robot: Text = None
+    """Robot: a shipped name or the file of a description; default: that of the scenario."""
     body: Body = None
     """Full physics, or feet that land exactly as planned (faster)."""
     camera: Camera = None
@@ -111,6 +113,8 @@ class Sweep:
     """Also vary a setting, one folder per value; repeated: all combinations."""
     duration: Seconds = None
     """Maximum simulated time [s]; default: that of the scenario."""
+    robot: Text = None
+    """Robot: a shipped name or the file of a description; default: that of the scenario."""
     body: Body = None
     """Full physics, or feet that land exactly as planned (faster)."""
     camera: Camera = None
@@ -158,6 +162,8 @@ class Check:
     scenario: Scenario
     seed: Integer = None
     """Seed of the world; default: that of the scenario."""
+    robot: Text = None
+    """Robot: a shipped name or the file of a description; default: that of the scenario."""
     set: Settings = ()
     image: File = None
     """Draw the world and the path of the feasibility certificate as a PNG."""

@@ -37,6 +37,8 @@ LINES = [
     ("run quick --duration -1e3", "--duration: duration: must be greater than 0, got -1000.0"),
     ("run quick --duration nan", "duration"),
     ("run quick --body kinemtic", "('full', 'kinematic')"),
+    ("run quick --robot nobody", "--robot: robot.model: unknown robot 'nobody'"),
+    ("check quick --robot no.toml", "robot file 'no.toml' does not exist"),
     ("run quick --camera egl", "--camera egl: renamed to --camera rendered"),
     ("run quick --camera=all-round", "renamed to --camera omnidirectional"),
     ("run quick --view", "Missing value for argument '--view'"),
