@@ -5,7 +5,7 @@ from math import inf, pi
 from typing import Any
 
 from hsr8.robots.loaded import LoadedRobot, load_robot
-from hsr8.robots.scale import RobotDefaults, RobotScale
+from hsr8.robots.scale import DEFAULT_ROBOT, RobotDefaults, RobotScale
 from walking.parameters import WalkingParameters
 from walking.robot_measures import HSR_VIII
 
@@ -25,6 +25,8 @@ def defaults_of(model: str) -> RobotDefaults:
     Raises:
         ModelError: the robot cannot be loaded.
     """
+    if model == DEFAULT_ROBOT:
+        return RobotDefaults()
     robot = load_robot(model)
     speed = _speed(robot)
     measures = robot.model.measures()

@@ -76,9 +76,9 @@ class _Checks:
         left, right = roles.legs
         index = self._skeleton.joints.index
         self._legs = ([index(name) for name in left], [index(name) for name in right])
-        ends = self._skeleton.anchors[[leg[-1] for leg in self._legs]]
-        self._hips_above_feet = self._skeleton.anchors[[leg[0] for leg in self._legs]] - ends
-        self._across = ends[0] - ends[1]
+        hips, feet = ([leg[end] for leg in self._legs] for end in (0, -1))
+        self._hips_above_feet = self._skeleton.anchors[hips] - self._skeleton.anchors[feet]
+        self._across = np.subtract(*self._skeleton.coms[feet])
 
     def _posed(self, more: dict[str, float]) -> Skeleton:
         base = self._model.body(self._roles.base).id

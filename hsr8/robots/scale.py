@@ -11,6 +11,9 @@ import re
 from dataclasses import dataclass, field
 from typing import Any
 
+DEFAULT_ROBOT = "hsr8"
+"""Robot that all defaults were tuned for."""
+
 _POWER = re.compile(r"(m|s|rad|N)(?:\^(\d+(?:\.\d+)?)|(²))?")
 # Exponents of length, speed, turn and weight. A force is a fraction of the weight per time of a
 # falling pendulum, √(length / g), so that N s is an impulse with an equal effect on the balance.

@@ -5,6 +5,7 @@ from dataclasses import asdict, is_dataclass
 from functools import cache
 from typing import Any, get_type_hints
 
+from hsr8.robots.scale import DEFAULT_ROBOT
 from hsr8.scenario.presets import PROFILES, followers, under
 from hsr8.scenario.problem import Problem
 from hsr8.scenario.public_keys import LIBRARIES, PUBLIC
@@ -12,7 +13,6 @@ from hsr8.scenario.schema import Scenario
 from hsr8.suggestion import suggestion
 
 CONSTANTS = "constants"
-DEFAULT = "hsr8"  # robot that scenarios are written for
 Table = dict[str, Any]
 
 
@@ -51,17 +51,29 @@ def with_constants(data: Table) -> Table:
     return merged
 
 
+def placed(table: Table) -> Table:
+    """Return tables of the libraries with their constants moved to ``[constants]``."""
+    values = _flat({name: table[name] for name in LIBRARIES if name in table})
+    settings = _nested({key: value for key, value in values.items() if key in PUBLIC})
+    constants = _nested({key: value for key, value in values.items() if key not in PUBLIC})
+    return {**table, **settings, CONSTANTS: constants}
+
+
 def separated(data: Table) -> Table:
-    """Return a complete scenario as its settings and the constants that are not at the default."""
+    """Return a complete scenario as its settings and the constants that are not at the default.
+
+    For another robot than HSR-VIII, whose defaults are scaled, all constants are returned.
+    """
     libraries, settings, constants = {name: data[name] for name in LIBRARIES}, dict(data), {}
     defaults = {name: asdict(Scenario.model_fields[name].default) for name in LIBRARIES}
     defaults["navigation"] = asdict(PROFILES[data["navigation"]["profile"]]())
     values, usual = _flat(libraries), _flat(defaults) | _flat(followers(data))
     settings |= _nested({key: value for key, value in values.items() if key in PUBLIC})
-    # The defaults of another robot are scaled: its scenario has all constants.
-    complete = data["robot"]["model"] != DEFAULT
+    scales = data["robot"]["model"] != DEFAULT_ROBOT
     constants = {
-        k: v for k, v in values.items() if k not in PUBLIC and (complete or v != _plain(usual[k]))
+        key: value
+        for key, value in values.items()
+        if key not in PUBLIC and (scales or value != _plain(usual[key]))
     }
     return {**settings, CONSTANTS: _nested(constants)} if constants else settings
 

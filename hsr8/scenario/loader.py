@@ -4,25 +4,25 @@ import json
 import re
 import tomllib
 from collections.abc import Mapping, Sequence
-from dataclasses import asdict, dataclass, field
+from dataclasses import dataclass, field
 from pathlib import Path as FilePath
 from typing import Any
 
 import tomlkit
 from pydantic import ValidationError
 
-from hsr8.errors import ScenarioError
-from hsr8.robots.scale import RobotDefaults
+from hsr8.errors import ModelError, ScenarioError
+from hsr8.robots.scale import DEFAULT_ROBOT, RobotDefaults, RobotScale
+from hsr8.scenario.camera import LENSES
 from hsr8.scenario.checks import check
-from hsr8.scenario.constants import CONSTANTS, DEFAULT, misplaced, separated, with_constants
+from hsr8.scenario.constants import CONSTANTS, misplaced, placed, separated, with_constants
 from hsr8.scenario.key_lines import Path, depth, line_of
-from hsr8.scenario.presets import PROFILES, expand_presets, followers, under
+from hsr8.scenario.presets import expand_presets, followers, under
 from hsr8.scenario.problem import Problem, dotted, problems_of
 from hsr8.scenario.renamed import renamed
-from hsr8.scenario.scaling import completed, scaled
+from hsr8.scenario.scaling import is_complete, scaled, with_scaled_defaults
 from hsr8.scenario.schema import Scenario
 from hsr8.suggestion import suggestion
-from navigation.parameters.navigation import NavigationParameters
 
 BUILT_IN = FilePath(__file__).resolve().parents[1] / "scenarios"
 KINDS = ("kind", "motion")  # keys that determine the other keys of their table
@@ -44,6 +44,9 @@ def load_scenario(
 ) -> Scenario:
     """Read a scenario.
 
+    Built-in scenarios and all defaults are scaled to the robot. Values in other files and from
+    options are literal.
+
     Args:
         name_or_path: name of a built-in scenario, or a TOML file.
         overrides: ``key=value`` with a dotted key and a TOML value, where text needs no quotes;
@@ -57,15 +60,10 @@ def load_scenario(
         ScenarioError: the file or an override is wrong; the message lists every mistake with its
             line and the allowed values.
     """
-    draft = _read(_find(name_or_path), ())
-    for option, table in (options or {}).items():
-        draft.add(_Layer(dict(table), option))
-    for flag, words in (("--set", as_words(overrides)), ("--vary", varied)):
-        for word in words:
-            draft.override(word, flag)
-    if seed is not None:
-        draft.add(_Layer({"seed": seed}, "--seed"))
-    return draft.finish(name_or_path)
+    words = [("--set", word) for word in as_words(overrides)]
+    words += [("--vary", word) for word in varied]
+    layers = _read(_find(name_or_path), ())
+    return _Sources(layers, options or {}, words, seed).scenario(name_or_path)
 
 
 def as_words(overrides: Sequence[str] | Mapping[str, Any]) -> tuple[str, ...]:
@@ -97,13 +95,14 @@ def loads(text: str, name: str = "scenario") -> Scenario:
     Raises:
         ScenarioError: as `load_scenario`.
     """
-    return _layered(text, name, name, BUILT_IN, ()).finish(name)
+    return _Sources(_layered(text, name, name, BUILT_IN, ())).scenario(name)
 
 
 def dump(scenario: Scenario) -> str:
     """Return a scenario as TOML text; `loads` of it gives an equal scenario.
 
-    All settings are written, and the constants that differ from their defaults.
+    All settings are written, and the constants that differ from their defaults; those of another
+    robot than HSR-VIII all are, so that nothing is left to scale.
     """
     data = json.loads(scenario.model_dump_json(exclude_none=True))
     return tomlkit.dumps(separated(data))
@@ -117,7 +116,6 @@ class _Layer:
     source: str
     text: str | None = None  # of a file
     built_in: bool = False
-    override: tuple[str, str] | None = None  # ``key=value`` and its option
 
     def location(self, path: Path) -> str:
         """File and line, or option, that gives the key at `path`."""
@@ -126,43 +124,85 @@ class _Layer:
 
 
 @dataclass
-class _Draft:
-    """Merged tables, and the layers they consist of."""
+class _Sources:
+    """Files, tables of options, and overrides with their flags, in ascending precedence."""
 
+    layers: list[_Layer]
+    options: Mapping[str, Mapping[str, Any]] = field(default_factory=dict)
+    words: Sequence[tuple[str, str]] = ()
+    seed: int | None = None
+
+    def scenario(self, name: str) -> Scenario:
+        """Return the scenario for its robot.
+
+        Raises:
+            ScenarioError: it is wrong.
+        """
+        try:
+            draft = self._draft(RobotDefaults())
+            if draft.robot != DEFAULT_ROBOT and not draft.misnamed():
+                draft = self._for_robot(draft, name)
+            return draft.finish(name)
+        except RecursionError:
+            raise ScenarioError(f"{name}: tables or lists are nested too deeply") from None
+
+    def _for_robot(self, draft: "_Draft", name: str) -> "_Draft":
+        """Tables for the robot of a draft; a complete draft needs nothing from its robot."""
+        if draft.complete and not any(layer.built_in for layer in self.layers):
+            return draft
+        try:
+            defaults = robot_defaults(draft.robot)
+        except ModelError as error:
+            raise draft.error(name, [Problem(("robot", "model"), str(error))]) from error
+        return self._draft(defaults)
+
+    def _draft(self, defaults: RobotDefaults) -> "_Draft":
+        """All tables for a robot."""
+        draft = _Draft(defaults.scale)
+        for layer in self.layers:
+            if layer.built_in:  # extends built-in scenarios only
+                draft.add(layer)
+        draft.data = _merged(placed(defaults.table), _for_scale(draft.data, defaults.scale))
+        for layer in self.layers:
+            if not layer.built_in:
+                draft.add(layer)
+        for option, options in self.options.items():
+            draft.add(_Layer(dict(options), option))
+        for flag, word in self.words:
+            draft.add(_Layer(_parse_override(word, draft.data, flag), f"{flag} {word}"))
+        if self.seed is not None:
+            draft.add(_Layer({"seed": self.seed}, "--seed"))
+        return draft
+
+
+@dataclass
+class _Draft:
+    """Merged tables, the layers they consist of, and the scale of all defaults."""
+
+    scale: RobotScale
     data: Table = field(default_factory=dict)
     layers: list[_Layer] = field(default_factory=list)
+
+    @property
+    def robot(self) -> str:
+        """Name or file of the robot; that of HSR-VIII while the value is wrong."""
+        robot = self.data.get("robot")
+        model = robot.get("model", DEFAULT_ROBOT) if isinstance(robot, dict) else DEFAULT_ROBOT
+        return model if isinstance(model, str) else DEFAULT_ROBOT
+
+    @property
+    def complete(self) -> bool:
+        """Whether all quantities are given."""
+        return is_complete(self._tables())
+
+    def misnamed(self) -> list[Problem]:
+        """Return the renamed and misplaced keys."""
+        return list(renamed(self.data)) or list(misplaced(self.data))
 
     def add(self, layer: _Layer) -> None:
         """Merge a layer over the present tables."""
         self.data = _merged(self.data, layer.table)
         self.layers.append(layer)
-
-    def override(self, word: str, flag: str) -> None:
-        """Merge ``key=value`` of an option over the present tables."""
-        table = _parse_override(word, self.data, flag)
-        self.add(_Layer(table, f"{flag} {word}", override=(word, flag)))
-
-    def for_robot(self, robot: RobotDefaults) -> Table:
-        """Return the tables with built-in values and defaults scaled to a robot."""
-        data: Table = {}
-        built_in = [layer for layer in self.layers if layer.built_in]
-        for layer in built_in:
-            data = _merged(data, with_constants(layer.table))
-        data = scaled(Scenario, data, robot.scale)
-        for layer in self.layers[len(built_in) :]:
-            table = layer.table
-            if layer.override is not None:
-                table = _parse_override(layer.override[0], data, layer.override[1])
-            data = _merged(data, with_constants(table))
-        data = under(data, robot.table)
-        data = under(data, followers(data))
-        navigation = data["navigation"]
-        if isinstance(navigation, dict):
-            profile = PROFILES.get(navigation.get("profile", "extended"), PROFILES["extended"])
-            usual = scaled(NavigationParameters, asdict(profile()), robot.scale)
-            data["navigation"] = under(navigation, usual)
-        complete: Table = completed(Scenario, data, robot.scale)
-        return complete
 
     def finish(self, name: str) -> Scenario:
         """Return the scenario after all checks.
@@ -170,23 +210,17 @@ class _Draft:
         Raises:
             ScenarioError: it is wrong.
         """
-        try:
-            scenario, problems = self._validated()
-        except RecursionError:
-            raise ScenarioError(f"{name}: tables or lists are nested too deeply") from None
+        scenario, problems = self._validated()
         if problems or scenario is None:
-            raise self._error(name, problems)
+            raise self.error(name, problems)
         return scenario
 
     def _validated(self) -> tuple[Scenario | None, list[Problem]]:
-        problems = list(renamed(self.data)) or list(misplaced(self.data))
-        if problems:
+        if problems := self.misnamed():
             return None, problems
-        robot = robot_defaults(self.data)
-        if robot is None:
-            data = with_constants(under(self.data, followers(self.data)))
-        else:
-            data = self.for_robot(robot)
+        data = self._tables()
+        if self.scale != RobotScale():
+            data = with_scaled_defaults(data, self.scale.factor)
         data = expand_presets(data)
         try:
             scenario = Scenario.model_validate_json(json.dumps(data, default=str))
@@ -194,7 +228,12 @@ class _Draft:
             return None, problems_of(error, data)
         return scenario, check(scenario)
 
-    def _error(self, name: str, problems: Sequence[Problem]) -> ScenarioError:
+    def _tables(self) -> Table:
+        """Tables with the constants in their sections."""
+        return with_constants(under(self.data, followers(self.data)))
+
+    def error(self, name: str, problems: Sequence[Problem]) -> ScenarioError:
+        """Return the error that lists problems with their places."""
         count = "1 mistake" if len(problems) == 1 else f"{len(problems)} mistakes"
         lines = [f"{count} in scenario {name!r}"]
         for problem in problems:
@@ -214,11 +253,18 @@ class _Draft:
         return f"{self.layers[k].location(path)}: "
 
 
+def _for_scale(table: Table, scale: RobotScale) -> Table:
+    """Tables for HSR-VIII at another scale."""
+    return table if scale == RobotScale() else scaled(table, scale.factor)
+
+
 def _merged(base: Table, over: Table) -> Table:
     """`over` put over `base`, table by table."""
     # Another kind of mission, fault or mover has other keys: the old ones are dropped.
     changed = any(key in over and over[key] != base.get(key, over[key]) for key in KINDS)
     merged = {} if changed else dict(base)
+    if over.get("lens") in tuple(LENSES):
+        merged.pop("vertical_fov_deg", None)  # that of the other lens
     for key, value in over.items():
         old = merged.get(key)
         if isinstance(value, dict) and isinstance(old, dict):
@@ -248,7 +294,7 @@ def _files(folder: FilePath) -> list[str]:
     return sorted(file.name for file in folder.glob("*.toml"))
 
 
-def _read(file: FilePath, above: tuple[FilePath, ...]) -> _Draft:
+def _read(file: FilePath, above: tuple[FilePath, ...]) -> list[_Layer]:
     try:
         text = file.read_bytes().decode("utf-8")
     except FileNotFoundError:
@@ -261,20 +307,19 @@ def _read(file: FilePath, above: tuple[FilePath, ...]) -> _Draft:
 
 def _layered(
     text: str, source: str, stem: str, folder: FilePath, files: tuple[FilePath, ...]
-) -> _Draft:
-    """The scenario that `text` extends, with `text` over it."""
+) -> list[_Layer]:
+    """The layers of the scenario that `text` extends, and `text`."""
     try:
         data = tomllib.loads(text)
     except (ValueError, RecursionError) as error:
         raise ScenarioError(f"{source}: invalid TOML: {error}") from None
     data.setdefault("name", _name(stem))
-    draft = _Draft()
+    layers: list[_Layer] = []
     if "extends" in data:
         key = f"{source}:{line_of(text, ('extends',))}: extends"
-        draft = _read(_parent(data.pop("extends"), key, folder, files), files)
+        layers = _read(_parent(data.pop("extends"), key, folder, files), files)
     built_in = bool(files) and files[-1].parent == BUILT_IN
-    draft.add(_Layer(data, source, text, built_in))
-    return draft
+    return [*layers, _Layer(data, source, text, built_in)]
 
 
 def _name(stem: str) -> str:
@@ -344,16 +389,12 @@ def _at(data: Any, parts: Sequence[str]) -> Any:
     return data
 
 
-def robot_defaults(data: Table) -> RobotDefaults | None:
-    """Return the defaults of the robot of a scenario; None for HSR-VIII and for malformed tables.
+def robot_defaults(model: str) -> RobotDefaults:
+    """Return the defaults of a robot.
 
     Raises:
         ModelError: the robot cannot be loaded.
     """
-    robot = data.get("robot")
-    model = robot.get("model", DEFAULT) if isinstance(robot, dict) else DEFAULT
-    if model == DEFAULT or not isinstance(model, str):
-        return None
     from hsr8.robots.defaults import defaults_of  # noqa: PLC0415 (MuJoCo loads slowly)
 
     return defaults_of(model)

@@ -54,7 +54,7 @@ BASIC = _dotted(
         "world": "size n_static n_moving radius speed_ratio",
         "mission": "kind via_points points goal_heading_deg",
         "command": "vx vy wz",
-        "robot": "body",
+        "robot": "model body",
         "robot.start": "position heading_deg",
         "robot.speed": "vx wz",
         "camera": "source period_ms latency_ms",

@@ -31,8 +31,8 @@ class SpeedEnvelope(Section):
 class Robot(Section):
     """Body, initial pose and speed limits."""
 
-    model: Annotated[str, Len(1, 500)] = "hsr8"
-    """Robot: name of a shipped description, or the file of a description."""
+    model: Annotated[str, Len(1, 1000)] = "hsr8"
+    """Robot: a shipped name or the file of a description."""
     body: Literal["full", "kinematic"] = "full"
     """full: MuJoCo physics; kinematic: no dynamics, every footstep lands as planned."""
     radius: Radius = 0.12

@@ -1,138 +1,156 @@
-"""Scaling of scenarios, which are written for HSR-VIII, to another robot.
+"""Scaling of a scenario's tables to another robot, by the units of the keys.
 
-The units in the annotations of the keys say how they scale. Values of built-in scenarios and
-defaults are scaled; values of a user are literal.
+The built-in scenarios and all defaults are those for HSR-VIII. A user's values are literal.
 """
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import MISSING, fields, is_dataclass
-from typing import Annotated, Any, Literal, get_args, get_origin, get_type_hints
+from functools import cache
+from types import NoneType, UnionType
+from typing import Annotated, Any, Literal, Union, get_args, get_origin, get_type_hints
 
-from pydantic import BaseModel
 from pydantic_core import PydanticUndefined
 
-from hsr8.robots.scale import RobotScale
+from hsr8.scenario.presets import PROFILES
+from hsr8.scenario.schema import Navigation, Scenario
+from hsr8.scenario.section import Section
 
+Factor = Callable[[str], float]
+"""Ratio of the quantities in some unit, see `hsr8.robots.scale.RobotScale.factor`."""
 Table = dict[str, Any]
+TAGS = ("kind", "motion")  # keys that choose one of several sections
 
 
-def scaled(section: Any, value: Any, scale: RobotScale) -> Any:
-    """Return a value with all quantities in it scaled.
-
-    Args:
-        section: annotation of the value: a section, a union or list of sections, or a quantity.
-        value: tables, lists and numbers as in a file; malformed values remain.
-        scale: of the robot.
-    """
-    annotation, unit = _peeled(section)
-    if unit is not None:
-        return _times(value, scale.factor(unit))
-    if isinstance(value, Mapping):
-        kinds = _keys(_chosen(annotation, value))
-        return {k: scaled(kinds[k], v, scale) if k in kinds else v for k, v in value.items()}
-    if isinstance(value, list):
-        return [scaled(part, v, scale) for part, v in zip(_parts(annotation, value), value)]  # noqa: B905
-    return value
-
-
-def completed(section: Any, value: Any, scale: RobotScale) -> Any:
-    """Return tables with the scaled defaults of all quantities that they lack; see `scaled`."""
-    annotation, unit = _peeled(section)
-    if isinstance(value, list) and unit is None:
-        return [completed(part, v, scale) for part, v in zip(_parts(annotation, value), value)]  # noqa: B905
-    if not isinstance(value, Mapping):
-        return value
-    chosen = _chosen(annotation, value)
-    table = dict(value)
-    for key, kind in _keys(chosen).items():
-        inner, _ = _peeled(kind)
-        if key in table:
-            table[key] = completed(kind, table[key], scale)
-            continue
-        default = _default(chosen, key)
-        if default is None:
-            continue
-        if _is_section(inner):
-            table[key] = completed(kind, {}, scale)
-        elif (value_scaled := scaled(kind, _plain(default), scale)) != _plain(default):
-            table[key] = value_scaled
+def scaled(tables: Mapping[str, Any], factor: Factor) -> Table:
+    """Return the tables of a scenario for another robot."""
+    table: Table = _scaled(dict(tables), Scenario, factor)
+    if "constants" in table:
+        table["constants"] = _scaled(table["constants"], Scenario, factor)
     return table
 
 
-def _peeled(annotation: Any) -> tuple[Any, str | None]:
-    """Return an annotation without metadata and None, and its unit."""
+def with_scaled_defaults(tables: Mapping[str, Any], factor: Factor) -> Table:
+    """Return the tables of a scenario with the scaled default of every missing quantity.
+
+    Constants are expected in the tables of their libraries.
+    """
+    table = dict(tables)
+    navigation = table.get("navigation", {})
+    if isinstance(navigation, dict):
+        profile = PROFILES.get(str(navigation.get("profile")), PROFILES["extended"])
+        table["navigation"] = _completed(navigation, Navigation, factor, profile())
+    return _completed(table, Scenario, factor)
+
+
+def is_complete(tables: Mapping[str, Any]) -> bool:
+    """Return whether no default of a quantity is used."""
+    return with_scaled_defaults(tables, lambda _: 2.0) == tables
+
+
+def _scaled(value: Any, annotation: Any, factor: Factor) -> Any:
+    kind, unit = _chosen(annotation, value)
+    if unit is not None:
+        return _product(value, factor(unit))
+    if isinstance(value, dict):
+        hints = _hints(kind)
+        return {k: _scaled(v, hints[k], factor) if k in hints else v for k, v in value.items()}
+    if isinstance(value, list | tuple):
+        return [_scaled(v, hint, factor) for v, hint in _entries(value, kind)]
+    return value
+
+
+def _completed(table: Table, kind: Any, factor: Factor, defaults: Any = None) -> Table:
+    """`table` of some kind with the scaled values of `defaults`, or else of the kind."""
+    full = dict(table)
+    for key, hint in _hints(kind).items():
+        default = getattr(defaults, key, None) if defaults is not None else _default(kind, key)
+        if key in table:
+            full[key] = _with_defaults_inside(table[key], hint, factor, default)
+        elif isinstance(default, Section) or is_dataclass(default):
+            if inner := _completed({}, type(default), factor, default):
+                full[key] = inner
+        elif default is not None and _has_unit(hint):
+            full[key] = _scaled(_plain(default), hint, factor)
+    return full
+
+
+def _with_defaults_inside(value: Any, annotation: Any, factor: Factor, default: Any) -> Any:
+    """A given value, with the scaled defaults of the tables in it."""
+    kind, _ = _chosen(annotation, value)
+    if isinstance(value, dict) and _hints(kind):
+        return _completed(value, kind, factor, default)
+    if isinstance(value, list | tuple):
+        return [_with_defaults_inside(v, hint, factor, None) for v, hint in _entries(value, kind)]
+    return value
+
+
+def _chosen(annotation: Any, value: Any) -> tuple[Any, str | None]:
+    """Type of a value without its annotations and alternatives, and its unit."""
     unit = None
     while True:
         if get_origin(annotation) is Annotated:
-            annotation, *metadata = get_args(annotation)
-            unit = next((part for part in metadata if isinstance(part, str)), unit)
-        elif type(None) in get_args(annotation) and len(get_args(annotation)) == 2:
-            annotation = next(part for part in get_args(annotation) if part is not type(None))
+            annotation, *marks = get_args(annotation)
+            unit = next((mark for mark in marks if isinstance(mark, str)), unit)
+        elif get_origin(annotation) in (Union, UnionType):
+            kinds = [kind for kind in get_args(annotation) if kind is not NoneType]
+            annotation = kinds[0] if len(kinds) == 1 else _tagged(kinds, value)
         else:
             return annotation, unit
 
 
-def _is_section(annotation: Any) -> bool:
-    if not isinstance(annotation, type):
-        return False
-    return issubclass(annotation, BaseModel) or is_dataclass(annotation)
+def _has_unit(annotation: Any) -> bool:
+    """Whether values of a type, or entries of such lists, have a unit."""
+    marked = any(isinstance(mark, str) for mark in getattr(annotation, "__metadata__", ()))
+    return marked or any(map(_has_unit, get_args(annotation)))
 
 
-def _chosen(annotation: Any, value: Mapping[str, Any]) -> Any:
-    """Return the section of a union that the table's kind chooses; the annotation otherwise."""
-    for part in get_args(annotation):
-        section, _ = _peeled(part)
-        if not _is_section(section):
-            found = _chosen(section, value)
-            if _is_section(found):
-                return found
-            continue
-        for key, kind in _hints(section).items():
-            choices = get_args(kind) if get_origin(kind) is Literal else ()
-            if key in ("kind", "motion") and value.get(key) in choices:
-                return section
-    return annotation
+def _tagged(kinds: list[Any], value: Any) -> Any:
+    """Section that a table chooses by its tag; None for an unknown one."""
+    tag = next((tag for tag in TAGS if isinstance(value, dict) and tag in value), None)
+    for kind in kinds:
+        hint = _hints(kind).get(tag or "")
+        if get_origin(hint) is Literal and value[tag] in get_args(hint):
+            return kind
+    return None
 
 
-def _parts(annotation: Any, value: list[Any]) -> Iterator[Any]:
-    """Yield the annotation of every element of a list."""
-    parts = get_args(annotation)
-    if len(parts) == 2 and parts[1] is Ellipsis:
-        parts = parts[:1] * len(value)
-    yield from parts
-    yield from [Any] * (len(value) - len(parts))
+def _entries(values: list[Any] | tuple[Any, ...], kind: Any) -> list[tuple[Any, Any]]:
+    """Entries of a list, each with its annotation."""
+    hints = get_args(kind) if get_origin(kind) is tuple else ()
+    if len(hints) == 2 and hints[1] is Ellipsis:
+        return [(value, hints[0]) for value in values]
+    return [(v, hints[k] if k < len(hints) else None) for k, v in enumerate(values)]
 
 
-def _keys(section: Any) -> dict[str, Any]:
-    return _hints(section) if _is_section(section) else {}
+@cache
+def _hints(kind: Any) -> dict[str, Any]:
+    """Annotations of a section or a parameter class by key; empty for other types."""
+    if isinstance(kind, type) and (issubclass(kind, Section) or is_dataclass(kind)):
+        return get_type_hints(kind, include_extras=True)
+    return {}
 
 
-def _hints(section: Any) -> dict[str, Any]:
-    hints = get_type_hints(section, include_extras=True)
-    names = section.model_fields if issubclass(section, BaseModel) else section.__dataclass_fields__
-    return {name: hints[name] for name in names}
-
-
-def _default(section: Any, key: str) -> Any:
-    """Return the default of a key; None without one."""
-    if issubclass(section, BaseModel):
-        default = section.model_fields[key].get_default(call_default_factory=True)
+def _default(kind: Any, key: str) -> Any:
+    """Default of a key; None without one."""
+    if issubclass(kind, Section):
+        model = kind.model_fields.get(key)
+        default = None if model is None else model.get_default(call_default_factory=True)
         return None if default is PydanticUndefined else default
-    (field,) = (field for field in fields(section) if field.name == key)
+    field = next(field for field in fields(kind) if field.name == key)
     if field.default_factory is not MISSING:
         return field.default_factory()
     return None if field.default is MISSING else field.default
 
 
-def _times(value: Any, factor: float) -> Any:
-    """Return numbers times a factor, also in lists; other values remain."""
+def _product(value: Any, factor: float) -> Any:
+    """Number, or list of numbers, times a factor; any other value as it is."""
     if isinstance(value, list | tuple):
-        return [_times(part, factor) for part in value]
+        return [_product(v, factor) for v in value]
     if isinstance(value, bool) or not isinstance(value, int | float):
         return value
     return value * factor
 
 
 def _plain(value: Any) -> Any:
-    """Return tuples as lists, as files have them."""
-    return [_plain(part) for part in value] if isinstance(value, list | tuple) else value
+    """Tuples as lists, as JSON has them."""
+    return [_plain(v) for v in value] if isinstance(value, list | tuple) else value

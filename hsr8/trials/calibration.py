@@ -130,8 +130,8 @@ def _without_limits(limits: LimitParameters) -> LimitParameters:
 
 def _axis_limit(trial: Trial, axis: str, scale: float, report: Report) -> float:
     """Return the highest speed along an axis that a steady walk holds."""
-    top = getattr(trial.parameters.limits, axis)
-    speed = top
+    top: float = getattr(trial.parameters.limits, axis)
+    speed = float(top)
     while speed > SMALLEST * top:
         command = command_of(axis, speed)
         walk = trial.walk(command, scale * STEADY_TIME)

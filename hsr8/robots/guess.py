@@ -1,0 +1,336 @@
+"""Guess of the roles of a robot's parts from its kinematic tree; names come second."""
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from math import atan2, cos, sin
+from typing import Any, Literal
+
+import mujoco
+import numpy as np
+from numpy.typing import NDArray
+
+from hsr8.robots.limbs import Limb, Stance, find_stance, foot_joint, size_of, turned_back
+from hsr8.robots.roles import LEG_JOINTS
+from hsr8.robots.skeleton import PARALLEL, Skeleton, root_of, skeleton_of
+
+Array = NDArray[np.float64]
+Sureness = Literal["certain", "likely", "unsure", "missing"]
+Pair = tuple[str, str]
+
+MAX_HEAD = 0.2  # mass of a head in masses of the robot [1]
+MID_PLANE = 0.03  # distance of the yaw axis of a neck from the mid plane, in sizes of the robot [1]
+SHOULDER = 0.15  # extent of a shoulder, in sizes of the robot [1]
+MIN_LIMITS = 0.3  # difference of the limits of a knee that shows where it bends [rad]
+MIN_TOE = 0.01  # centre of mass of a foot forward of its ankle, in sizes of the robot [1]
+HANGING = 0.7  # minimum cosine between a hanging arm and the vertical [1]
+SPREAD = 0.25  # angle of hanging arms from the vertical [rad]
+SIDES = ("lr", "gd", "id", "sd", "ed", "hm", "zy")  # first letters of left and right
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class CameraView:
+    """Camera of a model.
+
+    Attributes:
+        name: of the camera.
+        group: index of the joint that moves it, -1 for the base.
+        direction: of its optical axis in the root (3,).
+    """
+
+    name: str
+    group: int
+    direction: Array
+
+
+@dataclass(frozen=True, slots=True)
+class Finding:
+    """Role with its part, or the reason why no part has it."""
+
+    role: str
+    part: str
+    sureness: Sureness
+    reason: str
+
+
+@dataclass(frozen=True, slots=True)
+class Guess:
+    """Roles of a robot; None where no part fits.
+
+    Attributes:
+        base: root body.
+        feet: bodies of the left and the right foot.
+        legs: joints of the left and the right leg, hip first.
+        head: pan and tilt joint.
+        shoulders: left and right pitch joint.
+        camera: name.
+        posture: angles that let horizontal arms hang down [rad].
+        findings: for the user, one per role.
+    """
+
+    base: str
+    feet: Pair | None = None
+    legs: tuple[tuple[str, ...], tuple[str, ...]] = ((), ())
+    head: Pair | None = None
+    shoulders: Pair | None = None
+    camera: str | None = None
+    posture: dict[str, float] | None = None
+    findings: tuple[Finding, ...] = ()
+
+    def keys(self) -> dict[str, Any]:
+        """Return the keys of a description other than its model."""
+        names = ("feet", "base", "head", "shoulders", "camera", "posture")
+        return {name: value for name in names if (value := getattr(self, name))}
+
+
+def guess(model: mujoco.MjModel) -> Guess:
+    """Guess the roles of the robot in a compiled model."""
+    skeleton = skeleton_of(model, root_of(model))
+    return guess_roles(skeleton, tuple(_views(model, skeleton)))
+
+
+def guess_roles(skeleton: Skeleton, cameras: Sequence[CameraView] = ()) -> Guess:
+    """Guess the roles of a robot at zero angles.
+
+    Args:
+        skeleton: in the frame of its root, whose directions are arbitrary.
+        cameras: of the model.
+    """
+    stance = find_stance(skeleton)
+    if stance is None:
+        reason = (
+            "no two mirrored chains with three pitching joints end lowest, below their hips, at "
+            "zero angles"
+        )
+        return Guess(skeleton.root, findings=(Finding("feet", "", "missing", reason),))
+    stance, forward = _facing(stance)
+    feet, legs, feet_finding = _feet(stance)
+    head, head_finding = _head(stance)
+    arms = _arms(stance, head)
+    shoulders, shoulders_finding = _shoulders(stance, arms)
+    camera, camera_finding = _camera(stance, head, cameras)
+    posture = {} if arms is None else dict(_hanging(stance.skeleton, arms))
+    findings = [forward, feet_finding, head_finding, shoulders_finding, camera_finding]
+    if posture:
+        angles = ", ".join(f"{name} {angle:g}" for name, angle in posture.items())
+        reason = "the arms are horizontal at zero angles"
+        findings.append(Finding("posture", angles, "likely", reason))
+    return Guess(
+        base=skeleton.root,
+        feet=feet,
+        legs=legs,
+        head=None if head is None else (skeleton.joints[head[0]], skeleton.joints[head[1]]),
+        shoulders=shoulders,
+        camera=camera,
+        posture=posture,
+        findings=tuple(findings),
+    )
+
+
+def _facing(stance: Stance) -> tuple[Stance, Finding]:
+    """Return the stance that faces forward."""
+    votes = {
+        "knees bend forward": (3, _knee_vote(stance)),
+        "names of left and right": (3, _name_vote(stance)),
+        "feet are longer in front": (1, _toe_vote(stance)),
+        "x of the root": (1, int(np.sign(round(float(stance.rotation[0, 0]))))),
+    }
+    total = sum(weight * vote for weight, vote in votes.values())
+    if total < 0:
+        stance = turned_back(stance)
+    sign = -1 if total < 0 else 1
+    pro = [reason for reason, (_, vote) in votes.items() if sign * vote > 0]
+    contra = [reason for reason, (_, vote) in votes.items() if sign * vote < 0]
+    strong = any(sign * vote > 0 for weight, vote in votes.values() if weight > 1)
+    sureness: Sureness = "certain" if strong and not contra else "likely" if strong else "unsure"
+    reason = ", ".join(pro) or "nothing shows where the front is"
+    if contra:
+        reason += f"; against it: {', '.join(contra)}"
+    axis = int(np.abs(stance.rotation[0]).argmax())
+    direction = f"{'-' if stance.rotation[0, axis] < 0.0 else '+'}{'xyz'[axis]}"
+    part = f"{direction} of {stance.skeleton.root}"
+    return stance, Finding("forward", part, sureness, reason)
+
+
+def _knee_vote(stance: Stance) -> int:
+    """Return 1 if the ranges let the knees bend forward, -1 if backward, else 0."""
+    skeleton, bend = stance.skeleton, 0.0
+    for leg in (stance.legs.left, stance.legs.right):
+        last = foot_joint(skeleton, leg)
+        pitching = [j for j in leg[: last + 1][-LEG_JOINTS:] if skeleton.is_pitch(j)]
+        lower, upper = skeleton.ranges[pitching[1]] * np.sign(skeleton.axes[pitching[1], 1])
+        if np.isfinite(lower) and np.isfinite(upper) and abs(lower + upper) > MIN_LIMITS:
+            bend += lower + upper
+    return int(np.sign(bend))
+
+
+def _name_vote(stance: Stance) -> int:
+    """Return 1 if the names of a leg differ as left and right do, -1 if as right and left."""
+    skeleton = stance.skeleton
+    for names in (skeleton.bodies, skeleton.joints):
+        left, right = (names[leg[-1]].lower() for leg in (stance.legs.left, stance.legs.right))
+        letters = next((a + b for a, b in zip(left, right, strict=False) if a != b), "")
+        if letters in SIDES:
+            return 1
+        if letters[::-1] in SIDES:
+            return -1
+    return 0
+
+
+def _toe_vote(stance: Stance) -> int:
+    """Return 1 if the masses of the feet are forward of the ankles, -1 if behind, else 0."""
+    skeleton, forward = stance.skeleton, 0.0
+    for leg in (stance.legs.left, stance.legs.right):
+        ankle = [j for j in leg if skeleton.is_pitch(j)][-1]
+        forward += 0.5 * float(skeleton.coms[leg[-1], 0] - skeleton.anchors[ankle, 0])
+    return int(np.sign(forward)) if abs(forward) > MIN_TOE * size_of(skeleton) else 0
+
+
+def _feet(stance: Stance) -> tuple[Pair | None, tuple[tuple[str, ...], tuple[str, ...]], Finding]:
+    skeleton = stance.skeleton
+    last = foot_joint(skeleton, stance.legs.left)
+    left, right = (leg[: last + 1] for leg in (stance.legs.left, stance.legs.right))
+    names = [", ".join(skeleton.joints[j] for j in leg) for leg in (left, right)]
+    if len(left) < LEG_JOINTS:
+        reason = (
+            f"the legs have {len(left)} hinge joints, {names[0]} and {names[1]}; hsr8 needs "
+            f"{LEG_JOINTS}: three at the hip, a knee, two at the ankle"
+        )
+        return None, ((), ()), Finding("feet", "", "missing", reason)
+    six = left[-LEG_JOINTS:], right[-LEG_JOINTS:]
+    feet = skeleton.bodies[left[-1]], skeleton.bodies[right[-1]]
+    pitching = sum(map(skeleton.is_pitch, six[0]))
+    sureness: Sureness = "certain" if pitching == 3 else "unsure"
+    reason = f"mirrored chains of {len(left)} joints that end lowest"
+    if pitching != 3:
+        reason += f", of which {pitching} pitch; expected 3"
+    if toes := [skeleton.joints[j] for j in stance.legs.left[last + 1 :]]:
+        reason += f", without the toes beyond {toes[0]}"
+    legs = tuple(skeleton.joints[j] for j in six[0]), tuple(skeleton.joints[j] for j in six[1])
+    return feet, legs, Finding("feet", ", ".join(feet), sureness, reason)
+
+
+def _head(stance: Stance) -> tuple[tuple[int, int] | None, Finding]:
+    """Return the pan and the tilt joint: on the mid plane, above the hips, of a light part."""
+    skeleton, plane = stance.skeleton, stance.legs.plane
+    size, hip = size_of(skeleton), float(skeleton.anchors[stance.legs.left[0], 2])
+
+    def fits(joint: int) -> bool:
+        light = skeleton.mass_below(joint) < MAX_HEAD * skeleton.total_mass
+        return light and bool(skeleton.anchors[joint, 2] > hip)
+
+    upper = [j for j in range(len(skeleton.joints)) if fits(j)]
+    pans = [
+        j
+        for j in upper
+        if skeleton.is_yaw(j) and abs(skeleton.anchors[j, 1] - plane) < MID_PLANE * size
+    ]
+    pairs = [
+        (pan, tilt)
+        for pan in pans
+        for tilt in upper
+        if skeleton.is_pitch(tilt) and (pan in skeleton.chain(tilt) or tilt in skeleton.chain(pan))
+    ]
+    if not pairs:
+        reason = "no joint on the mid plane yaws a light upper part"
+        if pans:
+            reason = f"{skeleton.joints[pans[0]]} yaws, but no joint pitches with it"
+        return None, Finding("head", "", "missing", f"{reason}: the camera is fixed to the trunk")
+
+    def preference(pair: tuple[int, int]) -> tuple[bool, float, int]:
+        pan, tilt = pair
+        distance = abs(len(skeleton.chain(pan)) - len(skeleton.chain(tilt)))
+        return pan in skeleton.chain(tilt), float(skeleton.anchors[pan, 2]), -distance
+
+    pan, tilt = max(pairs, key=preference)
+    names = f"{skeleton.joints[pan]}, {skeleton.joints[tilt]}"
+    if skeleton.parents[tilt] == pan:
+        return (pan, tilt), Finding(
+            "head", names, "certain", "yaws, then pitches, on the mid plane"
+        )
+    order = "other joints between" if pan in skeleton.chain(tilt) else "pitches, then yaws"
+    return (pan, tilt), Finding("head", names, "likely", f"on the mid plane; {order}")
+
+
+def _arms(stance: Stance, head: tuple[int, int] | None) -> Limb | None:
+    """Return the heaviest limb above the hips that the head does not carry."""
+    skeleton = stance.skeleton
+    hip = float(skeleton.anchors[stance.legs.left[0], 2])
+    arms = [
+        limb
+        for limb in stance.limbs
+        if skeleton.anchors[limb.left[0], 2] > hip
+        and not {*skeleton.chain(limb.left[0])} & {*(head or ())}
+        and len(limb.left) > 1
+    ]
+    return max(arms, key=lambda limb: skeleton.mass_below(limb.left[0]), default=None)
+
+
+def _shoulders(stance: Stance, arms: Limb | None) -> tuple[Pair | None, Finding]:
+    """Return the first pitching joints of the arms."""
+    if arms is None:
+        return None, Finding("shoulders", "", "missing", "no mirrored chains above the hips")
+    skeleton = stance.skeleton
+    radius = SHOULDER * size_of(skeleton)
+    for left, right in zip(arms.left, arms.right, strict=True):
+        distance = np.linalg.norm(skeleton.anchors[left] - skeleton.anchors[arms.left[0]])
+        if skeleton.is_pitch(left) and skeleton.is_pitch(right) and distance < radius:
+            names = skeleton.joints[left], skeleton.joints[right]
+            reason = "first pitching joints of mirrored chains above the hips"
+            return names, Finding("shoulders", ", ".join(names), "certain", reason)
+    names = skeleton.joints[arms.left[0]], skeleton.joints[arms.right[0]]
+    reason = f"no pitching joint near {names[0]} and {names[1]}: the arms do not swing"
+    return None, Finding("shoulders", "", "missing", reason)
+
+
+def _hanging(skeleton: Skeleton, arms: Limb) -> Iterator[tuple[str, float]]:
+    """Yield roll joints and angles that let horizontal arms hang down [rad]."""
+    for side, arm in ((1.0, arms.left), (-1.0, arms.right)):
+        rolls = [j for j in arm if abs(skeleton.axes[j, 0]) > PARALLEL]
+        if not rolls:
+            return
+        lever = skeleton.coms[arm[-1]] - skeleton.anchors[rolls[0]]
+        if -lever[2] > HANGING * np.linalg.norm(lever):
+            return
+        axis = skeleton.axes[rolls[0]]
+        goal = np.array([0.0, side * sin(SPREAD), -cos(SPREAD)])
+        along = float(lever @ goal - (axis @ lever) * (axis @ goal))
+        angle = atan2(float(axis @ np.cross(lever, goal)), along)
+        yield skeleton.joints[rolls[0]], round(float(np.clip(angle, *skeleton.ranges[rolls[0]])), 2)
+
+
+def _camera(
+    stance: Stance, head: tuple[int, int] | None, cameras: Sequence[CameraView]
+) -> tuple[str | None, Finding]:
+    """Return a camera that looks forward, in the head if there is one."""
+    forward = [c for c in cameras if float(stance.rotation[0] @ c.direction) > 0.5]
+    if not forward:
+        reason = "none looks forward from the robot" if cameras else "the robot has none"
+        return None, Finding("camera", "", "missing", f"{reason}: one is mounted in front")
+    moved = max(head) if head else -1
+    in_head = [c for c in forward if moved in stance.skeleton.chain(c.group)] if head else []
+    choices = in_head or forward
+    names = ", ".join(c.name for c in choices[1:])
+    reason = "looks forward" + (" from the head" if in_head else "")
+    if names:
+        return choices[0].name, Finding(
+            "camera", choices[0].name, "unsure", f"{reason}; or {names}"
+        )
+    return choices[0].name, Finding("camera", choices[0].name, "certain", reason)
+
+
+def _views(model: mujoco.MjModel, skeleton: Skeleton) -> Iterator[CameraView]:
+    """Yield the cameras that are fixed to the robot, at zero angles."""
+    data = mujoco.MjData(model)
+    for j in range(model.njnt):
+        if model.joint(j).name in skeleton.joints:
+            data.qpos[model.jnt_qposadr[j]] = 0.0
+    mujoco.mj_kinematics(model, data)
+    mujoco.mj_comPos(model, data)
+    mujoco.mj_camlight(model, data)
+    root = data.xmat[root_of(model)].reshape(3, 3)
+    fixed = int(mujoco.mjtCamLight.mjCAMLIGHT_FIXED)
+    for c in range(model.ncam):
+        body = model.body(model.cam_bodyid[c]).name
+        if model.cam_mode[c] == fixed and body in skeleton.group and model.camera(c).name:
+            direction = -data.cam_xmat[c].reshape(3, 3)[:, 2] @ root
+            yield CameraView(model.camera(c).name, skeleton.group[body], direction)
