@@ -107,16 +107,24 @@ def read_tape(path: Path, *, whole: bool) -> list[Block]:
     blocks: list[Block] = []
     for where, payload in read_payloads(path, MAGIC, file="tape", payload="block", whole=whole):
         try:
-            blocks.append(_block(payload))
+            block = _block(payload)
         except (struct.error, ValueError) as error:
             raise UsageError(f"{path}: damaged {where}") from error
+        joints, first = (b.setpoints.shape[1] for b in (block, (*blocks, block)[0]))
+        if joints != first:
+            raise UsageError(
+                f"{path}: damaged {where}: number of joints, got {joints}; expected {first}"
+            )
+        blocks.append(block)
     return blocks
 
 
 def _block(payload: bytes) -> Block:
     """Return the block of a payload; a ValueError or `struct.error` means that it is damaged."""
+    tick, joints = _FIRST.unpack_from(payload)
+    if tick < 0 or joints < 1:
+        raise ValueError
     offset = _FIRST.size
     world, robot = payload[offset : offset + HASH], payload[offset + HASH : offset + 2 * HASH]
     rows = np.frombuffer(payload, "<f8", offset=offset + 2 * HASH).astype(np.float64)
-    tick, joints = _FIRST.unpack_from(payload)
-    return Block(tick, world.hex(), robot.hex(), rows.reshape(-1, max(joints, 1)))
+    return Block(tick, world.hex(), robot.hex(), rows.reshape(-1, joints))

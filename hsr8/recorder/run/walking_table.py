@@ -163,7 +163,8 @@ def read_walking_table(path: Path) -> WalkingTable:
         limits = dict(zip(header["joints"], map(float, header["torque_limit"]), strict=True))
         groups = {name: tuple(map(int, joints)) for name, joints in header["groups"].items()}
         columns = (*COLUMNS, *(f"torque_{name}" for name in limits))
-        complete = tuple(header["columns"]) == columns
+        indices = {joint for joints in groups.values() for joint in joints}
+        complete = tuple(header["columns"]) == columns and indices <= set(range(len(limits) // 2))
     except (ValueError, TypeError, KeyError, AttributeError) as error:
         raise UsageError(f"{path}: incomplete header") from error
     if not complete:
@@ -171,8 +172,8 @@ def read_walking_table(path: Path) -> WalkingTable:
     row = _row_type(len(columns))
     table = np.frombuffer(content, dtype=row, count=len(content) // row.itemsize)
     time, values = table["time"].astype(np.float64), table["values"].astype(np.float64)
-    known = np.isin(values[:, COLUMNS.index("phase")], range(len(PHASES)))
-    whole = known & np.isfinite(time) & ~np.isinf(values).any(axis=1)
+    is_phase = np.isin(values[:, COLUMNS.index("phase")], range(len(PHASES)))
+    whole = is_phase & np.isfinite(time) & ~np.isinf(values).any(axis=1)
     if not whole.all():
         raise UsageError(f"{path}: damaged in row {int(np.argmin(whole))}")
     return WalkingTable(

@@ -10,7 +10,8 @@ from hsr8.recorder.log.geometry import (
     sole_outline,
 )
 from hsr8.recorder.log.log_reader import Log
-from hsr8.robots.normal_form import HEAD_CAMERA
+from hsr8.robots.loaded import load_robot
+from hsr8.robots.normal_form import FEET, HEAD_CAMERA, SOLES
 
 
 @pytest.fixture(scope="module")
@@ -77,14 +78,14 @@ def test_a_missing_kind_has_no_batch(model):
     assert batches_of(model, np.zeros(model.ngeom, bool)) == []
 
 
-@pytest.mark.parametrize("side", ["l", "r"])
+@pytest.mark.parametrize("side", [0, 1])
 def test_the_outline_of_a_sole_is_that_of_its_geom_from_above(model, side):
     data = mujoco.MjData(model)
     mujoco.mj_kinematics(model, data)
-    outline = sole_outline(model, side)
-    foot, sole = data.site(f"{side}_foot"), data.geom(f"{side}_sole")
+    outline = sole_outline(load_robot("hsr8").model.sole)
+    foot, sole = data.site(FEET[side]), data.geom(SOLES[side])
     drawn = foot.xpos[:2] + outline @ foot.xmat.reshape(3, 3)[:2, :2].T
-    half = model.geom(f"{side}_sole").size[:2]
+    half = model.geom(SOLES[side]).size[:2]
     signs = np.array([(u, v) for u in (-1.0, 1.0) for v in (-1.0, 1.0)])
     corners = sole.xpos[:2] + (signs * half) @ sole.xmat.reshape(3, 3)[:2, :2].T
     distance = np.hypot(*(drawn[:, None] - corners[None]).transpose(2, 0, 1))

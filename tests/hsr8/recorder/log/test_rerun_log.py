@@ -15,6 +15,7 @@ from hsr8.recorder.log.block_stream import BlockStream
 from hsr8.recorder.log.log_reader import Log
 from hsr8.recorder.log.rerun_log import MAX_INDEXED, WRITE_TIMEOUT, RerunLog
 from hsr8.recorder.log_level import LogLevel
+from hsr8.robots.loaded import load_robot
 from hsr8.world.truth.truth import ActivePush
 from navigation.belief.belief import Particles
 from navigation.parameters.gaze import GazeParameters
@@ -48,7 +49,14 @@ def folder(tmp_path):
 def _logged(folder, model, layout, records, **options):
     """Log of `records`."""
     path = folder / "log.rrd"
-    listener = RerunLog(path, model, layout, (320, 240), "test 7", gaze=GazeParameters(), **options)
+    listener = RerunLog(
+        path,
+        (model, load_robot("hsr8"), layout),
+        (320, 240),
+        "test 7",
+        gaze=GazeParameters(),
+        **options,
+    )
     for record in records:
         listener.on_record(record)
     listener.close("goal")
@@ -59,7 +67,9 @@ def _logged(folder, model, layout, records, **options):
 def log(tmp_path, model, layout):
     (tmp_path / "7-abc").mkdir()
     path = tmp_path / "7-abc" / "log.rrd"
-    return path, RerunLog(path, model, layout, (320, 240), "test 7", gaze=GazeParameters())
+    return path, RerunLog(
+        path, (model, load_robot("hsr8"), layout), (320, 240), "test 7", gaze=GazeParameters()
+    )
 
 
 def test_a_run_is_logged_at_its_rates(log, walk):

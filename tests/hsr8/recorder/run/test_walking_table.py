@@ -7,6 +7,7 @@ import pytest
 from hsr8.errors import UsageError
 from hsr8.recorder.run.walking_table import (
     COLUMNS,
+    MAGIC,
     OdometryToWorld,
     WalkingTableWriter,
     read_walking_table,
@@ -33,7 +34,9 @@ def test_a_written_table_is_read_back(written):
     path, records = written
     table = read_walking_table(path)
     assert table.time.tolist() == [r.time for r in records]
-    assert set(table.columns) == set(COLUMNS)
+    names = load_robot("hsr8").model.names
+    assert list(table.columns) == [*COLUMNS, *(f"torque_{name}" for name in names[:12])]
+    assert list(table.torque_limit) == list(names[:12])
     assert table["robot_x"] == pytest.approx([r.truth.robot[0] for r in records])
     assert table["applied_vx"] == pytest.approx([0.2] * len(records))
     assert table["left_y"] == pytest.approx([0.042] * len(records))
@@ -61,7 +64,7 @@ def test_a_cut_file_loses_its_last_row(written):
 )
 def test_an_impossible_row_is_refused(written, column, value):
     path, records = written
-    rows = np.dtype([("time", "<f8"), ("values", "<f4", (len(COLUMNS),))])
+    rows = np.dtype([("time", "<f8"), ("values", "<f4", (len(COLUMNS) + 12,))])
     content = path.read_bytes()
     start = len(content) - len(records) * rows.itemsize
     table = np.frombuffer(content[start:], rows).copy()
@@ -119,7 +122,7 @@ def test_odometry_is_transformed_with_the_true_pose(fake):
     [
         (None, "cannot read the walking table"),
         (b"HSR8TRJ1", "not a walking table"),
-        (b"HSR8WLK2" + b"x" * 8, "incomplete header"),
+        (MAGIC + b"x" * 8, "incomplete header"),
     ],
 )
 def test_a_missing_or_another_file_is_refused(tmp_path, content, message):
@@ -133,7 +136,13 @@ def test_a_missing_or_another_file_is_refused(tmp_path, content, message):
 def test_a_damaged_header_is_refused(written):
     path, _ = written
     content = path.read_bytes()
-    for damaged in (content[:200], content.replace(b'"zmp_depth"', b'"zmp_deepn"')):
+    for damaged in (
+        content[:200],
+        content.replace(b'"zmp_depth"', b'"zmp_deepn"'),
+        content.replace(b'"knee": [3]', b'"knee": [9]'),
+        content.replace(b'"l_knee"', b'"l_nose"', 1),
+    ):
+        assert damaged != content
         path.write_bytes(damaged)
         with pytest.raises(UsageError, match="incomplete header"):
             read_walking_table(path)
