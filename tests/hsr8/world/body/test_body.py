@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 
+from hsr8.robots.loaded import load_robot
 from hsr8.scenario.sensor_noise import SensorNoise
 from hsr8.world.body.kinematic import KinematicBody
 from hsr8.world.body.physics import PhysicsBody
@@ -14,7 +15,7 @@ pytestmark = pytest.mark.parametrize("kind", [KinematicBody, PhysicsBody])
 
 def body_in(kind, world, noise, *obstacles, seed=0, **details):
     layout, model = world(*obstacles, **details)
-    return kind(model, layout, noise, np.random.default_rng(seed))
+    return kind(model, load_robot("hsr8"), layout, noise, np.random.default_rng(seed))
 
 
 def hold(body):

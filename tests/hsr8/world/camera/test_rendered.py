@@ -5,6 +5,7 @@ import cv2
 import numpy as np
 import pytest
 
+from hsr8.robots.loaded import load_robot
 from hsr8.scenario.camera import Camera, CameraNoise
 from hsr8.world.body.kinematic import KinematicBody
 from hsr8.world.body.physics import PhysicsBody
@@ -72,7 +73,7 @@ def attitude(body):
 @pytest.mark.parametrize("kind", [KinematicBody, PhysicsBody])
 def test_the_camera_turns_as_its_attitude_does(world, silent, kind):
     layout, model = world()
-    body = kind(model, layout, silent, np.random.default_rng(0))
+    body = kind(model, load_robot("hsr8"), layout, silent, np.random.default_rng(0))
     position = body.sense().joint_position.copy()
     pan, tilt, hip = (JOINT_NAMES.index(n) for n in ("head_pan", "head_tilt", "l_hip_yaw"))
     for _ in range(20):
