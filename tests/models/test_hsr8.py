@@ -103,7 +103,7 @@ def test_mass_and_height_are_the_published_ones(robot):
 @pytest.mark.parametrize("key", ["home", "walk_ready"])
 def test_keyframe_has_flat_feet_and_keeps_all_limits(robot, key):
     data, frame = at_key(robot, key), robot.key(key)
-    for foot in (data.site("hsr8/l_foot"), data.site("hsr8/r_foot")):
+    for foot in (data.site("l_foot"), data.site("r_foot")):
         assert foot.xpos[2] == pytest.approx(0, abs=5e-4)
         assert foot.xmat[8] == pytest.approx(1, abs=1e-6)
     address = robot.jnt_qposadr[robot.actuator_trnid[:, 0]]

@@ -9,6 +9,7 @@ from hsr8.evaluation.walk_metrics import WalkMetrics
 from hsr8.recorder.walk_counters import WalkCounters
 from hsr8.world.truth.saturation import Saturation
 from hsr8.world.truth.truth import ActivePush
+from walking.body.joints import JOINT_NAMES
 from walking.command import VelocityCommand
 from walking.command_limits import Limit
 from walking.phase import Phase
@@ -119,7 +120,7 @@ def test_servos_and_times_need_a_body_with_dynamics(fake):
     ticks, peak = np.zeros(26, dtype=np.int64), np.zeros(26)
     ticks[3], peak[3] = 7, 1.0
     none = np.zeros(26, dtype=np.int64)
-    saturation = Saturation(7, ticks, 0, none, peak, 5.0 * peak)
+    saturation = Saturation(JOINT_NAMES, 7, ticks, 0, none, peak, 5.0 * peak)
     push = ActivePush(4, 1.0, 0.05, "torso_link", 0.0, np.zeros(3), np.array([3.0, 4.0, 0.0]))
     watch = SimpleNamespace(so_far=lambda: saturation)
     record = fake.record(0.0, saturation=watch, pushes=(push,))
