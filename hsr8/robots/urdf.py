@@ -64,7 +64,7 @@ def convert(file: Path, description: RobotDescription, folder: Path) -> Converte
         raise ModelError(
             f"{file}: servo, got 'own', but a URDF file has no servos; expected 'rule', the default"
         )
-    urdf = read_urdf(file)
+    urdf = read_urdf(file).with_ranges(description.range)
     moving = [j.name for j in urdf.joints.values() if j.type != "fixed"]
     check_joint_names(description, moving, file)
     packages = package_folders(description.packages, folder)

@@ -73,7 +73,7 @@ def _mechanism(file: Path) -> str:
 
 
 def _positions(model: mujoco.MjModel, angles: Mapping[str, float]) -> dict[str, Array]:
-    """CoM (under an empty name) and joint origins in the base, shape (3,) [m]."""
+    """Joint origins and, under an empty name, the CoM in the base, shape (3,) [m]."""
     data = mujoco.MjData(model)
     mujoco.mj_resetData(model, data)
     for name, angle in angles.items():
@@ -81,8 +81,8 @@ def _positions(model: mujoco.MjModel, angles: Mapping[str, float]) -> dict[str, 
     mujoco.mj_kinematics(model, data)
     mujoco.mj_comPos(model, data)
     base = int(model.jnt_bodyid[0])
-    points = {"": data.subtree_com[base]}
-    points |= {name: data.xanchor[model.joint(name).id] for name in angles}
+    points = {name: data.xanchor[model.joint(name).id] for name in angles}
+    points[""] = data.subtree_com[base]
     turn = data.xmat[base].reshape(3, 3)
     return {name: turn.T @ (point - data.xpos[base]) for name, point in points.items()}
 

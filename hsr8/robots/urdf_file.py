@@ -1,7 +1,8 @@
 """URDF file as a tree of links, checked for the mistakes that a robot cannot be made of."""
 
 from collections import Counter
-from dataclasses import dataclass
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
 from pathlib import Path
 from xml.etree import ElementTree
 
@@ -30,6 +31,15 @@ class Urdf:
     def below(self, link: str) -> list[Joint]:
         """Joints whose parent is a link, in the order of the file."""
         return [joint for joint in self.joints.values() if joint.parent == link]
+
+    def with_ranges(self, ranges: Mapping[str, tuple[float, float]]) -> "Urdf":
+        """Return the robot with other limits of some joints [rad]; unknown names are ignored."""
+        joints = {
+            name: replace(joint, range=ranges.get(name, joint.range))
+            for name, joint in self.joints.items()
+        }
+        above = {link: joints[joint.name] for link, joint in self.above.items()}
+        return replace(self, joints=joints, above=above)
 
 
 def read_urdf(file: Path) -> Urdf:

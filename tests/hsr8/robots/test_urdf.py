@@ -177,6 +177,13 @@ def test_a_continuous_joint_gets_one_turn(tmp_path):
     np.testing.assert_allclose(model.joint("l_hip_yaw").range, (-np.pi, np.pi))
 
 
+def test_a_stated_range_frees_a_joint_without_one(tmp_path):
+    robot = SmallUrdf().element()
+    joint(robot, "l_knee").find("limit").attrib.update(lower="0", upper="0")
+    model = converted(robot, tmp_path, range={"l_knee": (-0.1, 2.0)})[0].spec.compile()
+    np.testing.assert_allclose(model.joint("l_knee").range, (-0.1, 2.0))
+
+
 def test_joints_without_a_servo_are_held(tmp_path):
     robot = SmallUrdf(seed=4).element()
     SubElement(joint(robot, "l_elbow"), "mimic", joint="l_shoulder", multiplier="2", offset="0.1")

@@ -1,0 +1,70 @@
+"""Meshes give the same points in every format, in metres and without a turn."""
+
+import numpy as np
+import pytest
+
+from hsr8.errors import ModelError
+from hsr8.robots.mesh_points import find_mesh, is_binary_stl, package_folders, read_mesh
+from tests.hsr8.robots.mesh_files import CORNERS, FORMATS, dae, write_mesh
+
+
+def sorted_rows(points):
+    return points[np.lexsort(points.T)]
+
+
+@pytest.mark.parametrize("kind", FORMATS)
+def test_vertices_are_those_of_the_file(kind, tmp_path):
+    vertices, triangles = read_mesh(write_mesh(tmp_path, kind))
+    unique = np.unique(vertices.round(6), axis=0)
+    np.testing.assert_allclose(sorted_rows(unique), sorted_rows(CORNERS), atol=1e-6)
+    assert triangles.shape == (4, 3)
+    assert triangles.max() < len(vertices)
+
+
+@pytest.mark.parametrize("up", ["X_UP", "Y_UP", "Z_UP"])
+def test_the_up_axis_of_a_dae_file_is_ignored(up, tmp_path):
+    file = tmp_path / "mesh.dae"
+    file.write_text(dae(up=up))
+    np.testing.assert_allclose(sorted_rows(read_mesh(file)[0]), sorted_rows(CORNERS), atol=1e-6)
+
+
+def test_the_unit_of_a_dae_file_is_respected(tmp_path):
+    file = tmp_path / "mesh.dae"
+    file.write_text(dae(unit=0.001))
+    expected = sorted_rows(1e-3 * CORNERS)
+    np.testing.assert_allclose(sorted_rows(read_mesh(file)[0]), expected, atol=1e-9)
+
+
+def test_the_kinds_of_stl_files_are_distinguished(tmp_path):
+    assert is_binary_stl(write_mesh(tmp_path, "binary.stl"))
+    assert not is_binary_stl(write_mesh(tmp_path, "ascii.stl"))
+
+
+def test_a_damaged_file_is_refused(tmp_path):
+    file = tmp_path / "mesh.stl"
+    file.write_bytes(b"no mesh")
+    with pytest.raises(ModelError, match=r"mesh\.stl: cannot be read"):
+        read_mesh(file)
+
+
+def test_the_package_of_a_uri_is_searched_upwards(tmp_path):
+    urdf = tmp_path / "small" / "urdf" / "small.urdf"
+    mesh = tmp_path / "small" / "meshes" / "foot.stl"
+    for folder in (mesh.parent, urdf.parent):
+        folder.mkdir(parents=True)
+    mesh.touch()
+    assert find_mesh("package://small/meshes/foot.stl", urdf, {}) == mesh
+    assert find_mesh("package://other_name/meshes/foot.stl", urdf, {}) == mesh
+    assert find_mesh("../meshes/foot.stl", urdf, {}).resolve() == mesh
+    assert find_mesh(f"file://{mesh}", urdf, {}) == mesh
+    assert find_mesh("package://small/meshes/hand.stl", urdf, {}) is None
+
+
+def test_a_stated_package_is_the_only_one_searched(tmp_path):
+    (tmp_path / "meshes").mkdir()
+    packages = package_folders({"small": "meshes"}, tmp_path)
+    (tmp_path / "foot.stl").touch()
+    uri = "package://small/foot.stl"
+    assert find_mesh(uri, tmp_path / "small.urdf", packages) is None
+    (tmp_path / "meshes" / "foot.stl").touch()
+    assert find_mesh(uri, tmp_path / "small.urdf", packages) == tmp_path / "meshes" / "foot.stl"
