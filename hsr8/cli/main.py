@@ -14,7 +14,7 @@ from typing import Any, get_args
 import tyro
 
 from hsr8.cli.crash import crash_report
-from hsr8.cli.options import Command
+from hsr8.cli.options import Command, Robot, RobotAction
 from hsr8.cli.renamed import require_present_names
 from hsr8.errors import Hsr8Error, UsageError
 from hsr8.suggestion import suggestion
@@ -41,6 +41,8 @@ CONFIG = (
 COMMANDS: dict[str, type[Command]] = {
     re.sub(r"(?<=[a-z])(?=[A-Z])", "-", kind.__name__).lower(): kind for kind in get_args(Command)
 }
+
+ACTIONS = [kind.__name__.removeprefix("Robot").lower() for kind in get_args(RobotAction)]
 
 
 def entry(arguments: Sequence[str] | None = None) -> int:
@@ -110,8 +112,9 @@ def parse(words: Sequence[str]) -> Command | None:
         print(f"hsr8 {VERSION}")
         return None
     if name in COMMANDS:
+        words = _action(rest) if COMMANDS[name] is Robot else []
         help_wanted = not {"-h", "--help"}.isdisjoint(rest)
-        return _parse(COMMANDS[name], f"hsr8 {name}", ["--help"] if help_wanted else rest)
+        return _parse(COMMANDS[name], f"hsr8 {name}", [*words, "--help"] if help_wanted else rest)
     if name in ("-h", "--help"):
         return _parse(Command, "hsr8", ["--help"], description=DESCRIPTION)
     if name == "--tyro-print-completion":
@@ -120,6 +123,22 @@ def parse(words: Sequence[str]) -> Command | None:
         return _parse(Command, "hsr8", words)
     hint = suggestion(name, list(COMMANDS))
     raise UsageError(f"{name}: unknown command{hint} (commands: {', '.join(COMMANDS)})")
+
+
+def _action(words: Sequence[str]) -> list[str]:
+    """Return the command after ``hsr8 robot``; none before options.
+
+    Raises:
+        UsageError: the command is unknown.
+    """
+    first = "".join(words[:1])
+    if first in ACTIONS:
+        return [first]
+    if first and not first.startswith("-"):
+        hint = suggestion(first, ACTIONS)
+        names = ", ".join(ACTIONS)
+        raise UsageError(f"robot {first}: unknown command{hint} (commands: {names})")
+    return []
 
 
 def _parse(kind: Any, prog: str, words: Sequence[str], **options: Any) -> Command | None:

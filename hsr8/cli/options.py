@@ -5,7 +5,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Annotated, Any, Literal
 
-from tyro.conf import Positional, UseAppendAction, arg
+from tyro.conf import Positional, UseAppendAction, arg, subcommand
 from tyro.constructors import PrimitiveConstructorSpec
 
 
@@ -48,6 +48,9 @@ View = Annotated[Literal["native", "web"] | None, _choice("native", "web"), NO_D
 Flag = Annotated[bool, NO_DEFAULT]
 Scenario = Positional[
     Annotated[str, arg(metavar="SCENARIO", help="name (see `hsr8 list`) or TOML file")]
+]
+RobotName = Positional[
+    Annotated[str, arg(metavar="ROBOT", help="name (see `hsr8 robot list`) or description file")]
 ]
 RunPath = Positional[
     Annotated[Path, arg(metavar="RUN", help="run folder, or a parent folder for its newest run")]
@@ -281,5 +284,59 @@ class Doctor:
     json: Json = False
 
 
+@dataclass(frozen=True)
+class RobotList:
+    """List the shipped robots, and how to get the models that are missing."""
+
+    json: Json = False
+
+
+@dataclass(frozen=True)
+class RobotInspect:
+    """Guess the roles of a robot's parts and show the robot that results."""
+
+    file: Positional[
+        Annotated[str, arg(metavar="FILE", help="MJCF or URDF file, or a robot (name or file)")]
+    ]
+    write: File = None
+    """Description to write, a new .toml file."""
+    image: File = None
+    """Draw the robot in its ready posture as a PNG."""
+    json: Json = False
+
+
+@dataclass(frozen=True)
+class RobotCheck:
+    """Let a robot stand and walk in every direction, and compare its joints with their limits."""
+
+    robot: RobotName
+    json: Json = False
+    quiet: Quiet = False
+
+
+@dataclass(frozen=True)
+class RobotCalibrate:
+    """Measure a robot in simulation and write the results into its description."""
+
+    robot: RobotName
+    out: File = None
+    """Description to write instead, a new .toml file."""
+    json: Json = False
+    quiet: Quiet = False
+
+
+@dataclass(frozen=True)
+class Robot:
+    """Robots: list them, inspect a model file, check and calibrate a robot."""
+
+    action: (
+        Annotated[RobotList, subcommand("list")]
+        | Annotated[RobotInspect, subcommand("inspect")]
+        | Annotated[RobotCheck, subcommand("check")]
+        | Annotated[RobotCalibrate, subcommand("calibrate")]
+    )
+
+
+RobotAction = RobotList | RobotInspect | RobotCheck | RobotCalibrate
 OfRun = Verify | Info | Diff | Render | Replay | Plot
-Command = Run | Sweep | Compare | List | Check | OfRun | ColorTable | Schema | Doctor
+Command = Run | Sweep | Compare | List | Check | OfRun | Robot | ColorTable | Schema | Doctor

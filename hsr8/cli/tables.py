@@ -6,7 +6,7 @@ from collections.abc import Mapping, Sequence
 from rich.markup import escape
 from rich.table import Column, Table
 
-UNITS = {"m": "m", "s": "s", "ms": "ms", "deg": "deg", "mps": "m/s", "radps": "rad/s"}
+UNITS = {"m": "m", "s": "s", "ms": "ms", "deg": "deg", "mps": "m/s", "radps": "rad/s", "kg": "kg"}
 
 
 def facts(values: Mapping[str, object], title: str | None = None) -> Table:

@@ -104,6 +104,21 @@ class Calibration(Table):
     """Standard deviation of its height [m]."""
 
 
+class About(Table):
+    """Facts of a shipped robot, for a list that needs no models."""
+
+    title: Name
+    """Name for people."""
+    source: Name
+    """Origin of the model."""
+    mass: Positive
+    """Mass [kg]."""
+    leg: Size
+    """Hip to sole along the straight leg [m]."""
+    joints: Annotated[int, Interval(ge=12, le=1000)]
+    """Number of joints."""
+
+
 class RobotDescription(Table):
     """Robot: its model file, the roles of its parts, and what the model does not say."""
 
@@ -154,6 +169,8 @@ class RobotDescription(Table):
     """Maximum rate of the head joints; default: from their speed limits [rad/s]."""
     head_acceleration: Positive | None = None
     """Maximum angular acceleration of the head joints [rad/s²]."""
+    about: About | None = None
+    """Facts of a shipped robot."""
     calibration: Calibration | None = None
     """Properties measured by ``hsr8 robot calibrate``."""
 

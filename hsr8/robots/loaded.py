@@ -83,7 +83,19 @@ def load_robot(name_or_file: str) -> LoadedRobot:
 
 @lru_cache(maxsize=8)
 def _loaded(file: Path, _changed: int) -> LoadedRobot:
-    description = read_description(file)
+    return build_robot(read_description(file), file)
+
+
+def build_robot(description: RobotDescription, file: Path) -> LoadedRobot:
+    """Return the robot of a description.
+
+    Args:
+        description: of the robot.
+        file: of the description, which need not exist; relative paths begin at its folder.
+
+    Raises:
+        ModelError: as `load_robot`.
+    """
     model_file = find_model(description, file.parent)
     source = str(model_file)
     raw = read_model(model_file, description, file.parent)

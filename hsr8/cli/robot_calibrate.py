@@ -1,0 +1,92 @@
+"""``hsr8 robot calibrate``: properties of a robot, measured in simulation."""
+
+import os
+import shlex
+import sys
+from dataclasses import asdict
+from datetime import UTC, datetime
+from pathlib import Path
+
+from rich.console import Console
+
+from hsr8.cli import tables
+from hsr8.cli.options import RobotCalibrate
+from hsr8.cli.output_file import require_file_name, writing
+from hsr8.errors import UsageError
+from hsr8.recorder.files import atomic
+from hsr8.robots.description import Calibration, read_description
+from hsr8.robots.description_file import moved, with_calibration
+from hsr8.robots.loaded import build_robot
+from hsr8.robots.locate import find_description
+from hsr8.trials.calibration import calibrate
+from hsr8.version import VERSION
+
+UNITS = {
+    "vx": "mps",
+    "vx_backward": "mps",
+    "vy": "mps",
+    "wz": "radps",
+    "turn_delay": "s",
+    "lag": "s",
+    "height_sigma": "m",
+}
+
+
+def main(options: RobotCalibrate) -> int:
+    """Measure, print the results and write them into the description.
+
+    Raises:
+        UsageError: the description cannot be written.
+        ModelError: the robot is invalid or its model is missing.
+    """
+    source = find_description(options.robot).resolve()
+    description = read_description(source)
+    target = _target(options, source)
+    robot = build_robot(description.model_copy(update={"calibration": None}), source)
+    number = 0
+
+    def report(line: str) -> None:
+        nonlocal number
+        number += 1
+        if not options.quiet:
+            print(f"trial {number:3d}   {line}", file=sys.stderr, flush=True)
+
+    measured = asdict(calibrate(robot, report))
+    result = Calibration.model_validate(
+        {
+            "date": datetime.now(UTC).date().isoformat(),
+            "version": VERSION,
+            "command": shlex.join(["hsr8", "robot", "calibrate", options.robot]),
+            **measured,
+        }
+    )
+    text = source.read_text("utf-8")
+    if target != source:
+        text = moved(text, source.parent, target.parent)
+    with writing("--out" if options.out else "ROBOT", target):
+        atomic.write_text(target, with_calibration(text, result))
+    values = result.model_dump()
+    if options.json:
+        print(atomic.dumps({"robot": robot.name, "file": str(target), "calibration": values}))
+    elif not options.quiet:
+        flat = {**values.pop("speed"), **values}
+        named = {f"{key}_{UNITS[key]}" if key in UNITS else key: v for key, v in flat.items()}
+        Console(highlight=False).print(tables.facts(named, robot.name))
+        print(f"description {target}")
+    return 0
+
+
+def _target(options: RobotCalibrate, source: Path) -> Path:
+    """Return the file to write.
+
+    Raises:
+        UsageError: it cannot be written, or another description exists there.
+    """
+    if options.out is not None:
+        require_file_name("--out", options.out, (".toml",))
+        if options.out.exists():
+            raise UsageError(f"--out {options.out}: exists; expected a new file")
+        return options.out.absolute()
+    if not (os.access(source, os.W_OK) and os.access(source.parent, os.W_OK)):
+        raise UsageError(f"{source}: cannot be written; expected --out FILE with a new file")
+    return source

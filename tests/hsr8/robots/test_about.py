@@ -1,0 +1,25 @@
+"""The facts of shipped robots are those of their models."""
+
+import pytest
+
+from hsr8.robots.description import read_description
+from hsr8.robots.loaded import load_robot
+from hsr8.robots.locate import find_description, installed_model, robot_names
+from hsr8.robots.read_model import read_model
+
+
+@pytest.mark.parametrize("name", robot_names())
+def test_mass_and_joints_are_those_of_the_model(name):
+    file = find_description(name)
+    description = read_description(file)
+    model_file = installed_model(description, file.parent)
+    if model_file is None:
+        pytest.skip("the model is not installed")
+    model = read_model(model_file, description, file.parent).spec.compile()
+    assert description.about.mass == pytest.approx(model.body_subtreemass[1], rel=0.01)
+    assert description.about.joints == model.njnt - 1
+
+
+def test_the_leg_is_that_of_the_model():
+    robot = load_robot("hsr8")
+    assert robot.description.about.leg == pytest.approx(robot.model.measures().leg, rel=0.01)
