@@ -1,0 +1,53 @@
+"""Posture of a description: SRDF states, clipping and names."""
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from hsr8.errors import ModelError
+from hsr8.robots.posture import clip_to_range, stated_posture
+from tests.hsr8.robots.small_urdf import describe
+
+SRDF = '<robot name="r"><group_state name="home" group="g">{}</group_state></robot>'
+
+
+def stated(folder, text, state="home", **keys):
+    (folder / "small.srdf").write_text(text)
+    return stated_posture(describe(srdf="small.srdf", state=state, **keys), folder)
+
+
+@given(st.floats(-7, 7), st.floats(-3, 3), st.floats(0.01, 3))
+def test_clipped_angles_are_inside_and_others_unchanged(angle, lower, width):
+    clipped = clip_to_range(angle, lower, lower + width)
+    assert lower <= clipped <= lower + width
+    assert clipped == angle or not lower <= angle <= lower + width
+
+
+def test_the_description_overrides_the_state(tmp_path):
+    text = SRDF.format('<joint name="a" value="1"/><joint name="b" value="2"/>')
+    assert stated(tmp_path, text, posture={"b": 0.5}) == {"a": 1.0, "b": 0.5}
+
+
+def test_joints_of_several_values_are_left_out(tmp_path):
+    assert stated(tmp_path, SRDF.format('<joint name="root" value="0 0 1"/>')) == {}
+
+
+@pytest.mark.parametrize(
+    ("text", "state", "reason"),
+    [
+        ("<robot", "home", "cannot be read"),
+        (SRDF.format(""), "hom", "no group state 'hom'; did you mean 'home'?; the file has: home"),
+        ("<robot/>", "home", "the file has: none"),
+        (SRDF.format('<joint name="a" value="x"/>'), "home", "joint 'a' in the group state 'home'"),
+        (SRDF.format('<joint name="a" value="nan"/>'), "home", "got 'nan'; expected an angle"),
+        (SRDF.format('<joint name="a"/>'), "home", "got ''; expected an angle|got 'None'"),
+    ],
+)
+def test_wrong_files_are_refused(text, state, reason, tmp_path):
+    with pytest.raises(ModelError, match=reason.replace("?;", r"\?;")):
+        stated(tmp_path, text, state)
+
+
+def test_a_missing_file_is_refused(tmp_path):
+    with pytest.raises(ModelError, match=r"small\.srdf: cannot be read"):
+        stated_posture(describe(srdf="small.srdf", state="home"), tmp_path)
