@@ -18,6 +18,7 @@ from hsr8.robots.urdf_soles import Sole
 
 Array = NDArray[np.float64]
 MIN_MASS = 1e-9  # of a moving body without mass, by that of the robot [1]
+PHYSICS_STEP = 0.0025  # a URDF file states none [s]
 MIN_GYRATION = 0.01  # its radius of gyration [m]
 INERTIA_TOLERANCE = 1e-6  # of the triangle inequality, by the largest principal moment [1]
 SOLE: dict[str, Any] = {
@@ -70,6 +71,7 @@ class ModelBuilder:
             raise ModelError(f"{urdf.file}: no link has a mass; expected <inertial> elements")
         spec.modelname = urdf.file.stem
         spec.compiler.degree = False
+        spec.option.timestep = PHYSICS_STEP
         spec.compiler.inertiafromgeom = mujoco.mjtInertiaFromGeom.mjINERTIAFROMGEOM_FALSE
         height = self._soles[next(iter(self._soles))].height
         body = spec.worldbody.add_body(name=self._base.link, pos=(0.0, 0.0, -height))
