@@ -288,7 +288,7 @@ def _hanging(skeleton: Skeleton, arms: Limb) -> Iterator[tuple[str, float]]:
         rolls = [j for j in arm if abs(skeleton.axes[j, 0]) > PARALLEL]
         if not rolls:
             return
-        lever = skeleton.coms[arm[-1]] - skeleton.anchors[rolls[0]]
+        lever = skeleton.com_below(rolls[0]) - skeleton.anchors[rolls[0]]
         if -lever[2] > HANGING * np.linalg.norm(lever):
             return
         axis = skeleton.axes[rolls[0]]

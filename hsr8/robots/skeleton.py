@@ -66,8 +66,19 @@ class Skeleton:
 
     def mass_below(self, joint: int) -> float:
         """Return the mass that a joint moves [kg]."""
-        moved = [j for j in range(len(self.joints)) if joint in self.chain(j)]
-        return float(self.masses[moved].sum())
+        return float(self.masses[self._below(joint)].sum())
+
+    def com_below(self, joint: int) -> Array:
+        """Return the centre of the mass that a joint moves, in the root (3,) [m]."""
+        moved = self._below(joint)
+        masses = self.masses[moved]
+        if not masses.sum():
+            return self.anchors[joint].copy()
+        com: Array = np.average(self.coms[moved], axis=0, weights=masses)
+        return com
+
+    def _below(self, joint: int) -> list[int]:
+        return [j for j in range(len(self.joints)) if joint in self.chain(j)]
 
     def turned(self, rotation: Array) -> "Skeleton":
         """Return the skeleton in a frame with the rows of `rotation` (3, 3) as its axes."""

@@ -110,6 +110,12 @@ def _near(foot: str, urdf: Urdf) -> list[str]:
     return (names or ends)[:8]
 
 
+def immovable(urdf: Urdf) -> list[str]:
+    """Joints that cannot move, whatever the description states."""
+    description = RobotDescription(model=str(urdf.file), feet=("left", "right"))
+    return list(_reasons(urdf, description, set(urdf.joints)))
+
+
 def _reasons(urdf: Urdf, description: RobotDescription, exempt: set[str]) -> dict[str, str]:
     """Reason of every joint that is held."""
     rules: dict[str, Callable[[Joint], bool]] = {

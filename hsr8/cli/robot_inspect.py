@@ -1,0 +1,96 @@
+"""``hsr8 robot inspect``: guessed roles of a robot's parts, and the robot that results."""
+
+import shlex
+from dataclasses import asdict
+
+from rich.console import Console
+
+from hsr8.cli import tables
+from hsr8.cli.options import RobotInspect
+from hsr8.cli.output_file import require_file_name, writing
+from hsr8.errors import ModelError, UsageError
+from hsr8.recorder.files import atomic
+from hsr8.render.png import write_png
+from hsr8.render.portrait import portrait
+from hsr8.robots.description_file import description_text
+from hsr8.robots.facts import facts
+from hsr8.robots.inspection import Inspection, inspect
+from hsr8.robots.loaded import LoadedRobot, build_robot
+
+
+def main(options: RobotInspect) -> int:
+    """Print roles and derived numbers; write the description and draw the robot.
+
+    A description is also written for a robot that is refused, to be corrected.
+
+    Raises:
+        UsageError: an output file is invalid.
+        ModelError: a file is wrong, no legs were found, or the robot is refused.
+        RenderingUnavailable: an image is to be drawn and there is no OpenGL.
+    """
+    _require_outputs(options)
+    inspection = inspect(options.file)
+    if inspection.stated and options.write is not None:
+        raise UsageError(f"--write {options.write}: {options.file} is a description already")
+    robot, refusal = None, None
+    try:
+        robot = build_robot(inspection.require_description(), inspection.file)
+    except ModelError as error:
+        refusal = error
+    _show(options, inspection, robot, refusal)
+    if options.write is not None and inspection.description is not None:
+        words = ["hsr8", "robot", "inspect", options.file]
+        text = description_text(inspection, options.write, shlex.join(words))
+        with writing("--write", options.write):
+            atomic.write_text(options.write, text)
+        if not options.json:
+            print(f"description {options.write}")
+    if refusal is not None:
+        raise refusal
+    if options.image is not None and robot is not None:
+        image = portrait(robot)
+        with writing("--image", options.image):
+            write_png(options.image, image)
+    if not options.json:
+        file = options.write or (options.file if inspection.stated else None)
+        if file is None:
+            print(f"keep it     {shlex.join(['hsr8', 'robot', 'inspect', options.file])} --write F")
+        else:
+            print(f"check it    {shlex.join(['hsr8', 'robot', 'check', str(file)])}")
+    return 0
+
+
+def _require_outputs(options: RobotInspect) -> None:
+    """Check the names of the output files.
+
+    Raises:
+        UsageError: a name is invalid, or the description exists.
+    """
+    if options.write is not None:
+        require_file_name("--write", options.write, (".toml",))
+        if options.write.exists():
+            raise UsageError(f"--write {options.write}: exists; expected a new file")
+    if options.image is not None:
+        require_file_name("--image", options.image, (".png",))
+
+
+def _show(
+    options: RobotInspect,
+    inspection: Inspection,
+    robot: LoadedRobot | None,
+    refusal: ModelError | None,
+) -> None:
+    """Print the findings, and the numbers of the robot unless it is refused."""
+    findings = [asdict(finding) for finding in inspection.findings]
+    numbers = None if robot is None else facts(robot)
+    notes = [] if robot is None else list(robot.notes)
+    if options.json:
+        result = {"model": str(inspection.model), "findings": findings, "robot": numbers}
+        print(atomic.dumps({**result, "notes": notes, "refusal": refusal and str(refusal)}))
+        return
+    console = Console(highlight=False)
+    console.print(tables.rows(findings, str(inspection.model)))
+    if numbers is not None:
+        console.print(tables.facts(numbers))
+    for note in notes:
+        console.print(note, soft_wrap=True, markup=False)
