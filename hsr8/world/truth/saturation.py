@@ -80,7 +80,8 @@ class SaturationWatch:
     def _evaluate(self) -> None:
         index, rows, before = self._index, slice(self._pending), self._total
         self._pending = 0
-        torque = np.abs(self._force[rows, index.actuators]) / self._max_torque
+        # A limit of the joint, unlike one of the servo, clips later than here.
+        torque = np.minimum(np.abs(self._force[rows, index.actuators]) / self._max_torque, 1.0)
         angle = self._angle[rows, index.joint_qpos]
         saturated = torque >= AT_LIMIT
         stopped = (angle < self._lower) | (angle > self._upper)
