@@ -94,7 +94,7 @@ class ScheduledPlanner:
     def __init__(self, schedule: CommandSchedule) -> None:
         self._schedule = schedule
 
-    def plan(self, belief: Belief, task: Task) -> MotionDecision:
+    def plan(self, belief: Belief, task: Task, look: float | None = None) -> MotionDecision:
         """Return the velocity in force."""
         vx, vy, wz = self._schedule.at(belief.time).velocity
         return MotionDecision(

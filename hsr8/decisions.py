@@ -68,8 +68,14 @@ class GazeController(Protocol):
 class MotionPlanner(Protocol):
     """Motion planner."""
 
-    def plan(self, belief: Belief, task: Task) -> MotionDecision:
-        """Return the motion of the next footstep; `belief.tracks` include nearby landmarks."""
+    def plan(self, belief: Belief, task: Task, look: float | None) -> MotionDecision:
+        """Return the motion of the next footstep.
+
+        Args:
+            belief: of the robot; its tracks include nearby landmarks.
+            task: of the mission.
+            look: direction in W that the body turns to for a fixed camera, if any [rad].
+        """
 
 
 class Decisions:
@@ -99,6 +105,7 @@ class Decisions:
         self._landmarks = landmarks
         self._footstep = footstep
         self._motion: MotionDecision | None = None
+        self._look: float | None = None
         self._planned_at = -np.inf
         self._planned_step = -1
 
@@ -118,18 +125,20 @@ class Decisions:
         task = self._mission.update(belief.pose)
         fresh = self._motion is None
         motion = self._move(context, belief, task)
-        return Decision(belief, task, motion, self._gaze.choose(belief, task, motion), fresh)
+        gaze = self._gaze.choose(belief, task, motion)
+        self._look = gaze.body_direction
+        return Decision(belief, task, motion, gaze, fresh)
 
     def forget(self) -> None:
         """Drop the motion decision in force."""
-        self._motion = None
+        self._motion, self._look = None, None
 
     def _move(self, context: DecisionContext, belief: Belief, task: Task) -> MotionDecision:
         """Return a new motion decision once per footstep, or per footstep time when standing."""
         elapsed = context.time - self._planned_at
         due = context.step_count != self._planned_step or elapsed >= self._footstep
         if self._motion is None or due:
-            self._motion = self._planner.plan(self._landmarks.added_to(belief), task)
+            self._motion = self._planner.plan(self._landmarks.added_to(belief), task, self._look)
             self._planned_at = context.time
             self._planned_step = context.step_count
         return self._motion

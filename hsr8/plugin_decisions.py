@@ -35,7 +35,7 @@ class PluginPlanner:
     def __init__(self, planner: MotionPlanner) -> None:
         self._plan = PluginMethod(planner, "planner", "plan(belief, task)", MotionDecision)
 
-    def plan(self, belief: Belief, task: Task) -> MotionDecision:
+    def plan(self, belief: Belief, task: Task, look: float | None = None) -> MotionDecision:
         """Return the validated motion for the next footstep."""
         motion, name = self._plan(deepcopy(belief), deepcopy(task)), self._plan.name
         if motion.field is not None and not callable(getattr(motion.field, "at", None)):

@@ -16,6 +16,7 @@ ACCELERATION = 0.3
 USED = 0.9  # fraction of the speed envelope for navigation [1]
 HEAD_USED = 0.8  # fraction of the speed of the head joints [1]
 FIXED_PAN = 0.01  # smallest range of the gaze that its map admits [rad]
+BODY_PAN = 1.0  # turn of a body with a fixed camera from its course [rad]
 HEAD_RANGE = 0.02  # of pan and tilt that the gaze leaves free at both ends [rad]
 
 
@@ -85,9 +86,9 @@ def _gaze(robot: LoadedRobot) -> dict[str, Any]:
     (low_pan, high_pan), (low_tilt, high_tilt) = robot.model.neck.range().tolist()
     if robot.model.tree.head is None:
         return {
-            "mode": "fixed",
+            "moved_by": "body",
             "fixed_tilt": low_tilt,
-            "max_pan": FIXED_PAN,
+            "max_pan": BODY_PAN,
             "min_tilt": min(low_tilt, -FIXED_PAN),
             "max_tilt": max(high_tilt, 0.0),
         }

@@ -32,7 +32,7 @@ PUBLIC = _dotted(
         "navigation": "profile",
         "navigation.mission": "r_via r_goal heading_tolerance",
         "navigation.evaluation": "d_nm d_fm map_ratio",
-        "navigation.gaze": "mode w_lm w_way w_sf w_ob step switch_ratio dwell fixed_tilt "
+        "navigation.gaze": "mode moved_by w_lm w_way w_sf w_ob step switch_ratio dwell fixed_tilt "
         "sweep_amplitude sweep_period max_pan min_tilt max_tilt box_fraction obstacle_votes "
         "map_votes candidates",
         "navigation.planner": "method memory",

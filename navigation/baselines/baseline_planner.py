@@ -10,7 +10,7 @@ from navigation.angles import wrap
 from navigation.baselines.planning_scene import PlanningScene
 from navigation.belief.belief import Belief
 from navigation.decision import MotionDecision, SpeedLimits, Task, read_only
-from navigation.motion.facing import arriving
+from navigation.motion.facing import arriving, towards
 from navigation.motion.move_to_goal import ArrivalSide, arrival_gain, move_to_goal
 from navigation.motion.velocity_mapping import idle_velocity
 from navigation.obstacle_set import ObstacleSet
@@ -55,19 +55,20 @@ class BaselinePlanner:
         self._arrival = ArrivalSide(parameters.univector)
         self._body = np.zeros(3)
 
-    def plan(self, belief: Belief, task: Task) -> MotionDecision:
+    def plan(self, belief: Belief, task: Task, look: float | None = None) -> MotionDecision:
         """Decide the motion of the next footstep; call once per footstep.
 
         Args:
             belief: of the robot.
             task: of the mission.
+            look: direction in W that the body turns to for a fixed camera, if any [rad].
         """
         heading = float(belief.pose[2])
         if task.done or belief.lost:
             turn_rate = self._parameters.velocity_mapping.lost_turn_rate
             self._body = idle_velocity(not task.done, turn_rate, self._limits)
             return MotionDecision(read_only(self._body), heading)
-        scene = self._scene(belief, task)
+        scene = self._scene(belief, task, look)
         self._body = np.clip(self._avoidance.decide(scene), scene.low(), scene.high())
         vx, vy, _ = self._body.tolist()
         speed = hypot(vx, vy)
@@ -76,7 +77,7 @@ class BaselinePlanner:
         pairs = zip(scene.obstacles.ids.tolist(), radii.tolist(), strict=True)
         return MotionDecision(read_only(self._body), direction, speed, extended_radii=tuple(pairs))
 
-    def _scene(self, belief: Belief, task: Task) -> PlanningScene:
+    def _scene(self, belief: Belief, task: Task, look: float | None) -> PlanningScene:
         p = self._parameters
         known = [t for t in belief.tracks if t.particles is None or t.age <= p.planner.memory]
         obstacles = ObstacleSet.from_tracks(known)
@@ -91,11 +92,16 @@ class BaselinePlanner:
             task=task,
             course=course,
             speed=speed,
-            facing=task.heading if turning else None,
+            facing=task.heading if turning else self._heading(look, course),
             side=side,
             limits=self._limits,
             parameters=p,
         )
+
+    def _heading(self, look: float | None, course: float) -> float | None:
+        """Return the target heading for a fixed camera, None for the course [rad]."""
+        most = self._parameters.gaze.max_pan
+        return None if look is None else towards(look, course, most).heading
 
     def _move_to_goal(self, pose: Array, task: Task) -> tuple[float, float, int]:
         """Return direction [rad], speed [m/s] and arrival side without obstacles."""

@@ -67,8 +67,9 @@ class GazeGrid:
         self._step = p.step
         columns = int(p.max_pan / p.step + _FLAT)
         self.pan: Array = p.step * np.arange(-columns, columns + 1, dtype=np.float64)
-        rows = int((p.max_tilt - p.min_tilt) / p.step + _FLAT) + 1
-        self.tilt: Array = p.min_tilt + p.step * np.arange(rows, dtype=np.float64)
+        lowest, highest = (p.min_tilt, p.max_tilt) if p.moved_by == "head" else (p.fixed_tilt,) * 2
+        rows = int((highest - lowest) / p.step + _FLAT) + 1
+        self.tilt: Array = lowest + p.step * np.arange(rows, dtype=np.float64)
         self._half_pan = p.box_fraction * horizontal_fov
         self._half_tilt = p.box_fraction * vertical_fov
 

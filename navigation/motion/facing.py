@@ -5,6 +5,7 @@ from math import hypot
 import numpy as np
 from numpy.typing import NDArray
 
+from navigation.angles import wrap
 from navigation.decision import Task
 from navigation.value import value
 
@@ -28,6 +29,11 @@ class Facing:
     def on(self, course: float) -> float:
         """Return the target heading while walking along `course` [rad]."""
         return course + self.offset if self.heading is None else self.heading
+
+
+def towards(direction: float, course: float, most: float) -> Facing:
+    """Return the heading nearest to a direction in W, at most `most` from the course [rad]."""
+    return Facing(course + min(max(wrap(direction - course), -most), most))
 
 
 def arriving(position: Array, task: Task, distance: float) -> bool:

@@ -18,7 +18,7 @@ from navigation.decision import (
 )
 from navigation.motion.collision_band import CollisionCase, Encounter
 from navigation.motion.extended_radius import extended_radius, physical_radius
-from navigation.motion.facing import Facing, arriving
+from navigation.motion.facing import Facing, arriving, towards
 from navigation.motion.hypotheses import collision_hypotheses
 from navigation.motion.motion_field import ActiveVirtualObstacles, FieldScene, MotionField
 from navigation.motion.move_to_goal import ArrivalSide, arrival_gain
@@ -86,12 +86,13 @@ class Planner:
         self._body = np.zeros(3)
         self._direction: float | None = None
 
-    def plan(self, belief: Belief, task: Task) -> MotionDecision:
+    def plan(self, belief: Belief, task: Task, look: float | None = None) -> MotionDecision:
         """Decide the motion of the next footstep; call once per footstep.
 
         Args:
             belief: of the robot.
             task: of the mission.
+            look: direction in W that the body turns to for a fixed camera, if any [rad].
         """
         heading = float(belief.pose[2])
         if self._direction is None:
@@ -104,7 +105,7 @@ class Planner:
         task = self._search_waypoint(belief, task, obstacles)
         scene, radii = self._scene(belief, task, obstacles)
         wanted = self._wanted(belief, task, scene)
-        facing = self._facing(belief, task, wanted)
+        facing = self._facing(belief, task, wanted, look)
         course, speed = self._filtered(belief, wanted, facing, obstacles)
         self._path = course, speed
         self._body = body_velocity(
@@ -203,11 +204,14 @@ class Planner:
             field=self._field.planned(float(pose[2]), scene, virtual),
         )
 
-    def _facing(self, belief: Belief, task: Task, wanted: _Wanted) -> Facing:
-        """Return the target heading: that of the goal, or the course with the rear check."""
+    def _facing(self, belief: Belief, task: Task, wanted: _Wanted, look: float | None) -> Facing:
+        """Return the target heading: that of the goal, or the course with gaze or rear check."""
         p = self._parameters
         if arriving(belief.pose[:2], task, p.univector.holonomic_distance):
             return Facing(task.heading)
+        course, speed = self._path or (wanted.direction, wanted.speed)
+        if look is not None:
+            return towards(look, course, p.gaze.max_pan)
         # Only the deadline gaze answers look requests.
         if not p.rear_check.enabled or p.gaze.mode != "deadline":
             return Facing()
@@ -215,7 +219,6 @@ class Planner:
             reach = p.gaze.max_pan + p.gaze.box_fraction * belief.view.horizontal_fov
             s_robot, v_max = p.univector.s_robot, self._limits.vx
             self._rear_check = RearCheck(p.rear_check, reach, s_robot, v_max)
-        course, speed = self._path or (wanted.direction, wanted.speed)
         angle = self._rear_check.body_angle(belief, course, speed)
         return Facing(offset=angle, look_request=self._rear_check.look_request())
 

@@ -81,3 +81,28 @@ def test_the_order_of_tracks_is_irrelevant(belief, task, track, limits):
         other = planner(limits, p).choose(belief(tracks[::-1]), task(), None)
         assert (one.pan, one.tilt) == (other.pan, other.tilt)
         assert one.gaze_map == pytest.approx(other.gaze_map)
+
+
+def with_a_fixed_camera(p=EXTENDED):
+    return replace(p, gaze=replace(p.gaze, moved_by="body", max_pan=1.0, fixed_tilt=-0.4))
+
+
+def test_a_body_turns_to_what_its_fixed_camera_must_see(belief, task, track, limits):
+    gaze = planner(limits, with_a_fixed_camera())
+    side = track((0.3, 0.6), (-0.05, -0.1), sigma=0.08, age=1.0)
+    decision = gaze.choose(belief([side]), task(), None)
+    assert decision.tilt == -0.4
+    assert 0.3 < decision.pan <= 1.0
+    assert decision.body_direction == pytest.approx(decision.pan)
+
+
+def test_a_direction_of_the_body_stays_in_the_world_while_it_turns(belief, task, track, limits):
+    gaze = planner(limits, with_a_fixed_camera())
+    side = track((0.3, 0.6), (-0.05, -0.1), sigma=0.08, age=1.0)
+    first = gaze.choose(belief([side]), task(), None)
+    turned = gaze.choose(belief([side], pose=(0.0, 0.0, 0.2), time=0.06), task(), None)
+    assert turned.body_direction == first.body_direction
+
+
+def test_a_head_leaves_the_body_alone(belief, task, limits):
+    assert planner(limits).choose(belief(), task(), None).body_direction is None

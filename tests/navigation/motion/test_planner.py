@@ -242,3 +242,13 @@ def test_there_is_no_rear_check_at_the_goal_and_in_the_paper(belief, task, limit
         decision = Planner(p, limits).plan(belief(age=_stale_behind), t)
         assert decision.look_request is None
         assert decision.velocity[2] == pytest.approx(0.0)
+
+
+def test_the_body_turns_for_a_fixed_camera_and_keeps_its_course(belief, task, limits):
+    p = EXTENDED
+    ahead = Planner(p, limits).plan(belief(), task())
+    left = Planner(p, limits).plan(belief(), task(), 0.8)
+    assert left.velocity[2] > ahead.velocity[2] == pytest.approx(0.0, abs=1e-9)
+    assert left.velocity[1] / left.velocity[0] == pytest.approx(0.0, abs=1e-9)
+    goal = task((0.05, 0.0), is_goal=True)
+    assert Planner(p, limits).plan(belief(), goal, 0.8).velocity[2] == pytest.approx(0.0, abs=1e-9)
