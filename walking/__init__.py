@@ -3,9 +3,9 @@
 The library reads the robot from one :class:`walking.body.robot_model.RobotModel` and its sensors
 from :class:`walking.sensing.BodySensors` only, so it would run on the real robot unchanged.
 
-Another humanoid is another MJCF file; `RobotModel.from_mjcf` lists the names it must contain::
+Another humanoid is another `walking.body.tree.RobotTree`::
 
-    robot = RobotModel.from_mjcf(path)
+    robot = RobotModel(tree)
     engine = WalkingEngine(robot, parameters_for(robot))
 
 The default parameters were tuned for HSR-VIII; `parameters_for` scales them to the robot.

@@ -241,7 +241,7 @@ class WalkingEngine:
 
     @property
     def _settled(self) -> bool:
-        """Whether the errors of the start, which are no loss of balance, have decayed."""
+        """Whether the errors of the start, which the balance step must ignore, have decayed."""
         return self._ticks * CONTROL_PERIOD > self._parameters.gait.settle_time
 
     def _command(self, command: Command, error: Point) -> None:

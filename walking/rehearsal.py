@@ -96,7 +96,7 @@ def within_joints(
         known: speed limits found by a calibration, instead of a search.
 
     Returns:
-        The parameters, and notes on what was changed.
+        The parameters, and notes on the changes.
     """
     notes: list[str] = []
     parameters = _with_lift(robot, parameters, notes)

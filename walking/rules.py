@@ -23,7 +23,7 @@ from walking.parameters import (
 
 MAX_GYRO_GAIN = 0.12  # ankle setpoint per angular velocity; above, soft ankles oscillate [s]
 PLAN_FRACTION = 0.6  # maximum margin of the planned ZMP, of the sole's half width [1]
-SOLE_FRACTION = 1.0 / 3.0  # maximum margin of the ZMP moved by the ankles, likewise [1]
+SOLE_FRACTION = 1.0 / 3.0  # maximum margin of the ZMP moved by the ankles, of that half width [1]
 MAX_SLOWER = 1.4  # footstep time, of that by similarity [1]
 MIN_LAGS = 9.0  # duration of a footstep, of the lag of the slowest leg servo [1]
 MAX_STANCE = 0.2  # half stance, of the length of the leg [1]

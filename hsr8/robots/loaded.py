@@ -177,8 +177,8 @@ def _compare(
     _same(source, "mass [kg]", raw.body_subtreemass[root], normal.body_subtreemass[1])
     _same(source, "centre of mass [m]", before.subtree_com[root], after.subtree_com[1])
     for joint in (raw.joint(j) for j in range(1, raw.njnt)):
-        place = after.joint(joint.name).xanchor
-        _same(source, f"place of joint {joint.name!r} [m]", before.xanchor[joint.id], place)
+        anchor = after.joint(joint.name).xanchor
+        _same(source, f"place of joint {joint.name!r} [m]", before.xanchor[joint.id], anchor)
 
 
 def _same(source: str, quantity: str, before: Array | float, after: Array | float) -> None:

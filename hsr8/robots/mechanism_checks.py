@@ -7,6 +7,7 @@ from collections.abc import Iterator
 
 import mujoco
 import numpy as np
+from numpy.typing import NDArray
 
 from hsr8.errors import ModelError
 from hsr8.robots.description import RobotDescription
@@ -33,10 +34,12 @@ def check_mechanism(
     """Refuse a mechanism that the walking engine cannot drive.
 
     Raises:
-        ModelError: inertia that is not positive, a closed chain, or joints without a servo.
+        ModelError: inertia that is not positive, a reversed range, a closed chain, or joints
+            without a servo.
     """
     check = _Mechanism(model, roles, description, source)
     check.inertia()
+    check.ranges()
     check.ties()
     check.tendons()
     check.servos()
@@ -90,6 +93,23 @@ class _Mechanism:
                     f"body {name!r}: inertia is not positive, got principal moments {values} "
                     "kg m²; expected positive ones: correct its <inertial>"
                 )
+
+    def ranges(self) -> None:
+        """Ranges must rise; MuJoCo takes a reversed one for no limit."""
+        model = self._model
+        for joint in range(model.njnt):
+            if model.body_rootid[model.jnt_bodyid[joint]] == self._root:
+                who = f"joint {label(model.joint(joint).name, joint)!r}"
+                self._require_rise(who, "range", model.jnt_range[joint])
+                self._require_rise(who, "actuatorfrcrange", model.jnt_actfrcrange[joint])
+        for servo in range(model.nu):
+            who = f"actuator {label(model.actuator(servo).name, servo)!r}"
+            self._require_rise(who, "forcerange", model.actuator_forcerange[servo])
+
+    def _require_rise(self, who: str, name: str, limits: NDArray[np.float64]) -> None:
+        lower, upper = limits.tolist()
+        if lower > upper:
+            raise self._error(f"{who}: {name}, got {lower:g} {upper:g}; expected lower < upper")
 
     def ties(self) -> None:
         """No constraint may close a chain, hold the robot, or couple joints of the legs."""
@@ -179,6 +199,9 @@ class _Mechanism:
             )
         for actuator in actuators:
             who = f"actuator {label(model.actuator(actuator).name, actuator)!r} of joint {name!r}"
+            gain = model.actuator_gainprm[actuator, 0]
+            if gain < 0.0 and np.isclose(gain, -model.actuator_biasprm[actuator, 1]):
+                raise self._error(f"{who}: kp, got {gain:g}; expected > 0")
             if not is_position_servo(model, actuator):
                 raise self._error(
                     f"{who}: not a position servo but a torque motor or another kind; expected "

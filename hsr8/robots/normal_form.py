@@ -287,11 +287,11 @@ def _add_camera(spec: mujoco.MjSpec, zero: Posed, pose: tuple[str, Array, Array]
     data, (body, position, rotation) = zero.data, pose
     at = zero.model.body(body).id
     frame = data.xmat[at].reshape(3, 3)
-    place = frame.T @ (position - data.xpos[at])
+    offset = frame.T @ (position - data.xpos[at])
     carrier = spec.body(body)
-    carrier.add_site(name=CAMERA_SITE, pos=place, quat=_quaternion(frame.T @ rotation))
+    carrier.add_site(name=CAMERA_SITE, pos=offset, quat=_quaternion(frame.T @ rotation))
     looking = rotation * (1.0, -1.0, -1.0)  # MuJoCo cameras look along -z with y up
-    carrier.add_camera(name=HEAD_CAMERA, pos=place, quat=_quaternion(frame.T @ looking))
+    carrier.add_camera(name=HEAD_CAMERA, pos=offset, quat=_quaternion(frame.T @ looking))
 
 
 def _quaternion(rotation: Array) -> Array:

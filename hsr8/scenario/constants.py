@@ -56,7 +56,7 @@ def placed(table: Table) -> Table:
     values = _flat({name: table[name] for name in LIBRARIES if name in table})
     settings = _nested({key: value for key, value in values.items() if key in PUBLIC})
     constants = _nested({key: value for key, value in values.items() if key not in PUBLIC})
-    return {**table, **settings, CONSTANTS: constants}
+    return {**table, **settings, **({CONSTANTS: constants} if constants else {})}
 
 
 def separated(data: Table) -> Table:

@@ -64,8 +64,7 @@ def test_a_log_of_everything_changes_nothing(tmp_path):
         file = tmp_path / f"{level}.rrd"
         log = RerunLog(
             file,
-            simulation.model,
-            simulation.layout,
+            (simulation.model, simulation.humanoid, simulation.layout),
             size,
             "test",
             gaze=scenario.navigation.gaze,

@@ -78,7 +78,7 @@ def test_every_generator_walks_a_robot_of_half_the_size(tmp_path, generator):
 
 def test_a_small_robot_needs_parameters_of_its_own(tmp_path):
     # Everything is chosen, nothing derived: the walk of the reference with legs too short for it.
-    body = Body(0.6, tmp_path)
+    body = Body(0.5, tmp_path)
     engine = WalkingEngine(body.robot, WalkingParameters())
     tilt = 0.0
     for _ in range(400):

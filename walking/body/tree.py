@@ -1,4 +1,4 @@
-"""Kinematic tree of a robot: all that the walking engine is told about its body."""
+"""Kinematic tree of a robot: everything that the walking engine knows of its body."""
 
 from dataclasses import dataclass
 

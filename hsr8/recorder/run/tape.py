@@ -2,7 +2,7 @@
 
 The file holds one guarded payload, a block, per second: number of the first tick, number of joints,
 hashes of world and robot before it, and the setpoints of each tick as little-endian doubles. The
-last block of a finished run has no ticks, only the final hashes. Physics driven by the same
+last block of a finished run has no ticks, only the final hashes. Physics driven by these
 setpoints must reproduce the hashes.
 """
 

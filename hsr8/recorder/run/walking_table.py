@@ -7,9 +7,12 @@ Points are in the world frame W. Points known in the odometry frame are transfor
 pose of the robot, so that planned and true curves can be compared.
 """
 
+from __future__ import annotations
+
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
@@ -20,10 +23,12 @@ from hsr8.recorder.files.writing import GrowingFile
 from hsr8.recorder.record import Listener, TickRecord
 from hsr8.recorder.record_buffer import RecordBuffer
 from hsr8.world.truth.truth import Truth
-from walking.body.robot_model import RobotModel
 from walking.command_limits import Limit
 from walking.phase import Phase
 from walking.state import WalkingState
+
+if TYPE_CHECKING:  # reading a table needs no robot
+    from walking.body.robot_model import RobotModel
 
 Array = NDArray[np.float64]
 
@@ -92,7 +97,7 @@ class WalkingTable:
         """
         return np.column_stack([self[f"{name}_x"], self[f"{name}_y"]])
 
-    def window(self, start: float, stop: float) -> "WalkingTable":
+    def window(self, start: float, stop: float) -> WalkingTable:
         """Return the rows from `start` to `stop` [s]."""
         chosen = (self.time >= start - 1e-9) & (self.time <= stop + 1e-9)
         columns = {name: values[chosen] for name, values in self.columns.items()}

@@ -1,14 +1,19 @@
 """Addresses of named parts in a compiled model, resolved once."""
 
+from __future__ import annotations
+
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 import mujoco
 import numpy as np
 from numpy.typing import NDArray
 
-from hsr8.robots.loaded import LoadedRobot
 from hsr8.robots.models import reading_models
 from hsr8.robots.normal_form import ACCELEROMETER, FEET, PADS, SOLES, pad
+
+if TYPE_CHECKING:  # reading a run needs no robot
+    from hsr8.robots.loaded import LoadedRobot
 
 Ints = NDArray[np.intp]
 
@@ -62,7 +67,7 @@ class ModelIndex:
     @reading_models()
     def of(
         cls, model: mujoco.MjModel, robot: LoadedRobot, n_static: int, n_moving: int
-    ) -> "ModelIndex":
+    ) -> ModelIndex:
         """Resolve the names in `model` with a robot, and some static and moving obstacles.
 
         Raises:

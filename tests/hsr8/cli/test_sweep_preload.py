@@ -5,7 +5,7 @@ LOADED = """
 import os, sys
 import hsr8.cli.sweep_preload
 from mujoco import egl
-from walking.body.leg_kernel import pose
+from walking.body.kinematics_kernel import pose
 print(len(os.listdir("/proc/self/task")), len(pose.signatures), egl.EGL_DISPLAY)
 print("rerun" in sys.modules)
 """
