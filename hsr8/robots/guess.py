@@ -1,7 +1,7 @@
 """Guess of the roles of a robot's parts from its kinematic tree; names come second."""
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from math import atan2, cos, sin
 from typing import Any, Literal
 
@@ -22,7 +22,7 @@ MID_PLANE = 0.03  # distance of the yaw axis of a neck from the mid plane, in si
 SHOULDER = 0.15  # extent of a shoulder, in sizes of the robot [1]
 MIN_LIMITS = 0.3  # difference of the limits of a knee that shows where it bends [rad]
 MIN_TOE = 0.01  # centre of mass of a foot forward of its ankle, in sizes of the robot [1]
-HANGING = 0.7  # minimum cosine between a hanging arm and the vertical [1]
+SIDEWAYS = 0.7  # minimum cosine between an arm that is to be lowered and the left [1]
 SPREAD = 0.25  # angle of hanging arms from the vertical [rad]
 SIDES = ("lr", "gd", "id", "sd", "ed", "hm", "zy")  # first letters of left and right
 
@@ -63,7 +63,7 @@ class Guess:
         head: pan and tilt joint.
         shoulders: left and right pitch joint.
         camera: name.
-        posture: angles that let horizontal arms hang down [rad].
+        posture: angles that let sideways arms hang down [rad].
         findings: for the user, one per role.
     """
 
@@ -85,7 +85,12 @@ class Guess:
 def guess(model: mujoco.MjModel) -> Guess:
     """Guess the roles of the robot in a compiled model."""
     skeleton = skeleton_of(model, root_of(model))
-    return guess_roles(skeleton, tuple(_views(model, skeleton)))
+    roles = guess_roles(skeleton, tuple(_views(model, skeleton)))
+    base = Finding("base", skeleton.root, "certain", "has the free joint")
+    if not skeleton.free:
+        reason = f"body {skeleton.root!r} has no free joint: add <freejoint/> to it"
+        base = Finding("base", "", "missing", reason)
+    return replace(roles, findings=(base, *roles.findings))
 
 
 def guess_roles(skeleton: Skeleton, cameras: Sequence[CameraView] = ()) -> Guess:
@@ -112,7 +117,7 @@ def guess_roles(skeleton: Skeleton, cameras: Sequence[CameraView] = ()) -> Guess
     findings = [forward, feet_finding, head_finding, shoulders_finding, camera_finding]
     if posture:
         angles = ", ".join(f"{name} {angle:g}" for name, angle in posture.items())
-        reason = "the arms are horizontal at zero angles"
+        reason = "the arms point sideways at zero angles"
         findings.append(Finding("posture", angles, "likely", reason))
     return Guess(
         base=skeleton.root,
@@ -283,13 +288,13 @@ def _shoulders(stance: Stance, arms: Limb | None) -> tuple[Pair | None, Finding]
 
 
 def _hanging(skeleton: Skeleton, arms: Limb) -> Iterator[tuple[str, float]]:
-    """Yield roll joints and angles that let horizontal arms hang down [rad]."""
+    """Yield roll joints and angles that let sideways arms hang down [rad]."""
     for side, arm in ((1.0, arms.left), (-1.0, arms.right)):
         rolls = [j for j in arm if abs(skeleton.axes[j, 0]) > PARALLEL]
         if not rolls:
             return
         lever = skeleton.com_below(rolls[0]) - skeleton.anchors[rolls[0]]
-        if -lever[2] > HANGING * np.linalg.norm(lever):
+        if side * lever[1] < SIDEWAYS * np.linalg.norm(lever):
             return
         axis = skeleton.axes[rolls[0]]
         goal = np.array([0.0, side * sin(SPREAD), -cos(SPREAD)])

@@ -1,0 +1,247 @@
+"""The guess finds the parts of a robot by its kinematic tree, whatever their names."""
+
+from itertools import permutations
+
+import mujoco
+import numpy as np
+import pytest
+
+from hsr8.robots.guess import guess
+from hsr8.robots.inspection import inspect
+from hsr8.robots.locate import robot_names
+from tests.hsr8.robots.robot_parts import (
+    ICUB,
+    MENAGERIE,
+    checked_roles,
+    compiled,
+    described,
+    model_file,
+    part,
+    setting,
+)
+from tests.hsr8.robots.small_humanoid import SmallHumanoid
+
+HIPS = ["".join(order) for order in permutations("yrp")]
+LETTERS = {"l": "b", "r": "a", "": "c"}  # in the wrong alphabetical order
+
+
+def numbered(side, name):
+    """Names that show neither the side nor the part."""
+    return f"{LETTERS[side]}{sum(name.encode()) % 997}"
+
+
+def spanish(side, name):
+    return {"l": "izq_", "r": "der_", "": ""}[side] + numbered("", name)
+
+
+def findings(robot, *changes):
+    return {finding.role: finding for finding in guess(compiled(robot, *changes)).findings}
+
+
+def in_frame(quat):
+    """Turn the robot in its base, so that the directions of the base are others."""
+
+    def change(root):
+        base = part(root, "body", "base")
+        inner = base.makeelement("body", {"name": "inner", "quat": quat})
+        for child in list(base):
+            if child.tag != "freejoint":
+                base.remove(child)
+                inner.append(child)
+        base.append(inner)
+
+    return change
+
+
+@pytest.mark.parametrize("hip", HIPS)
+@pytest.mark.parametrize("ankle", ["pr", "rp"])
+@pytest.mark.parametrize("name", [numbered, spanish])
+def test_parts_are_found_without_names_and_in_any_order(hip, ankle, name):
+    robot = SmallHumanoid(hip=hip, ankle=ankle, name=name, offset=0.02, flip=True)
+    roles = guess(compiled(robot))
+    assert roles.feet == robot.feet()
+    assert roles.legs == (tuple(robot.leg("l")), tuple(robot.leg("r")))
+    assert roles.head == (name("", "head_yaw"), name("", "head_pitch"))
+    assert roles.shoulders == (name("l", "shoulder_pitch"), name("r", "shoulder_pitch"))
+    assert roles.camera == name("", "eye")
+    assert {f.sureness for f in roles.findings} == {"certain"}
+
+
+@pytest.mark.parametrize(
+    "robot",
+    [
+        SmallHumanoid(),
+        SmallHumanoid(waist="yrp", arm="rpyprp", oblique=0.6),
+        SmallHumanoid(head="", arm=""),
+        SmallHumanoid(head="y", actuator=""),
+        SmallHumanoid(name=numbered, limited=False, actuator="motor"),
+    ],
+)
+def test_the_guessed_description_is_accepted(robot):
+    model = compiled(robot)
+    roles = guess(model)
+    checked = checked_roles(model, described(robot, **roles.keys()))
+    assert (checked.base, checked.feet, checked.legs) == (roles.base, roles.feet, roles.legs)
+    assert (checked.head, checked.shoulders) == (roles.head, roles.shoulders)
+
+
+@pytest.mark.parametrize(
+    ("quat", "forward"),
+    [
+        ("1 0 0 0", "+x"),
+        ("0 0 0 1", "-x"),  # as iCub
+        (".70710678 0 0 .70710678", "+y"),
+        (".70710678 .70710678 0 0", "+x"),  # z of the base to the right
+        (".5 .5 .5 .5", "+y"),  # y of the base forward, z to the left
+        ("0 1 0 0", "+x"),  # upside down
+    ],
+)
+def test_the_directions_of_the_root_are_arbitrary(quat, forward):
+    robot = SmallHumanoid()
+    roles = guess(compiled(robot, in_frame(quat)))
+    assert roles.feet == robot.feet()
+    assert roles.head == ("head_yaw", "head_pitch")
+    assert {f.role: f for f in roles.findings}["forward"].part == f"{forward} of base"
+
+
+BLIND = {"name": numbered, "limited": False}  # neither names nor ranges show the front
+
+
+@pytest.mark.parametrize(
+    ("robot", "changes", "sureness", "reason"),
+    [
+        (SmallHumanoid(limited=False), [in_frame("0 0 0 1")], "likely", "names of left and right"),
+        (SmallHumanoid(name=numbered), [in_frame("0 0 0 1")], "likely", "knees bend forward"),
+        (SmallHumanoid(**BLIND), [], "unsure", "feet are longer in front, x of the root"),
+    ],
+)
+def test_the_front_follows_from_knees_names_or_feet(robot, changes, sureness, reason):
+    forward = findings(robot, *changes)["forward"]
+    assert forward.sureness == sureness
+    assert forward.reason.startswith(reason)
+    assert guess(compiled(robot, *changes)).feet == robot.feet()
+
+
+def test_knees_that_bend_against_the_names_are_reported():
+    robot = SmallHumanoid(name=lambda side, name: f"{'rl'[side == 'r']}_{name}" if side else name)
+    forward = findings(robot)["forward"]
+    assert forward.part == "+x of base"
+    assert forward.reason.endswith("against it: names of left and right")
+    assert forward.sureness == "likely"
+
+
+def test_legs_of_five_joints_are_reported():
+    feet = findings(SmallHumanoid(ankle="p"))["feet"]
+    assert feet.sureness == "missing"
+    assert "the legs have 5 hinge joints, l_hip_yaw" in feet.reason
+    assert guess(compiled(SmallHumanoid(ankle="p"))).feet is None
+
+
+def test_toes_are_not_feet():
+    robot = SmallHumanoid()
+
+    def add_toes(root):
+        for side in "lr":
+            foot = part(root, "body", f"{side}_ankle_roll_link")
+            toe = foot.makeelement("body", {"name": f"{side}_toe_link", "pos": "0.08 0 -0.03"})
+            joint = {"name": f"{side}_toe", "axis": "0 1 0", "range": "-0.5 0.1"}
+            toe.append(foot.makeelement("joint", joint))
+            inertial = {"pos": "0.01 0 0", "mass": "0.05", "diaginertia": "1e-4 1e-4 1e-4"}
+            toe.append(foot.makeelement("inertial", inertial))
+            foot.append(toe)
+
+    roles = guess(compiled(robot, add_toes))
+    assert (roles.feet, roles.legs[0]) == (robot.feet(), tuple(robot.leg("l")))
+    assert "without the toes beyond l_toe" in {f.role: f for f in roles.findings}["feet"].reason
+
+
+def test_a_robot_that_is_not_symmetric_has_no_feet():
+    roles = findings(SmallHumanoid(), setting("joint", "r_knee", axis="1 0 0"))
+    assert [*roles] == ["base", "feet"]
+    assert roles["feet"].sureness == "missing"
+    assert "no two mirrored chains" in roles["feet"].reason
+
+
+def test_a_model_without_legs_has_no_feet():
+    model = mujoco.MjModel.from_xml_string(
+        "<mujoco><worldbody><body name='cart'><joint/><geom size='1'/></body></worldbody></mujoco>"
+    )
+    assert guess(model).feet is None
+
+
+@pytest.mark.parametrize(
+    ("robot", "role", "reason"),
+    [
+        (SmallHumanoid(head=""), "head", "no joint on the mid plane yaws a light upper part"),
+        (SmallHumanoid(head="", waist="yp"), "head", "no joint on the mid plane"),
+        (SmallHumanoid(head="y"), "head", "head_yaw yaws, but no joint pitches with it"),
+        (SmallHumanoid(arm=""), "shoulders", "no mirrored chains above the hips"),
+        (SmallHumanoid(arm="ryy"), "shoulders", "no pitching joint near l_shoulder_roll"),
+        (SmallHumanoid(head=""), "camera", "the robot has none"),
+        (SmallHumanoid(free=False), "base", "'base' has no free joint: add <freejoint/>"),
+    ],
+)
+def test_a_missing_part_has_its_reason(robot, role, reason):
+    finding = findings(robot)[role]
+    assert (finding.part, finding.sureness) == ("", "missing")
+    assert reason in finding.reason
+    if role != "base":
+        assert getattr(guess(compiled(robot)), role) is None
+
+
+@pytest.mark.parametrize("head", ["py", "yrp"])
+def test_other_orders_of_the_neck_are_likely(head):
+    roles = guess(compiled(SmallHumanoid(head=head)))
+    assert roles.head == ("head_yaw", "head_pitch")
+    assert {f.role: f for f in roles.findings}["head"].sureness == "likely"
+
+
+@pytest.mark.parametrize(
+    ("direction", "camera"),
+    [("0 -1 0 0 0 1", "eye"), ("0 1 0 0 0 1", None), ("1 0 0 0 0 1", None)],
+)
+def test_only_a_camera_that_looks_forward_is_taken(direction, camera):
+    assert guess(compiled(SmallHumanoid(), setting("camera", "eye", xyaxes=direction))).camera == (
+        camera
+    )
+
+
+def test_arms_that_point_sideways_are_lowered():
+    """A turn of the shoulder about x puts the arms level; the posture undoes it."""
+    robot = SmallHumanoid(arm="rpp")
+    turns = [
+        setting("body", f"{side}_shoulder_roll_link", quat=f"0.70710678 {x}0.70710678 0 0")
+        for side, x in (("l", ""), ("r", "-"))
+    ]
+    posture = guess(compiled(robot, *turns)).posture
+    assert posture == {"l_shoulder_roll": -posture["r_shoulder_roll"], **posture}
+    assert posture["l_shoulder_roll"] == pytest.approx(-np.pi / 2 + 0.25, abs=0.02)
+    assert not guess(compiled(robot)).posture
+
+
+@pytest.mark.parametrize(
+    "name",
+    [
+        "hsr8",
+        pytest.param("icub", marks=ICUB),
+        *(pytest.param(n, marks=MENAGERIE) for n in robot_names() if n not in ("hsr8", "icub")),
+    ],
+)
+def test_the_parts_of_the_shipped_robots_are_found(name):
+    """Those that a description leaves out may be found."""
+    stated = inspect(name).description
+    guessed = inspect(str(model_file(name))).description
+    feet = stated.feet if name != "icub" else ("l_ankle_2", "r_ankle_2")  # carries l_foot
+    assert guessed.feet == feet
+    assert stated.head in (None, guessed.head)
+    assert guessed.shoulders == stated.shoulders
+    if isinstance(stated.camera, str):
+        assert guessed.camera == stated.camera
+
+
+@MENAGERIE
+def test_unitree_h1_is_refused_for_legs_of_five_joints():
+    menagerie = model_file("g1").parents[1]
+    inspection = inspect(str(menagerie / "unitree_h1" / "h1.xml"))
+    assert inspection.description is None
+    assert any("the legs have 5 hinge joints" in f.reason for f in inspection.findings)
