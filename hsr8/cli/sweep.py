@@ -32,6 +32,7 @@ from hsr8.evaluation.sweep.summary import Summary, summarize
 from hsr8.gl import require_gl
 from hsr8.plugin_file import digests, require_plugins
 from hsr8.recorder.files import atomic
+from hsr8.robots.locate import digest
 from hsr8.scenario.loader import dump, load_scenario
 from hsr8.scenario.schema import Scenario
 
@@ -112,7 +113,7 @@ def _definitions(
             common,
             name=scenario.name,
             command_words=command_words(run_options(options, None, combinations[name])),
-            libraries=common.libraries | digests(scenario.plugin),
+            libraries=common.libraries | digests(scenario.plugin) | digest(scenario.robot.model),
             scenario=dump(scenario),
         )
         for name, scenario in scenarios.items()

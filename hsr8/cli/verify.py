@@ -7,7 +7,8 @@ from hsr8.cli.options import Verify
 from hsr8.errors import UsageError
 from hsr8.recorder.files import atomic
 from hsr8.recorder.run.manifest import other_versions
-from hsr8.recorder.run.run_reader import open_run
+from hsr8.recorder.run.run_reader import Run, open_run
+from hsr8.robots.locate import digest
 
 if TYPE_CHECKING:
     from hsr8.evaluation.replay import Replayed
@@ -36,9 +37,17 @@ def main(options: Verify) -> int:
     else:
         for stage in stages:
             print(f"{stage.stage:<12}{_verdict(stage)}")
-        for name, then, now in [] if equal else other_versions(run.manifest):
+        for name, then, now in [] if equal else _changes(run):
             print(f"            {name} was {then}, is {now}")
     return 0 if equal else DIFFERENT
+
+
+def _changes(run: Run) -> list[tuple[str, str, str]]:
+    """Return name, then and now of every library that differs, and of the robot's files."""
+    recorded = run.manifest.get("libraries", {})
+    robot = digest(run.scenario().robot.model)
+    changed = [(name, str(recorded.get(name)), now) for name, now in robot.items()]
+    return other_versions(run.manifest) + [c for c in changed if c[1] != c[2]]
 
 
 def _verdict(stage: "Replayed") -> str:

@@ -20,6 +20,7 @@ from hsr8.recorder.run.manifest import Manifest
 from hsr8.recorder.run.run_folder import RunFolder
 from hsr8.recorder.run.tape import TapeWriter
 from hsr8.recorder.run.walking_table import WalkingTableWriter
+from hsr8.robots.locate import digest
 from hsr8.scenario.loader import dump
 from hsr8.scenario.schema import Scenario
 
@@ -96,7 +97,7 @@ class Recording:
             RecordingFailed: the folder cannot be written.
         """
         simulation, scenario = self._simulation, self._simulation.scenario
-        libraries = manifest.libraries | digests(scenario.plugin)
+        libraries = manifest.libraries | digests(scenario.plugin) | digest(scenario.robot.model)
         manifest = replace(manifest, libraries=libraries, log=log or "")
         self._folder = RunFolder(path, manifest, dump(scenario), len(simulation.layout.movers))
         with self._failure_noted():

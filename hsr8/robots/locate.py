@@ -3,6 +3,7 @@
 `docs/robots.md` documents the order in which the folders are searched.
 """
 
+import hashlib
 import importlib
 import os
 import sys
@@ -12,8 +13,9 @@ from importlib.util import find_spec
 from pathlib import Path
 
 from hsr8.errors import ModelError
-from hsr8.robots.description import MODEL_SUFFIXES, RobotDescription
+from hsr8.robots.description import MODEL_SUFFIXES, RobotDescription, read_description
 from hsr8.robots.models import models_dir
+from hsr8.robots.scale import DEFAULT_ROBOT
 from hsr8.suggestion import suggestion
 
 MENAGERIE = "https://github.com/google-deepmind/mujoco_menagerie"
@@ -93,6 +95,22 @@ def installed_model(description: RobotDescription, folder: Path) -> Path | None:
         if source.folder is not None and (source.folder / model).is_file():
             return source.folder / model
     return None
+
+
+def digest(name_or_file: str) -> dict[str, str]:
+    """Return the first 12 digits of the SHA-256 of a robot's files, by its name.
+
+    That of the default robot follows from the version of hsr8, and is left out.
+
+    Raises:
+        ModelError: a file is missing.
+    """
+    if name_or_file == DEFAULT_ROBOT:
+        return {}
+    file = find_description(name_or_file)
+    model = find_model(read_description(file), file.parent)
+    content = file.read_bytes() + model.read_bytes()
+    return {f"robot {file.stem}": hashlib.sha256(content).hexdigest()[:12]}
 
 
 def remedy(description: RobotDescription) -> str:

@@ -20,6 +20,7 @@ from hsr8.scenario.key_lines import Path, depth, line_of
 from hsr8.scenario.presets import expand_presets, followers, under
 from hsr8.scenario.problem import Problem, dotted, problems_of
 from hsr8.scenario.renamed import renamed
+from hsr8.scenario.robot import located
 from hsr8.scenario.scaling import is_complete, scaled, with_scaled_defaults
 from hsr8.scenario.schema import Scenario
 from hsr8.suggestion import suggestion
@@ -201,7 +202,7 @@ class _Draft:
 
     def add(self, layer: _Layer) -> None:
         """Merge a layer over the present tables."""
-        self.data = _merged(self.data, layer.table)
+        self.data = _merged(self.data, located(layer.table, FilePath(layer.source).parent))
         self.layers.append(layer)
 
     def finish(self, name: str) -> Scenario:
@@ -281,8 +282,7 @@ def _find(name_or_path: str) -> FilePath:
     path = FilePath(name_or_path)
     if path.suffix == ".toml" or len(path.parts) > 1:
         return path
-    hint = suggestion(f"{name_or_path}.toml", _files(path.parent))
-    hint = suggestion(name_or_path, names) or hint
+    hint = suggestion(name_or_path, [*names, *_files(path.parent)])
     raise ScenarioError(
         f"unknown scenario {name_or_path!r}{hint}; expected a .toml file or one of "
         f"{', '.join(names)}"

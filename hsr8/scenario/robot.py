@@ -1,6 +1,8 @@
 """Section ``[robot]``: body, initial pose and speed limits."""
 
-from typing import Annotated, Literal
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Annotated, Any, Literal
 
 from annotated_types import Interval, Len
 
@@ -9,6 +11,7 @@ from hsr8.scenario.world import Start
 
 NOMINAL_SPEED = 0.20
 """Maximum forward speed of HSR-VIII, by which the times of worlds scale [m/s]."""
+SUFFIX = ".toml"  # of the file of a robot, which no name has
 
 WalkingSpeed = Annotated[float, Interval(ge=0.01, le=5.0), "m/s"]
 
@@ -41,3 +44,19 @@ class Robot(Section):
     """Initial pose."""
     speed: SpeedEnvelope = SpeedEnvelope()
     """Speed limits of navigation."""
+
+
+def located(table: Mapping[str, Any], folder: Path) -> dict[str, Any]:
+    """Return a scenario's tables with the absolute path of the robot's file, if it exists.
+
+    Args:
+        table: with `robot.model` or without.
+        folder: in which a relative path begins; else it begins in the working folder.
+    """
+    robot = table.get("robot")
+    if not isinstance(robot, dict) or not str(robot.get("model")).endswith(SUFFIX):
+        return dict(table)
+    model = str(robot["model"])
+    file = Path(model).expanduser()
+    paths = (path.absolute() for path in (folder / file, file) if path.is_file())
+    return {**table, "robot": {**robot, "model": str(next(paths, model))}}
