@@ -5,10 +5,13 @@ from itertools import permutations
 import mujoco
 import numpy as np
 import pytest
+from scipy.spatial.transform import Rotation
 
-from hsr8.robots.guess import guess
+from hsr8.robots.guess import guess, guess_roles
 from hsr8.robots.inspection import inspect
 from hsr8.robots.locate import robot_names
+from hsr8.robots.urdf_file import read_urdf
+from hsr8.robots.urdf_skeleton import skeleton_of_urdf
 from tests.hsr8.robots.robot_parts import (
     ICUB,
     MENAGERIE,
@@ -20,7 +23,9 @@ from tests.hsr8.robots.robot_parts import (
     setting,
 )
 from tests.hsr8.robots.small_humanoid import SmallHumanoid
+from tests.hsr8.robots.small_urdf import SmallUrdf, write
 
+ROOTS = [(0, 0, 0), (0, 0, 180), (90, 0, 0), (0, 90, 90)]  # turns of a root link [deg]
 HIPS = ["".join(order) for order in permutations("yrp")]
 LETTERS = {"l": "b", "r": "a", "": "c"}  # in the wrong alphabetical order
 
@@ -217,6 +222,18 @@ def test_arms_that_point_sideways_are_lowered():
     assert posture == {"l_shoulder_roll": -posture["r_shoulder_roll"], **posture}
     assert posture["l_shoulder_roll"] == pytest.approx(-np.pi / 2 + 0.25, abs=0.02)
     assert not guess(compiled(robot)).posture
+
+
+TURNS = [Rotation.from_euler("xyz", angles, degrees=True) for angles in ROOTS]
+
+
+@pytest.mark.parametrize("hip", ["yrp", "pry"])
+@pytest.mark.parametrize("turn", TURNS)
+@pytest.mark.parametrize("seed", [None, 3])
+def test_the_legs_of_a_urdf_robot_are_found_in_any_frames(tmp_path, hip, turn, seed):
+    robot = SmallUrdf(hip=hip, root=turn, seed=seed)
+    skeleton = skeleton_of_urdf(read_urdf(write(robot.element(), tmp_path)))
+    assert guess_roles(skeleton).legs == robot.legs()
 
 
 @pytest.mark.parametrize(

@@ -1,0 +1,125 @@
+import json
+import tomllib
+
+import cv2
+import pytest
+
+from hsr8.cli.main import entry
+from hsr8.robots.description import read_description
+from tests.hsr8.robots.small_humanoid import SmallHumanoid
+
+FEET = ["l_ankle_roll_link", "r_ankle_roll_link"]
+
+
+@pytest.fixture
+def folder(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    return tmp_path
+
+
+def write(folder, robot=None, name="small.xml"):
+    file = folder / name
+    file.write_text((robot or SmallHumanoid()).xml(), encoding="utf-8")
+    return file
+
+
+def inspect(*words):
+    return entry(["robot", "inspect", *map(str, words)])
+
+
+def test_roles_and_numbers_are_printed(folder, capsys):
+    assert inspect(write(folder)) == 0
+    printed = " ".join(capsys.readouterr().out.split())
+    for text in ("l_ankle_roll_link", "head_yaw", "certain", "mass [kg]", "--write"):
+        assert text in printed
+    assert [file.name for file in folder.iterdir()] == ["small.xml"]
+
+
+def test_json_holds_findings_and_numbers(folder, capsys):
+    assert inspect(write(folder), "--json") == 0
+    result = json.loads(capsys.readouterr().out)
+    roles = {finding["role"]: finding for finding in result["findings"]}
+    assert roles["feet"]["part"] == ", ".join(FEET)
+    assert roles["feet"]["sureness"] == "certain"
+    assert result["robot"]["mass_kg"] == pytest.approx(9.3)
+    assert result["refusal"] is None
+
+
+def test_the_written_description_gives_the_inspected_robot(folder, capsys):
+    file, target = write(folder), folder / "robot.toml"
+    assert inspect(file, "--json", "--write", target) == 0
+    guessed = json.loads(capsys.readouterr().out)["robot"]
+    text = target.read_text("utf-8")
+    assert tomllib.loads(text)["model"] == "small.xml"
+    assert tomllib.loads(text)["feet"] == FEET
+    assert "# certain: mirrored chains of 6 joints" in text
+    assert read_description(target).head == ("head_yaw", "head_pitch")
+    assert inspect(target, "--json") == 0
+    assert json.loads(capsys.readouterr().out)["robot"] == guessed
+
+
+def test_a_description_in_another_folder_names_the_whole_path(folder, capsys):
+    (folder / "mine").mkdir()
+    target = folder / "mine" / "robot.toml"
+    file = write(folder)
+    assert inspect(file, "--write", target) == 0
+    assert tomllib.loads(target.read_text("utf-8"))["model"] == str(file)
+
+
+@pytest.mark.gl
+def test_an_image_is_drawn(folder, capsys):
+    assert inspect(write(folder), "--image", "small.png") == 0
+    assert cv2.imread("small.png").std() > 10.0
+
+
+def test_a_refused_robot_leaves_its_description_to_be_corrected(folder, capsys):
+    """A knee that cannot bend: the guess succeeds, the robot does not walk."""
+    text = SmallHumanoid().xml().replace('range="0.0 2.2"', 'range="-0.2 0.3"')
+    file = folder / "stiff.xml"
+    file.write_text(text, encoding="utf-8")
+    assert inspect(file, "--write", "stiff.toml", "--image", "stiff.png") == 2
+    captured = capsys.readouterr()
+    assert "the knee cannot bend" in captured.err
+    assert captured.err.count("hsr8: ") == 1
+    assert "l_ankle_roll_link" in " ".join(captured.out.split())
+    assert read_description(folder / "stiff.toml").feet == tuple(FEET)
+    assert not (folder / "stiff.png").exists()
+
+
+@pytest.mark.parametrize(
+    ("robot", "reason"),
+    [
+        (SmallHumanoid(ankle="p"), "feet: the legs have 5 hinge joints"),
+        (SmallHumanoid(free=False), "add <freejoint/>"),
+    ],
+)
+def test_a_robot_without_legs_or_free_base_is_refused(folder, capsys, robot, reason):
+    assert inspect(write(folder, robot)) == 2
+    assert reason in capsys.readouterr().err
+
+
+@pytest.mark.parametrize(
+    ("words", "reason"),
+    [
+        (["missing.xml"], "robot file 'missing.xml' does not exist"),
+        (["op4"], "unknown robot 'op4'; did you mean 'op3'?"),
+        (["small.xml", "--write", "robot.txt"], "--write robot.txt: wrong suffix"),
+        (["small.xml", "--write", "kept.toml"], "--write kept.toml: exists"),
+        (["small.xml", "--image", "robot.jpg"], "--image robot.jpg: wrong suffix"),
+        (["hsr8", "--write", "robot.toml"], "is a description already"),
+        (["broken.xml"], "broken.xml"),
+        (["empty.xml"], "no joints"),
+    ],
+)
+def test_a_mistake_is_one_message(folder, capsys, words, reason):
+    write(folder)
+    (folder / "kept.toml").touch()
+    (folder / "broken.xml").write_text("<mujoco><worldbody>", encoding="utf-8")
+    (folder / "empty.xml").write_text("<mujoco/>", encoding="utf-8")
+    before = sorted(folder.iterdir())
+    assert inspect(*words) == 2
+    captured = capsys.readouterr()
+    assert captured.err.startswith("hsr8: ")
+    assert reason in captured.err
+    assert captured.out == ""
+    assert sorted(folder.iterdir()) == before
