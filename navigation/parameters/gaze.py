@@ -118,7 +118,7 @@ class GazeParameters:
     (1)-(6); psi-lm, psi-sf, psi-ob, psi-way: one evaluation alone; info: greedy information gain;
     sweep: sinusoidal pan; fixed: straight ahead."""
     moved_by: Literal["head", "body"] = "head"
-    """What moves the gaze: the head, or the body of a robot whose camera is fixed."""
+    """Part that turns the camera: the head, or the body of a robot with a fixed camera."""
     w_lm: NonNegative = 0.09
     """Weight of the local map in (6) [1]."""
     w_way: NonNegative = 0.23
@@ -156,7 +156,7 @@ class GazeParameters:
 
     arrival_tolerance: float = 0.06  # distance from the target at which a saccade ends [rad]
     max_saccade_time: float = 0.6  # time until the next decision if the head does not arrive [s]
-    max_turn_time: float = 1.5  # likewise if the body does not arrive [s]
+    max_turn_time: float = 1.5  # the same time if the body does not arrive [s]
     urgency: UrgencyParameters = field(default_factory=UrgencyParameters)
     deadline: DeadlineParameters = field(default_factory=DeadlineParameters)
     information: InformationParameters = field(default_factory=InformationParameters)

@@ -16,14 +16,16 @@ class Parts:
 
     def __init__(self, task):
         self.task, self.poses, self.plans, self.looks = task, [], [], []
-        self.avoided, self.beliefs = [], []
+        self.avoided, self.beliefs, self.directions = [], [], []
+        self.body_direction = None
 
     def update(self, pose):
         self.poses.append(pose)
         return self.task
 
-    def plan(self, belief, task):
+    def plan(self, belief, task, look):
         assert task is self.task
+        self.directions.append(look)
         self.plans.append(belief.time)
         self.avoided.append([track.label for track in belief.tracks])
         return MotionDecision(np.array([0.1 * len(self.plans), 0.0, 0.0]))
@@ -31,7 +33,7 @@ class Parts:
     def choose(self, belief, task, motion):
         self.looks.append(motion)
         self.beliefs.append(belief)
-        return GazeDecision(0.0, 0.0)
+        return GazeDecision(0.0, 0.0, body_direction=self.body_direction)
 
 
 @pytest.fixture
@@ -79,6 +81,16 @@ def test_after_a_fall_motion_is_decided_again(made):
     decisions.forget()
     assert make(0.06, 0).fresh
     assert len(parts.plans) == 2
+
+
+def test_the_body_turns_to_the_latest_gaze_until_a_fall(made):
+    decisions, parts, make = made
+    parts.body_direction = 0.5
+    make(0.0, 0)
+    make(0.06, 1)
+    decisions.forget()
+    make(0.12, 1)
+    assert parts.directions == [None, 0.5, None]
 
 
 def test_a_late_frame_is_predicted_to_the_present(made):
