@@ -52,11 +52,10 @@ def main(options: RobotInspect) -> int:
         with writing("--image", options.image):
             write_png(options.image, image)
     if not options.json:
-        file = options.write or (options.file if inspection.stated else None)
-        if file is None:
-            print(f"keep it     {shlex.join(['hsr8', 'robot', 'inspect', options.file])} --write F")
-        else:
-            print(f"check it    {shlex.join(['hsr8', 'robot', 'check', str(file)])}")
+        words = ["hsr8", "robot", "inspect", options.file, "--write", "robot.toml"]
+        if inspection.stated or options.write is not None:
+            words = ["hsr8", "robot", "check", str(options.write or options.file)]
+        print(f"next        {shlex.join(words)}")
     return 0
 
 
@@ -89,6 +88,12 @@ def _show(
         print(atomic.dumps({**result, "notes": notes, "refusal": refusal and str(refusal)}))
         return
     console = Console(highlight=False)
+    if inspection.stated:
+        stated = inspection.require_description().model_dump(exclude_none=True)
+        findings = [
+            {"role": f["role"], "stated": stated.get(f["role"]), "guess": f.pop("part"), **f}
+            for f in findings
+        ]
     console.print(tables.rows(findings, str(inspection.model)))
     if numbers is not None:
         console.print(tables.facts(numbers))

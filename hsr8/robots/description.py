@@ -7,8 +7,10 @@ from typing import Annotated, Any, Literal
 
 from annotated_types import Interval, Len
 from pydantic import BaseModel, ConfigDict, Field, ValidationError, model_validator
+from pydantic_core import ErrorDetails
 
 from hsr8.errors import ModelError
+from hsr8.suggestion import suggestion
 
 MODEL_SUFFIXES = (".xml", ".mjcf", ".urdf")
 
@@ -214,10 +216,23 @@ def checked(data: dict[str, Any], source: str) -> RobotDescription:
         return RobotDescription.model_validate_json(json.dumps(data, default=str))
     except ValidationError as error:
         lines = [
-            f"  {_dotted(e['loc'])}: {e['msg'].removeprefix('Value error, ')}, got {e['input']!r}"
-            for e in error.errors(include_url=False)
+            f"  {_dotted(e['loc'])}: {_reason(e)}"
+            for e in error.errors(include_url=False, include_context=False)
         ]
         raise ModelError("\n".join([f"{source}: invalid robot description", *lines])) from error
+
+
+def _reason(error: ErrorDetails) -> str:
+    """Return what is wrong with a key, and its value."""
+    match error["type"]:
+        case "missing":
+            return "missing; expected a value"
+        case "extra_forbidden" if len(error["loc"]) == 1:
+            hint = suggestion(str(error["loc"][0]), list(RobotDescription.model_fields))
+            return f"unknown key{hint}"
+        case "extra_forbidden":
+            return "unknown key"
+    return f"{error['msg'].removeprefix('Value error, ')}, got {error['input']!r}"
 
 
 def _dotted(location: tuple[int | str, ...]) -> str:

@@ -130,7 +130,7 @@ def _robots_dir() -> Path:
 def _sources(folder: Path) -> Iterator[_Source]:
     """Yield the folders in the order in which they are searched."""
     yield _Source("folder of the description", folder, "")
-    yield _Source("models of hsr8", models_dir(), "")
+    yield _Source("shipped models", models_dir(), "")
     menagerie = os.environ.get("MENAGERIE", "").strip()
     yield _Source(
         "$MENAGERIE",

@@ -62,6 +62,32 @@ LINES = [
     ("sweep quick --seeds 0:2 --workers 0", "--workers: out of range, got 0"),
     ("sweep quick --seeds 0:2 --timeout -1", "--timeout: out of range, got -1"),
     ("sweep quick --seeds 0:2 --set seed=3", "--set: the seed is not a setting, got seed=3"),
+    # robots
+    ("robot", "Expected one of {list, inspect, check, calibrate}"),
+    ("robot chek op3", "robot chek: unknown command; did you mean 'check'?"),
+    ("robot list op3", "Unrecognized options: op3"),
+    ("robot check", "ROBOT"),
+    ("robot check hsr9", "unknown robot 'hsr9'; did you mean 'hsr8'?"),
+    ("robot check hsr8 --out a.toml", "Unrecognized or misplaced options: --out"),
+    ("robot check none.toml", "robot file 'none.toml' does not exist"),
+    ("robot check text.xml", "text.xml: got a model; expected a description, which `hsr8 robot"),
+    ("robot check damaged.toml", "damaged.toml: cannot be read"),
+    ("robot check unknown.toml", "feets: unknown key; did you mean 'feet'?"),
+    ("robot check missing.toml", "model: 'none.xml' does not exist in"),
+    ("robot calibrate hsr8 --out a.json", "--out a.json: wrong suffix; expected .toml"),
+    ("robot calibrate hsr8 --out none/a.toml", "--out none/a.toml: cannot be written"),
+    ("robot calibrate hsr8 --out yard.toml", "--out yard.toml: exists; expected a new file"),
+    ("robot calibrate text.xml", "text.xml: got a model"),
+    ("robot inspect", "FILE"),
+    ("robot inspect nothing", "unknown robot 'nothing'"),
+    ("robot inspect none.urdf", "robot file 'none.urdf' does not exist"),
+    ("robot inspect text.xml", "text.xml: invalid robot model"),
+    ("robot inspect text.urdf", "text.urdf: cannot be read"),
+    ("robot inspect ball.xml", "ball.xml: feet: no two mirrored chains"),
+    ("robot inspect hsr8 --write a.toml", "--write a.toml: hsr8 is a description already"),
+    ("robot inspect ball.xml --write yard.toml", "--write yard.toml: exists"),
+    ("robot inspect ball.xml --write a.xml", "--write a.xml: wrong suffix; expected .toml"),
+    ("robot inspect hsr8 --image a.jpg", "--image a.jpg: wrong suffix; expected .png"),
     # settings and scenarios
     ("run quik", "did you mean 'quick'"),
     ("run yrad.toml", "did you mean 'yard.toml'"),
@@ -118,6 +144,14 @@ def folder(tmp_path_factory):
     (path / "typo.toml").write_text('extends = "quick"\nworld.n_movin = 3\n')
     (path / "broken.toml").write_text("extends = \n")
     (path / "orphan.toml").write_text('extends = "nothing"\n')
+    (path / "text.xml").write_text("not a model")
+    (path / "text.urdf").write_text("not a model")
+    ball = "<body><freejoint/><geom size='1'/></body>"
+    (path / "ball.xml").write_text(f"<mujoco><worldbody>{ball}</worldbody></mujoco>")
+    (path / "damaged.toml").write_text("model = ")
+    robot = 'model = "none.xml"\nfeet = ["l", "r"]\n'
+    (path / "missing.toml").write_text(robot)
+    (path / "unknown.toml").write_text(robot.replace("feet", "feets"))
     for name in ("runs/quick", "empty", "damaged", "future"):
         (path / name).mkdir(parents=True)
     (path / "damaged/manifest.json").write_text("{")
@@ -155,7 +189,7 @@ def test_a_mistake_is_one_message(line, expected, capsys):
     assert message.count("hsr8: ") == 1
     assert expected in " ".join(message.split())
     assert "Traceback" not in message
-    assert printed.out == "" or line.startswith(("verify", "plot"))
+    assert printed.out == "" or line.startswith(("verify", "plot", "robot inspect"))
     assert sorted(Path.cwd().rglob("*")) == before
 
 

@@ -123,3 +123,14 @@ def test_a_mistake_is_one_message(folder, capsys, words, reason):
     assert reason in captured.err
     assert captured.out == ""
     assert sorted(folder.iterdir()) == before
+
+
+def test_a_description_is_compared_with_the_guess(folder, capsys):
+    file = write(folder)
+    head = 'model = "small.xml"\nhead = ["head_yaw", "head_pitch"]\n'
+    (folder / "mine.toml").write_text(head + f"feet = {json.dumps(FEET)}\n")
+    assert inspect("mine.toml") == 0
+    printed = capsys.readouterr().out
+    assert printed.startswith(str(file)[:40])
+    assert "stated" in printed
+    assert printed.endswith("next        hsr8 robot check mine.toml\n")

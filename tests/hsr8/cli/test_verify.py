@@ -7,6 +7,7 @@ import pytest
 
 from hsr8.cli.main import entry
 from hsr8.recorder.run.run_reader import open_run
+from hsr8.robots.locate import find_description
 
 RUN = ["run", "quick", "--body", "kinematic", "--camera", "analytic", "--duration", "2"]
 
@@ -168,3 +169,19 @@ def test_a_killed_run_is_checked_as_far_as_it_got(run, capsys):
     file.write_bytes(content[:8])
     assert entry(["verify", str(run), "--json"]) == 0
     assert stages(capsys)["physics"]["count"] == 401
+
+
+def test_a_robot_file_is_found_from_every_folder(tmp_path, monkeypatch, capsys):
+    """A change of it is named where the run is different."""
+    file = tmp_path / "mine.toml"
+    shutil.copy(find_description("hsr8"), file)
+    file.write_text(file.read_text().replace("radius = 0.12", "radius = 0.13"))
+    monkeypatch.chdir(tmp_path)
+    assert entry([*RUN, "--robot", "mine.toml", "--no-log", "--quiet"]) == 1
+    (tmp_path / "elsewhere").mkdir()
+    monkeypatch.chdir(tmp_path / "elsewhere")
+    assert entry(["verify", "../runs/quick"]) == 0
+    file.write_text(file.read_text().replace("l_elbow_pitch = -0.9", "l_elbow_pitch = -0.8"))
+    capsys.readouterr()
+    assert entry(["verify", "../runs/quick"]) == 1
+    assert "robot mine was " in capsys.readouterr().out

@@ -1,0 +1,30 @@
+from dataclasses import asdict
+
+from hsr8.robots.description import Calibration
+from hsr8.robots.loaded import load_robot
+from hsr8.trials import calibration
+
+
+def test_a_short_calibration_of_the_default_robot(monkeypatch):
+    """The envelope is within the limits, and close to them."""
+    for name, value in (
+        ("STEADY_TIME", 3.9),
+        ("RANDOM_TIME", 3.0),
+        ("INTERVAL", 1.0),
+        ("MAX_ERROR", 0.2),
+    ):
+        monkeypatch.setattr(calibration, name, value)
+    monkeypatch.setattr(calibration, "RANDOM_SEEDS", range(1))
+    lines = []
+    robot = load_robot("hsr8")
+    measured = calibration.calibrate(robot, lines.append)
+    limits = robot.parameters.limits
+    for axis in calibration.AXES:
+        assert 0.5 * getattr(limits, axis) < measured.speed[axis] <= getattr(limits, axis)
+    assert [line.split()[0] for line in lines[:1]] == ["vx"]
+    assert lines[-1].endswith("0 falls in 1 walks")
+    assert 0.0 <= measured.lag < 0.05
+    assert 0.0 < measured.turn_delay < 1.0
+    assert 0.0 < measured.tilt_sigma < 0.02
+    stated = {"date": "2026-01-01", "version": "0", "command": "none", **asdict(measured)}
+    assert Calibration.model_validate(stated).lag == measured.lag
