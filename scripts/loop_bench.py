@@ -24,12 +24,14 @@ from hsr8.recorder.run.walking_table import WalkingTableWriter
 from hsr8.robots.normal_form import HEAD_CAMERA
 from hsr8.scenario.loader import dump
 from hsr8.scenario.schema import Scenario
+from hsr8.world.body.physics import place_robot
 from hsr8.world.camera.image_noise import ImageNoise
 from hsr8.world.camera.offscreen import Offscreen
 from hsr8.world.camera.rendered import RenderedCamera
 from walking.parameters import CONTROL_PERIOD
 
 import mujoco
+import numpy as np
 from stopwatch import Stopwatch
 
 FLOOR = ("floor: physics", "floor: images")
@@ -43,7 +45,7 @@ class Floor(Listener):
     def __init__(self, simulation: Simulation) -> None:
         model = simulation.model
         self._model, self._data = model, mujoco.MjData(model)
-        mujoco.mj_resetDataKeyframe(model, self._data, model.key("walk_ready").id)
+        place_robot(model, self._data, simulation.humanoid, np.array(simulation.layout.start))
         camera = simulation.scenario.camera
         self._rendered = camera.source == "rendered"
         self._renderer = mujoco.Renderer(model, camera.height, camera.width)
@@ -91,16 +93,15 @@ class Bench:
             path = RunFolder.create(Path(out), scenario.name, seed)
             manifest = Manifest.now(scenario.name, seed, ("bench",), require_gl())
             mission = scenario.navigation.mission
-            layout, model, camera = simulation.layout, simulation.model, scenario.camera
+            layout, humanoid, camera = simulation.layout, simulation.humanoid, scenario.camera
             simulation.listeners += [
                 floor,
                 RunFolder(path, manifest, dump(scenario), len(layout.movers)),
                 Metrics(layout, mission.r_via, mission.r_goal),
-                WalkingTableWriter(path / run_folder.WALKING, model, simulation.index),
+                WalkingTableWriter(path / run_folder.WALKING, humanoid.model),
                 RerunLog(
                     path / run_folder.LOG,
-                    model,
-                    layout,
+                    (simulation.model, humanoid, layout),
                     (camera.width, camera.height),
                     "bench",
                     gaze=scenario.navigation.gaze,

@@ -44,11 +44,14 @@ def read_model(file: Path, description: RobotDescription, folder: Path) -> RawMo
     """
     if file.suffix.lower() == ".urdf":
         converted = convert(file, description, folder)
+        with reading_models(str(file)):
+            _check_joints(converted.spec)
         _set_ranges(converted.spec, converted.description.range)
         return RawModel(converted.spec, converted.description, converted.notes)
     posture = stated_posture(description, folder)
     with reading_models(str(file)):
         spec = mujoco.MjSpec.from_file(str(file))
+        _check_joints(spec)
         for name in description.rigid:
             _make_rigid(spec, name, posture.get(name, 0.0))
         _set_ranges(spec, description.range)
@@ -58,6 +61,15 @@ def read_model(file: Path, description: RobotDescription, folder: Path) -> RawMo
     stated = description.model_copy(update={"posture": known, "rigid": ()})
     notes = [f"{len(description.rigid)} joints made rigid"] if description.rigid else []
     return RawModel(spec, stated, tuple(notes))
+
+
+def _check_joints(spec: mujoco.MjSpec) -> None:
+    """Refuse quantities that MuJoCo compiles but that make a robot diverge."""
+    for joint in spec.joints:
+        for name in ("armature", "damping", "frictionloss"):
+            value = float(np.min(getattr(joint, name)))
+            if value < 0.0:
+                raise ValueError(f"joint {joint.name!r}: {name}, got {value:g}; expected >= 0")
 
 
 def _set_ranges(spec: mujoco.MjSpec, ranges: Mapping[str, tuple[float, float]]) -> None:

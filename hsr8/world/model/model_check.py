@@ -19,7 +19,7 @@ FINITE = (
 
 
 def check_model(model: mujoco.MjModel) -> None:
-    """Check that numbers are finite, damping not negative and servo gains positive.
+    """Check that numbers are finite and servo gains positive.
 
     Raises:
         ValueError: a check failed; the message names the part, the attribute and the value.
@@ -27,16 +27,7 @@ def check_model(model: mujoco.MjModel) -> None:
     for name in FINITE:
         if not np.isfinite(getattr(model, name)).all():
             raise ValueError(f"{name}: a value is not finite")
-    for joint in (model.joint(i) for i in range(model.njnt)):
-        for name in ("armature", "damping", "frictionloss"):
-            value = getattr(joint, name)
-            if (value < 0.0).any():
-                raise ValueError(f"joint {joint.name!r}: {name}: got {_text(value)}; expected >= 0")
     for servo in (model.actuator(i) for i in range(model.nu)):
         who = f"actuator {servo.name!r}"
         if servo.gainprm[0] <= 0.0:
             raise ValueError(f"{who}: kp: got {servo.gainprm[0]:g}; expected > 0")
-
-
-def _text(values: np.ndarray) -> str:
-    return " ".join(f"{value:g}" for value in values.ravel())
