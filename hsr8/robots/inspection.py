@@ -6,13 +6,23 @@ from pathlib import Path
 import mujoco
 
 from hsr8.errors import ModelError
-from hsr8.robots.description import MODEL_SUFFIXES, RobotDescription, checked, read_description
+from hsr8.robots.description import (
+    MODEL_SUFFIXES,
+    RobotDescription,
+    SoleRectangle,
+    checked,
+    read_description,
+)
+from hsr8.robots.flat_feet import flat_feet
 from hsr8.robots.guess import Finding, Guess, guess, guess_roles
 from hsr8.robots.locate import find_description, find_model
 from hsr8.robots.models import reading_models
 from hsr8.robots.read_model import read_model
+from hsr8.robots.urdf import convert
 from hsr8.robots.urdf_file import read_urdf
 from hsr8.robots.urdf_skeleton import skeleton_of_urdf
+
+UNKNOWN_SOLE = SoleRectangle(front=0.1, back=-0.1, left=0.05, right=-0.05, height=-0.05)
 
 
 @dataclass(frozen=True, slots=True)
@@ -60,19 +70,43 @@ def inspect(name_or_file: str) -> Inspection:
         model = find_model(description, file.parent)
         raw = read_model(model, description, file.parent)
         return Inspection(model, file, description, guess(raw.spec.compile()).findings, stated=True)
-    guessed, target = _guess(file), file.with_suffix(".toml")
+    guessed, model = _guess_in(file)
+    findings, target = guessed.findings, file.with_suffix(".toml")
     if guessed.feet is None:
-        return Inspection(file, target, None, guessed.findings, stated=False)
+        return Inspection(file, target, None, findings, stated=False)
     description = checked({"model": str(file), **guessed.keys()}, str(file))
-    return Inspection(file, target, description, guessed.findings, stated=False)
+    zero = _flat_feet(file, description, guessed, model)
+    if zero:
+        angles = ", ".join(f"{name} {angle:g}" for name, angle in zero.items())
+        reason = "the soles are tilted at zero angles"
+        findings = (*findings, Finding("zero", angles, "likely", reason))
+        description = description.model_copy(update={"zero": zero})
+    return Inspection(file, target, description, findings, stated=False)
 
 
-def _guess(file: Path) -> Guess:
-    """Guess the roles in a model file; in a URDF file the base follows from the feet."""
+def _guess_in(file: Path) -> tuple[Guess, mujoco.MjModel | None]:
+    """Guess the roles in a model file; return the model, too, unless it is a URDF file.
+
+    In a URDF file the base follows from the feet.
+    """
     if file.suffix.lower() == ".urdf":
-        return replace(guess_roles(skeleton_of_urdf(read_urdf(file))), base="")
+        return replace(guess_roles(skeleton_of_urdf(read_urdf(file))), base=""), None
     with reading_models(str(file)):
         model = mujoco.MjModel.from_xml_path(str(file))
     if not model.njnt:
         raise ModelError(f"{file}: the model has no joints; expected a robot")
-    return guess(model)
+    return guess(model), model
+
+
+def _flat_feet(
+    file: Path, description: RobotDescription, guessed: Guess, model: mujoco.MjModel | None
+) -> dict[str, float]:
+    """Return the angles of ankles with which the soles are flat, where they are not [rad]."""
+    if model is not None:
+        return flat_feet(model, description.feet, guessed.legs)
+    try:  # whatever the soles are
+        stated = description.model_copy(update={"sole": UNKNOWN_SOLE})
+        converted = convert(file, stated, file.parent)
+    except ModelError:  # loading the robot reports it
+        return {}
+    return flat_feet(converted.spec.compile(), converted.feet, guessed.legs)

@@ -98,6 +98,12 @@ def soles_of(
     return (mean, mean.mirrored()), notes
 
 
+def foot_points(zero: Posed, foot: str) -> Array:
+    """Return points on the lower side of a foot's shapes in the base frame (n, 3) [m]."""
+    groups = _shapes(zero, foot, None)
+    return np.concatenate(groups) if groups else np.zeros((0, 3))
+
+
 def _stated(origin: Array, stated: SoleRectangle, side: int) -> Rectangle:
     x, y, z = origin.tolist()
     left, right = (stated.left, stated.right) if side == 0 else (-stated.right, -stated.left)
