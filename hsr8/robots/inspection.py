@@ -67,9 +67,11 @@ def inspect(name_or_file: str) -> Inspection:
     file = find_description(name_or_file).absolute()
     if file.suffix.lower() not in MODEL_SUFFIXES:
         description = read_description(file)
-        model = find_model(description, file.parent)
-        raw = read_model(model, description, file.parent)
-        return Inspection(model, file, description, guess(raw.spec.compile()).findings, stated=True)
+        model_file = find_model(description, file.parent)
+        raw = read_model(model_file, description, file.parent)
+        return Inspection(
+            model_file, file, description, guess(raw.spec.compile()).findings, stated=True
+        )
     guessed, model = _guess_in(file)
     findings, target = guessed.findings, file.with_suffix(".toml")
     if guessed.feet is None:
