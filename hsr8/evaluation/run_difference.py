@@ -209,7 +209,7 @@ def _robot(run: Run) -> LoadedRobot:
 
 def _qpos_names(robot: LoadedRobot, count: int) -> list[str]:
     """Return the name of every coordinate of a robot in MuJoCo's order."""
-    model = robot.spec.compile()
+    model = robot.spec.copy().compile()
     names = [f"qpos[{k}]" for k in range(count)]
     for k in range(model.njnt):
         joint = model.joint(k)

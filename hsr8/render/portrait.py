@@ -9,9 +9,10 @@ from hsr8.render.push_arrows import Arrow
 from hsr8.render.scene_renderer import Image, SceneRenderer
 from hsr8.robots.loaded import LoadedRobot
 from hsr8.robots.normal_form import SOLES
+from hsr8.robots.shown import SHOWN_GROUP
 from hsr8.world.body.physics import place_robot
 from hsr8.world.field.layout import Layout
-from hsr8.world.model.assembly import SHOWN_GROUP, Optics
+from hsr8.world.model.assembly import Optics
 from walking.robot_measures import HSR_VIII
 
 SIZE = 640, 800  # width and height [pixel]

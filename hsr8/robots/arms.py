@@ -1,4 +1,4 @@
-"""Extent of a robot: its arms as spheres for the self mask of vision, and its radius."""
+"""Extent of a robot: its arms as spheres for the self mask of vision, its radius and height."""
 
 import mujoco
 import numpy as np
@@ -64,3 +64,16 @@ def robot_radius(robot: Posed) -> float:
             corners = centre + (CORNERS * half) @ rotation.T
             radius = max(radius, float(np.hypot(corners[:, 0], corners[:, 1]).max()))
     return float(f"{radius:.3g}")
+
+
+def robot_height(robot: Posed) -> float:
+    """Return the height of a standing robot's highest shape above the floor [m].
+
+    Args:
+        robot: in the ready posture, on the floor.
+    """
+    model, data = robot.model, robot.data
+    up = data.geom_xmat[:, 6:]  # the vertical in the axes of each geom
+    tops = data.geom_xpos[:, 2] + np.sum(up * model.geom_aabb[:, :3], axis=1)
+    tops += np.sum(np.abs(up) * model.geom_aabb[:, 3:], axis=1)
+    return float(f"{tops.max(initial=0.0):.3g}")

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from hsr8.errors import ModelError
-from hsr8.robots.arms import arm_spheres, robot_radius
+from hsr8.robots.arms import arm_spheres, robot_height, robot_radius
 from hsr8.robots.description import RobotDescription, read_description
 from hsr8.robots.locate import find_description, find_model
 from hsr8.robots.models import reading_models
@@ -52,6 +52,7 @@ class LoadedRobot:
         radius: of the walking robot seen from above [m].
         held: angles of the joints that walking does not move [rad].
         height: of the base above the floor in the ready posture [m].
+        stature: height of the standing robot [m].
         notes: derived facts, a line each.
     """
 
@@ -67,6 +68,7 @@ class LoadedRobot:
     radius: float
     held: dict[str, float]
     height: float
+    stature: float
     notes: tuple[str, ...]
 
 
@@ -99,7 +101,9 @@ def build_robot(description: RobotDescription, file: Path) -> LoadedRobot:
     model_file = find_model(description, file.parent)
     source = str(model_file)
     raw = read_model(model_file, description, file.parent)
-    description, model = raw.description, raw.spec.compile()
+    description = raw.description
+    with reading_models(source):
+        model = raw.spec.copy().compile()  # a compiled specification is slow to change
     roles = find_roles(model, description, source)
     zero = Posed.at(model, description.zero)
     soles, sole_notes = soles_of(zero, roles.feet, description.sole, source)
@@ -107,7 +111,7 @@ def build_robot(description: RobotDescription, file: Path) -> LoadedRobot:
     servo_notes = choose_servos(raw.spec, model, roles, description, soles[0].height)
     normal = normalise(raw.spec, zero, roles, soles, description)
     with reading_models(source):
-        compiled = normal.spec.compile()
+        compiled = normal.spec.copy().compile()
     _compare(model, compiled, description, source)
     posture = {**description.posture, **description.zero}
     tree = tree_of(
@@ -140,6 +144,7 @@ def build_robot(description: RobotDescription, file: Path) -> LoadedRobot:
         radius=description.radius or robot_radius(standing),
         held=held,
         height=base,
+        stature=robot_height(standing),
         notes=(*raw.notes, *sole_notes, *servo_notes, *normal.notes, *collision_notes, *walk_notes),
     )
 

@@ -50,12 +50,12 @@ def read_model(file: Path, description: RobotDescription, folder: Path) -> RawMo
         return RawModel(converted.spec, converted.description, converted.notes)
     posture = stated_posture(description, folder)
     with reading_models(str(file)):
+        mujoco.MjModel.from_xml_path(str(file))  # a copy of a specification loses wrong names
         spec = mujoco.MjSpec.from_file(str(file))
         _check_joints(spec)
         for name in description.rigid:
             _make_rigid(spec, name, posture.get(name, 0.0))
         _set_ranges(spec, description.range)
-        spec.compile()
     names = {joint.name for joint in spec.joints}
     known = {name: angle for name, angle in posture.items() if name in names}
     stated = description.model_copy(update={"posture": known, "rigid": ()})

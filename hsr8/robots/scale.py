@@ -13,6 +13,8 @@ from typing import Any
 
 DEFAULT_ROBOT = "hsr8"
 """Robot that all defaults were tuned for."""
+DEFAULT_STATURE = 0.487
+"""Height of the standing default robot [m]."""
 
 _POWER = re.compile(r"(m|s|rad|N)(?:\^(\d+(?:\.\d+)?)|(²))?")
 # Exponents of length, speed, turn and weight. A force is a fraction of the weight per time of a

@@ -120,7 +120,7 @@ def add_servos(
     Raises:
         ModelError: the CoM is not above the soles, or a joint moves no inertia.
     """
-    model = spec.compile()
+    model = spec.copy().compile()
     joints = [j for j in range(model.njnt) if model.jnt_type[j] == mujoco.mjtJoint.mjJNT_HINGE]
     mass, com_height, inertias = _straight_robot(model, posture)
     com_height -= sole_height

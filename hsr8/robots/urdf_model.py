@@ -80,11 +80,11 @@ class ModelBuilder:
         for foot, sole in self._soles.items():
             self._add_sole(spec.body(foot), foot, sole)
         try:
-            return spec.compile()
+            return spec.copy().compile()
         except ValueError:
             geoms.drop_invalid_meshes()
         try:
-            return spec.compile()
+            return spec.copy().compile()
         except ValueError as error:
             text = " ".join(str(error).split())
             raise ModelError(f"{urdf.file}: MuJoCo cannot compile the model: {text}") from error

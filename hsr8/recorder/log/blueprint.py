@@ -1,5 +1,7 @@
 """Arrangement of a log in the viewer."""
 
+from dataclasses import dataclass
+
 import rerun as rr
 import rerun.blueprint as rrb
 
@@ -24,8 +26,26 @@ OUTLINES = rr.Cylinders3D.from_fields(
 ABOVE = 6.2  # height of the viewpoint over a field of 5 m [m]
 
 
+@dataclass(frozen=True, slots=True)
+class RobotView:
+    """Robot in the views.
+
+    Attributes:
+        name: of the robot.
+        entity: that views follow.
+        size: height relative to that of HSR-VIII [1].
+    """
+
+    name: str = "HSR-VIII"
+    entity: str = "/world/robot/ellipsoids"
+    size: float = 1.0
+
+
+DEFAULT = RobotView()
+
+
 def blueprint(
-    field_size: float, *, walking: bool, images: bool, scale: float = 1.0
+    field_size: float, *, walking: bool, images: bool, robot: RobotView = DEFAULT
 ) -> rrb.Blueprint:
     """Return two tabs: the whole robot, and its walking in detail.
 
@@ -33,11 +53,11 @@ def blueprint(
         field_size: longer side of the field [m].
         walking: show walking first.
         images: show images, beliefs and plans.
-        scale: of the world [1].
+        robot: in the views.
     """
     return rrb.Blueprint(
         rrb.Tabs(
-            _overview(field_size, images, scale), _walking(scale), active_tab=1 if walking else 0
+            _overview(field_size, images, robot), _walking(robot), active_tab=1 if walking else 0
         ),
         rrb.TimePanel(timeline=TIMELINE, state="collapsed"),
         rrb.BlueprintPanel(state="collapsed"),
@@ -45,8 +65,9 @@ def blueprint(
     )
 
 
-def _walking(scale: float) -> rrb.Container:
+def _walking(view: RobotView) -> rrb.Container:
     """Return the robot over its footsteps on the left, curves on the right."""
+    scale = view.size
     robot = rrb.Spatial3DView(
         name="Walking",
         origin="/",
@@ -57,7 +78,7 @@ def _walking(scale: float) -> rrb.Container:
             position=(-0.5 * scale, -0.6 * scale, 0.42 * scale),
             look_target=(0.0, 0.0, 0.14 * scale),
             eye_up=(0.0, 0.0, 1.0),
-            tracking_entity="/world/robot/ellipsoids",
+            tracking_entity=view.entity,
         ),
     )
     texts = rrb.Tabs(
@@ -94,11 +115,11 @@ def _walking(scale: float) -> rrb.Container:
     return rrb.Horizontal(left, curves, column_shares=[1, 1], name="Walking")
 
 
-def _overview(field_size: float, images: bool, scale: float) -> rrb.Container:
+def _overview(field_size: float, images: bool, view: RobotView) -> rrb.Container:
     """Return robot and belief above, camera, gaze, states and curves below."""
-    height = ABOVE * field_size / 5.0
+    height, scale = ABOVE * field_size / 5.0, view.size
     robot = rrb.Spatial3DView(
-        name="HSR-VIII",
+        name=view.name,
         origin="/",
         contents=[
             "+ /world/**",
@@ -116,7 +137,7 @@ def _overview(field_size: float, images: bool, scale: float) -> rrb.Container:
             position=(-1.05 * scale, -0.75 * scale, 0.75 * scale),
             look_target=(0.05 * scale, 0.0, 0.2 * scale),
             eye_up=(0.0, 0.0, 1.0),
-            tracking_entity="/world/robot/ellipsoids",
+            tracking_entity=view.entity,
         ),
     )
     belief = rrb.Spatial3DView(

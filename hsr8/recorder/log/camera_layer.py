@@ -35,6 +35,7 @@ class CameraLayer:
         size: width and height of the image [pixel].
         jpeg: quality of the images [%].
         gaze: range of the gaze map, and size of its window.
+        scale: of the robot, for the size of the image in the scene [1].
     """
 
     def __init__(
@@ -44,6 +45,8 @@ class CameraLayer:
         size: tuple[int, int],
         jpeg: int,
         gaze: GazeParameters,
+        *,
+        scale: float = 1.0,
     ) -> None:
         self._jpeg_quality = jpeg
         self._parameters = gaze
@@ -58,7 +61,7 @@ class CameraLayer:
                 width=width,
                 height=height,
                 camera_xyz=rr.ViewCoordinates.RDF,
-                image_plane_distance=0.25,
+                image_plane_distance=0.25 * scale,
             ),
             static=True,
         )

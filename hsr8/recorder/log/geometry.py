@@ -1,4 +1,4 @@
-"""Geoms of the model as Rerun shapes: static scene, and batches for robot and movers.
+"""Geoms of the model as Rerun shapes: static scene, and batches for movers.
 
 All geoms of one kind share an entity, and one row has all their poses, which costs a fifth of one
 transform per body.
@@ -16,11 +16,11 @@ from numpy.typing import NDArray
 from hsr8.recorder.log.block_stream import BlockStream
 from hsr8.recorder.log.channel import Channel
 from hsr8.robots.normal_form import HEAD_CAMERA
+from hsr8.robots.shown import VISUAL_GROUPS
 from walking.body.sole import Sole
 
 Array = NDArray[np.float64]
 
-VISUAL_GROUPS = (0, 1, 2)  # groups 3 and up are collision shapes
 STATIC = {  # prefix of the names by entity; walls for the robot's camera are left out
     "/world/beacons": "beacon",
     "/world/obstacles": "obstacle",
@@ -136,7 +136,7 @@ def quaternions(rotations: Array) -> Array:
 
 
 class Scene:
-    """Layer of the true world: static objects once, robot and movers over time.
+    """Layer of the true world without the robot: static objects once, movers over time.
 
     Args:
         stream: recording.
@@ -151,18 +151,9 @@ class Scene:
         self._data = mujoco.MjData(model)
         self._camera = model.camera(HEAD_CAMERA).id
         mujoco.mj_kinematics(model, self._data)
-        root = model.body_rootid[model.geom_bodyid]
-        on_robot = root == model.body_rootid[model.jnt_bodyid[0]]
         visible = np.isin(model.geom_group, VISUAL_GROUPS) & (model.geom_type != _PLANE)
         mobile = model.body_mocapid[model.geom_bodyid] >= 0
-        self._robot = batches_of(model, on_robot & visible)
         self._movers = batches_of(model, mobile & visible)
-        self._channels = []
-        for batch in self._robot:
-            style = shapes(model, batch)
-            path = f"/world/robot/{batch.kind}"
-            stream.log(path, style, static=True)
-            self._channels.append(Channel(stream, path, type(style)))
         self._mover_channel = Channel(stream, "/world/movers", rr.Cylinders3D)
         for batch in self._movers:
             stream.log("/world/movers", shapes(model, batch), static=True)
@@ -194,24 +185,19 @@ class Scene:
             True positions (n, 3) [m] and rotations (n, 9) of the head camera.
         """
         data = self._data
-        copies = []
+        cameras = []
         for configuration in qpos:
             data.qpos[:] = configuration
             mujoco.mj_kinematics(self._model, data)
             mujoco.mj_comPos(self._model, data)
             mujoco.mj_camlight(self._model, data)
-            camera = data.cam_xpos[self._camera].copy(), data.cam_xmat[self._camera].copy()
-            copies.append((data.geom_xpos.copy(), data.geom_xmat.copy(), *camera))
-        positions, rotations, camera_positions, camera_rotations = map(
-            np.array, zip(*copies, strict=True)
-        )
-        for batch, channel in zip(self._robot, self._channels, strict=True):
-            rows = poses(self._model, batch, positions, rotations)
-            channel.add_rows(times, [len(batch.geoms)] * len(times), **rows)
+            place = data.cam_xpos[self._camera].copy(), data.cam_xmat[self._camera].copy()
+            cameras.append(place)
         for batch in self._movers:
             centres = np.concatenate(movers)
             heights = np.full(len(centres), self._model.geom_size[batch.geoms[0], 1])
             self._mover_channel.add_rows(
                 times, list(map(len, movers)), centers=np.column_stack([centres, heights])
             )
-        return camera_positions, camera_rotations
+        positions, rotations = map(np.array, zip(*cameras, strict=True))
+        return positions, rotations

@@ -14,12 +14,13 @@ from hsr8.recorder import palette
 from hsr8.recorder.files.writing import failure
 from hsr8.recorder.log.belief_layer import BeliefLayer
 from hsr8.recorder.log.block_stream import BlockStream
-from hsr8.recorder.log.blueprint import blueprint
+from hsr8.recorder.log.blueprint import RobotView, blueprint
 from hsr8.recorder.log.camera_layer import CameraLayer
 from hsr8.recorder.log.channel import TIMELINE, Channel
 from hsr8.recorder.log.geometry import Scene, sole_outline
 from hsr8.recorder.log.plan_layer import PlanLayer
 from hsr8.recorder.log.plot_layer import PlotLayer
+from hsr8.recorder.log.robot_layer import RobotLayer, followed_entity
 from hsr8.recorder.log.throttle import Throttle
 from hsr8.recorder.log.walk_layer import WalkLayer
 from hsr8.recorder.log_level import RATES, LogLevel
@@ -27,6 +28,8 @@ from hsr8.recorder.record import TickRecord
 from hsr8.recorder.record_buffer import PERIOD, RecordBuffer
 from hsr8.recorder.run.walking_table import OdometryToWorld
 from hsr8.robots.loaded import LoadedRobot
+from hsr8.robots.scale import DEFAULT_ROBOT, DEFAULT_STATURE
+from hsr8.robots.shown import visual_model
 from hsr8.world.field.layout import Layout
 from navigation.parameters.gaze import GazeParameters
 
@@ -89,9 +92,10 @@ class RerunLog:
         self._folder = path.parent
         self._waits = not live  # for the file; a viewer may disconnect
         self._failed = False
+        view = _view(robot)
         shown = blueprint(
             max(layout.field_size),
-            scale=layout.scale,
+            robot=view,
             walking=len(layout.waypoints) == 0,
             images=rates.jpeg > 0,
         )
@@ -104,11 +108,14 @@ class RerunLog:
         self._n_movers = len(layout.movers)
         width, depth = (side + APRON * layout.scale for side in layout.field_size)
         self._scene = Scene(self._stream, model, (width, depth))
+        self._robot = RobotLayer(self._stream, robot)
         self._soles = (sole_outline(robot.model.sole),) * 2
         self._camera: CameraLayer | None = None
         self._belief_layers: tuple[BeliefLayer | PlanLayer, ...] = ()
         if rates.jpeg:
-            self._camera = CameraLayer(self._stream, model, image_size, rates.jpeg, gaze)
+            self._camera = CameraLayer(
+                self._stream, model, image_size, rates.jpeg, gaze, scale=view.size
+            )
             self._belief_layers = (
                 BeliefLayer(self._stream, rates.map, layout.scale),
                 PlanLayer(self._stream, rates.map, layout.scale),
@@ -152,7 +159,9 @@ class RerunLog:
             times, truths = [r.time for r in shown], [r.truth for r in shown]
             first = len(truths[0].obstacle_positions) - self._n_movers
             movers = [truth.obstacle_positions[first:] for truth in truths]
-            poses = self._scene.add(times, [truth.qpos for truth in truths], movers)
+            qpos = [truth.qpos for truth in truths]
+            self._robot.add(times, qpos)
+            poses = self._scene.add(times, qpos, movers)
             if self._camera is not None:
                 self._camera.add_poses(times, *poses)
             self._plots.add(shown)
@@ -263,3 +272,10 @@ class RerunLog:
                 radii=0.01,
             )
             self._stream.log("/world/waypoints/heading", heading, static=True)
+
+
+def _view(robot: LoadedRobot) -> RobotView:
+    """Return a robot as the views need it."""
+    name = "HSR-VIII" if robot.name == DEFAULT_ROBOT else robot.name
+    entity = followed_entity(visual_model(robot), robot.roles.base)
+    return RobotView(name, entity, robot.stature / DEFAULT_STATURE)

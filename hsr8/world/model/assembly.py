@@ -17,7 +17,8 @@ import numpy as np
 
 from hsr8.robots.loaded import LoadedRobot
 from hsr8.robots.models import models_dir, reading_models
-from hsr8.robots.normal_form import COLLISION_GROUP, HEAD_CAMERA
+from hsr8.robots.normal_form import HEAD_CAMERA
+from hsr8.robots.shown import camera_spec, visual_spec
 from hsr8.scenario.fault import Bump
 from hsr8.world.field.layout import Beacon, Layout, Obstacle
 from hsr8.world.model.model_check import check_model
@@ -34,7 +35,6 @@ SHOW_GAMMA = (
 )
 APRON = 1.5  # distance of the walls from the border of the field [m]
 WALL_HEIGHT = 4.0  # [m]
-SHOWN_GROUP = 2  # of geoms that MuJoCo draws
 SHADOW_SIZE = 2048  # resolution of the shadow map [texel]
 REFERENCE_SIDE = 5.0  # of the field that the lights of models/field/ are made for [m]
 
@@ -121,17 +121,10 @@ def _unwarned() -> Iterator[None]:
 
 
 def _attach(spec: mujoco.MjSpec, robot: LoadedRobot, quality: Quality) -> None:
-    """Add the robot, for the head camera in its collision shapes instead of meshes."""
-    own = robot.spec.copy()
-    if quality == "vision":
-        for geom in list(own.geoms):
-            solid = geom.contype or geom.conaffinity
-            if geom.type == mujoco.mjtGeom.mjGEOM_MESH and not solid:
-                own.delete(geom)
-            elif solid and robot.has_meshes:
-                geom.group = SHOWN_GROUP if geom.group == COLLISION_GROUP else geom.group
+    """Add the robot in the shapes of a quality."""
+    shapes = camera_spec(robot) if quality == "vision" else visual_spec(robot)
     with _unwarned():
-        spec.attach(own, prefix="", frame=spec.worldbody.add_frame())
+        spec.attach(shapes, prefix="", frame=spec.worldbody.add_frame())
 
 
 def _part(find: Callable[[str], Any], name: str) -> Any:

@@ -10,6 +10,7 @@ from hsr8.recorder.log.geometry import (
     sole_outline,
 )
 from hsr8.recorder.log.log_reader import Log
+from hsr8.recorder.log.robot_layer import RobotLayer
 from hsr8.robots.loaded import load_robot
 from hsr8.robots.normal_form import FEET, HEAD_CAMERA, SOLES
 
@@ -32,7 +33,9 @@ def test_logged_shapes_are_where_the_geoms_are(model, tmp_path):
     stream = BlockStream("test")
     stream.save(tmp_path / "log.rrd")
     movers = [np.zeros((1, 2))] * 3
-    cameras, _ = Scene(stream, model, (4.0, 4.0)).add([0.0, 1.0, 2.0], list(qpos), movers)
+    times = [0.0, 1.0, 2.0]
+    cameras, _ = Scene(stream, model, (4.0, 4.0)).add(times, list(qpos), movers)
+    RobotLayer(stream, load_robot("hsr8")).add(times, list(qpos))
     stream.send()
     stream.disconnect()
     log = Log(tmp_path / "log.rrd")

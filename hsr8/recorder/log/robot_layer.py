@@ -1,0 +1,133 @@
+"""Robot in the log: its primitive shapes in batches, its meshes per rigid part."""
+
+from collections.abc import Sequence
+
+import mujoco
+import numpy as np
+import rerun as rr
+from numpy.typing import NDArray
+
+from hsr8.recorder.log.block_stream import BlockStream
+from hsr8.recorder.log.channel import Channel
+from hsr8.recorder.log.geometry import batches_of, colors, poses, quaternions, shapes
+from hsr8.robots.loaded import LoadedRobot
+from hsr8.robots.shown import VISUAL_GROUPS, visual_model
+
+Array = NDArray[np.float64]
+
+ROOT = "/world/robot"
+_MESH = int(mujoco.mjtGeom.mjGEOM_MESH)
+
+
+class RobotLayer:
+    """Layer of the robot's visual shapes.
+
+    Args:
+        stream: recording.
+        robot: to draw.
+    """
+
+    def __init__(self, stream: BlockStream, robot: LoadedRobot) -> None:
+        self._model = model = visual_model(robot)
+        self._data = mujoco.MjData(model)
+        visible = np.isin(model.geom_group, VISUAL_GROUPS) & (model.geom_bodyid > 0)
+        self._batches = batches_of(model, visible)
+        self._batch_channels = []
+        for batch in self._batches:
+            style = shapes(model, batch)
+            path = f"{ROOT}/{batch.kind}"
+            stream.log(path, style, static=True)
+            self._batch_channels.append(Channel(stream, path, type(style)))
+        parts = model.body_weldid[model.geom_bodyid]
+        meshes = visible & (model.geom_type == _MESH)
+        self._parts = np.unique(parts[meshes])
+        self._part_channels = []
+        mujoco.mj_kinematics(model, self._data)
+        for part in self._parts:
+            path = part_path(model, int(part))
+            geoms = np.flatnonzero(meshes & (parts == part))
+            stream.log(path, mesh_of(model, self._data, int(part), geoms), static=True)
+            self._part_channels.append(Channel(stream, path, rr.Transform3D))
+
+    def add(self, times: Sequence[float], qpos: Sequence[Array]) -> None:
+        """Add n rows: times [s], configurations (nq,)."""
+        data, copies = self._data, []
+        for configuration in qpos:
+            data.qpos[:] = configuration
+            mujoco.mj_kinematics(self._model, data)
+            part = data.xpos[self._parts], data.xmat[self._parts]
+            copies.append((data.geom_xpos.copy(), data.geom_xmat.copy(), *part))
+        positions, rotations, part_positions, part_rotations = map(
+            np.array, zip(*copies, strict=True)
+        )
+        for batch, channel in zip(self._batches, self._batch_channels, strict=True):
+            rows = poses(self._model, batch, positions, rotations)
+            channel.add_rows(times, [len(batch.geoms)] * len(times), **rows)
+        for k, channel in enumerate(self._part_channels):
+            channel.add_rows(
+                times,
+                [1] * len(times),
+                translation=part_positions[:, k],
+                quaternion=quaternions(part_rotations[:, k]),
+            )
+
+
+def followed_entity(model: mujoco.MjModel, base: str) -> str:
+    """Return the entity of a robot that views follow: the part of the base, else a batch."""
+    meshes = (model.geom_type == _MESH) & np.isin(model.geom_group, VISUAL_GROUPS)
+    parts = np.unique(model.body_weldid[model.geom_bodyid[meshes]])
+    if len(parts):
+        part = int(model.body_weldid[model.body(base).id])
+        return part_path(model, part if part in parts else int(parts[0]))
+    kinds = [b.kind for b in batches_of(model, np.isin(model.geom_group, VISUAL_GROUPS))]
+    return f"{ROOT}/{'ellipsoids' if 'ellipsoids' in kinds or not kinds else kinds[0]}"
+
+
+def part_path(model: mujoco.MjModel, body: int) -> str:
+    """Return the entity of the rigid part of a body."""
+    return f"{ROOT}/{rr.escape_entity_path_part(model.body(body).name or f'part {body}')}"
+
+
+def mesh_of(
+    model: mujoco.MjModel, data: mujoco.MjData, part: int, geoms: NDArray[np.intp]
+) -> rr.Mesh3D:
+    """Return the meshes of a rigid part as one mesh in the frame of its body.
+
+    Args:
+        model: of the robot.
+        data: its state, with all places computed.
+        part: body id.
+        geoms: ids of its mesh geoms (n,).
+    """
+    frame, origin = data.xmat[part].reshape(3, 3), data.xpos[part]
+    corners, normals, triangles, count = [], [], [], 0
+    for geom in geoms.tolist():
+        turn = frame.T @ data.geom_xmat[geom].reshape(3, 3)
+        place = frame.T @ (data.geom_xpos[geom] - origin)
+        vertex, normal, triangle = _mesh(model, int(model.geom_dataid[geom]))
+        corners.append(vertex @ turn.T + place)
+        normals.append(normal @ turn.T)
+        triangles.append(triangle + count)
+        count += len(vertex)
+    shades = np.repeat(colors(model, geoms), [len(part) for part in corners], axis=0)
+    return rr.Mesh3D(
+        vertex_positions=np.concatenate(corners),
+        vertex_normals=np.concatenate(normals),
+        triangle_indices=np.concatenate(triangles),
+        vertex_colors=shades,
+    )
+
+
+def _mesh(model: mujoco.MjModel, number: int) -> tuple[Array, Array, NDArray[np.int64]]:
+    """Return vertices (n, 3) [m], their normals (n, 3) and triangles (m, 3) of a mesh.
+
+    A vertex on an edge, which has several normals, is repeated.
+    """
+    vertex, normal = model.mesh_vertadr[number], model.mesh_normaladr[number]
+    face = int(model.mesh_faceadr[number])
+    faces = slice(face, face + int(model.mesh_facenum[number]))
+    pairs = np.column_stack([model.mesh_face[faces].ravel(), model.mesh_facenormal[faces].ravel()])
+    unique, triangles = np.unique(pairs, axis=0, return_inverse=True)
+    corners = model.mesh_vert[vertex + unique[:, 0]].astype(np.float64)
+    normals = model.mesh_normal[normal + unique[:, 1]].astype(np.float64)
+    return corners, normals, triangles.reshape(-1, 3)
