@@ -59,10 +59,10 @@ class WalkingEngine:
         self._parameters = parameters
         pattern = parameters.pattern
         self._lipm = lipm = Lipm(pattern.lipm_height)
-        generator = make_generator(lipm, pattern, robot.sole)
+        generator = make_generator(lipm, pattern, robot.support)
         self._planner = planner = FootstepPlanner(parameters.gait, parameters.limits, robot.sole)
         stance = ready_stance(robot)
-        self._gait = gait = Gait(parameters, planner, stance)
+        self._gait = gait = Gait(parameters, planner, stance, robot.support)
         zmp = gait.plan(stance[1], planner.still, moving=False)[-1]
         self._pendulum = PendulumState(zmp.bx, zmp.by, zmp_x=zmp.bx, zmp_y=zmp.by)
         self._steering = Steering(planner, parameters.limits, selective=generator.selective)
@@ -83,7 +83,7 @@ class WalkingEngine:
         self._odometry = odometry or LegOdometry(parameters.odometry)
         self._estimation = Estimation(robot, lipm.omega, parameters.estimator, self._odometry)
         self._head = Head(robot.neck.angles(robot.ready), robot.neck.range(), parameters.head)
-        self._polygon = SupportPolygon(robot.sole, gait.support_feet)
+        self._polygon = SupportPolygon(robot.support, gait.support_feet)
         self._fall_tilt = parameters.estimator.fall_tilt
         self._zmp_shift = (0.0, 0.0)
         self._bound: list[Limit] = []

@@ -51,7 +51,7 @@ def with_gains(robot: RobotModel, stabilizer: StabilizerParameters) -> Stabilize
     A part of the lag lets slow servos fall behind; damping scaled to soft ankles oscillates with
     the delay of the servos; a margin scaled to the legs leaves nothing of a narrow sole.
     """
-    margin = SOLE_FRACTION * robot.sole.half_width
+    margin = SOLE_FRACTION * robot.support.half_width
     return replace(
         stabilizer,
         velocity_gain=1.0,
@@ -62,7 +62,7 @@ def with_gains(robot: RobotModel, stabilizer: StabilizerParameters) -> Stabilize
 
 def with_plan_margin(robot: RobotModel, pattern: PatternParameters) -> PatternParameters:
     """Return a planned ZMP with a support area left on the sole."""
-    most = PLAN_FRACTION * robot.sole.half_width
+    most = PLAN_FRACTION * robot.support.half_width
     return replace(pattern, plan_margin=min(pattern.plan_margin, most))
 
 

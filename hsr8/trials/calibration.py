@@ -10,14 +10,14 @@ from numpy.typing import NDArray
 from hsr8.robots.loaded import LoadedRobot
 from hsr8.trials.walk import Trial, Walked
 from walking.command import HeadTarget, VelocityCommand
-from walking.parameters import CONTROL_PERIOD, LimitParameters, WalkingParameters
+from walking.parameters import CONTROL_PERIOD, WalkingParameters
 
 Array = NDArray[np.float64]
 Report = Callable[[str], None]
 
 AXES = ("vx", "vx_backward", "vy", "wz")
-STEADY_TIME, RANDOM_TIME = 12.0, 40.0  # of a walk, in the time scale of HSR-VIII [s]
-RANDOM_SEEDS = range(4)
+STEADY_TIME, RANDOM_TIME = 12.0, 60.0  # of a walk, in the time scale of HSR-VIII [s]
+RANDOM_SEEDS = range(8)
 MAX_ERROR = 0.05  # of a steady velocity, relative [1]
 MAX_TILT = 8.0  # 99th percentile of the tilt in a steady walk [deg]
 SHRINK = 0.85  # of a speed that failed
@@ -98,10 +98,10 @@ def calibrate(robot: LoadedRobot, report: Report = lambda _line: None) -> Measur
         report: receives a line per result.
     """
     parameters = robot.parameters
-    wide = replace(parameters, limits=_without_limits(parameters.limits))
-    trial, scale = Trial(robot, wide), time_scale(parameters)
+    trial, scale = Trial(robot), time_scale(parameters)
     speed = {axis: _axis_limit(trial, axis, scale, report) for axis in AXES}
     while True:
+        trial.parameters = replace(parameters, limits=replace(parameters.limits, **speed))
         walks = list(_random_walks(trial, speed, scale))
         falls = sum(walk.falls for walk in walks)
         report(f"random commands in {_text(speed)}: {falls} falls in {len(walks)} walks")
@@ -121,11 +121,6 @@ def calibrate(robot: LoadedRobot, report: Report = lambda _line: None) -> Measur
         yaw_sigma=_digits(sigmas[2]),
         height_sigma=_digits(sigmas[3]),
     )
-
-
-def _without_limits(limits: LimitParameters) -> LimitParameters:
-    """Return limits that do not clip combined commands: the envelope is what is measured."""
-    return replace(limits, combined=2.0)
 
 
 def _axis_limit(trial: Trial, axis: str, scale: float, report: Report) -> float:

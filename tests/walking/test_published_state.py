@@ -60,7 +60,12 @@ def test_a_tilted_trunk_takes_the_camera_along(robot, looking, roll, pitch):
 @pytest.fixture
 def gait(robot):
     planner = FootstepPlanner(PARAMETERS.gait, PARAMETERS.limits, robot.sole)
-    gait = Gait(PARAMETERS, planner, (Foothold(True, 0, 0.042, 0), Foothold(False, 0, -0.042, 0)))
+    gait = Gait(
+        PARAMETERS,
+        planner,
+        (Foothold(True, 0, 0.042, 0), Foothold(False, 0, -0.042, 0)),
+        robot.sole,
+    )
     gait.start(0)
     gait.plan(gait.landing, planner.strides((0.2, 0.0, 0.3), 0.34), moving=True)
     return gait

@@ -45,7 +45,7 @@ class Stabilizer:
         ankle = slice(robot.legs[0].ankle, 6)
         lag = float((robot.damping[ankle] / robot.stiffness[ankle]).max())
         self._gain = dcm_gain(omega, lag, parameters.dcm_rate)
-        sole, margin = robot.sole, parameters.sole_margin
+        sole, margin = robot.support, parameters.sole_margin
         self._margin = sole.half_length - margin, sole.half_width - margin
 
     def zmp_shift(self, zmp: Point, error: Point, region: SupportRegion) -> Point:

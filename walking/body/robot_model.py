@@ -10,11 +10,13 @@ import pinocchio as pin
 from walking.arrays import Array, Point
 from walking.body.leg import FootPose, Leg
 from walking.body.neck import Neck
+from walking.body.sole import Sole
 from walking.body.tree import LEFT_LEG, RIGHT_LEG, Frame, RobotTree
 from walking.parameters import GRAVITY
 from walking.robot_measures import RobotMeasures
 
 MAX_COMPLIANCE, MAX_STIFFENING = 0.9, 3.0  # of an ankle, see `_stiffen` [1]
+ANKLE_USED = 0.9  # of the torque of an ankle that shifts the ZMP [1]
 BENT = 5.0 / 6.0  # walking height of the hips per length of the leg [1]
 SMALL = 1e-5  # step of finite differences [m]
 BASE = "base"
@@ -36,6 +38,7 @@ class RobotModel:
             `kinematics_kernel.feet_poses`.
         neck: pan and tilt of the camera.
         sole: rectangle of each sole.
+        support: part of it that the ankles can press on the floor.
         ready: joint angles of the ready posture, see `stand` (n,) [rad].
         motion: position, velocity and acceleration of level base and joints in Pinocchio's order,
             input of `forces`.
@@ -73,6 +76,7 @@ class RobotModel:
         )
         self.neck = Neck(tree)
         self.sole = tree.sole
+        self.support = self._support()
         self.ready = tree.posture.copy()
         self.lower, self.upper = tree.lower, tree.upper
         self.stiffness = tree.stiffness.copy()
@@ -91,12 +95,20 @@ class RobotModel:
         """
         base, error = height - self.legs[0].hip[2], 0.0
         for _ in range(12):  # the legs carry a part of the mass
-            ahead = float(self.com(self.ready)[0]) - self.sole.centre
+            ahead = float(self.com(self.ready)[0]) - self.support.centre
             for leg, part, y in zip(
                 self.legs, (LEFT_LEG, RIGHT_LEG), (half_stance, -half_stance), strict=True
             ):
                 self.ready[part], error = leg.angles(FootPose(ahead, y, -base))
         return error
+
+    def _support(self) -> Sole:
+        """Return the part of the sole for the ZMP: all of it, if the ankles are strong enough."""
+        leg = self.legs[0]
+        reach = ANKLE_USED * self.tree.effort[:6] / (self.mass * GRAVITY)
+        pitch = leg.pitching[2]
+        roll = next(k for k in range(leg.ankle, 6) if k != pitch)
+        return self.sole.pressed(float(reach[pitch]), float(reach[roll]))
 
     def _stiffen(self) -> float:
         """Stiffen soft legs and return the factor [1].

@@ -16,3 +16,18 @@ class Sole:
     centre: float
     half_length: float
     half_width: float
+
+    def pressed(self, forward: float, side: float) -> "Sole":
+        """Return the part of the sole that weak ankles can press on the floor.
+
+        A ZMP at a distance from the ankle needs a torque of that distance times the weight.
+
+        Args:
+            forward: distance from the ankle that the pitch joint can hold [m].
+            side: likewise of the roll joint [m].
+        """
+        front, back = self.centre + self.half_length, self.centre - self.half_length
+        if front <= forward and -back <= forward and self.half_width <= side:
+            return self
+        front, back = min(front, forward), max(back, -forward)
+        return Sole(0.5 * (front + back), 0.5 * (front - back), min(self.half_width, side))

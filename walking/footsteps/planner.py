@@ -33,7 +33,6 @@ class FootstepPlanner:
         sole: rectangle of the soles.
 
     Attributes:
-        sole: rectangle of the soles.
         still: strides of stepping in place.
     """
 
@@ -42,7 +41,6 @@ class FootstepPlanner:
         self._limits = limits
         self._near = POSITION_TOLERANCE * gait.half_stance
         self._stance = (STANCE_TOLERANCE * gait.half_stance, STANCE_YAW_TOLERANCE)
-        self.sole = sole
         heel, toe = sole.centre - sole.half_length, sole.centre + sole.half_length
         self._sole = heel, toe, sole.half_width
         self._build = gait.half_stance, gait.foot_clearance, *self._sole

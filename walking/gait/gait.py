@@ -3,6 +3,7 @@
 import numpy as np
 
 from walking.arrays import Array, Point
+from walking.body.sole import Sole
 from walking.clamp import clamp
 from walking.foothold import Foothold
 from walking.footsteps.foothold_kernel import RAMP
@@ -32,6 +33,7 @@ class Gait:
         parameters: of the engine.
         planner: of the footholds.
         stance: initial left and right foothold.
+        sole: part of a sole that the ankles can press on the floor.
 
     Attributes:
         stepping: whether a footstep is under way.
@@ -59,10 +61,11 @@ class Gait:
         parameters: WalkingParameters,
         planner: FootstepPlanner,
         stance: tuple[Foothold, Foothold],
+        sole: Sole,
     ) -> None:
         gait = parameters.gait
         self._planner = planner
-        self._reference = ZmpReference(parameters, planner.sole)
+        self._reference = ZmpReference(parameters, sole)
         self._contact_decay = parameters.stabilizer.contact_decay
         self._start = max(1, round(gait.start_time / CONTROL_PERIOD))
         self._freeze = gait.landing_freeze

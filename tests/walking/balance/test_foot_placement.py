@@ -35,7 +35,7 @@ class Pendulum:
         self.planner = FootstepPlanner(parameters.gait, parameters.limits, robot.sole)
         h = parameters.gait.half_stance
         stance = Foothold(True, 0.0, h, 0.0), Foothold(False, 0.0, -h, 0.0)
-        self.gait = Gait(parameters, self.planner, stance)
+        self.gait = Gait(parameters, self.planner, stance, robot.sole)
         start = self.gait.plan(stance[1], self.planner.still, moving=False)[-1]
         state = PendulumState(start.bx, start.by, zmp_x=start.bx, zmp_y=start.by)
         self.steering = Steering(self.planner, parameters.limits, selective=made.selective)

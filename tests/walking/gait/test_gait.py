@@ -28,7 +28,9 @@ PLANNER = FootstepPlanner(GAIT, PARAMETERS.limits, SOLE)
 @pytest.fixture
 def gait():
     h = GAIT.half_stance
-    return Gait(PARAMETERS, PLANNER, (Foothold(True, 0.0, h, 0.0), Foothold(False, 0.0, -h, 0.0)))
+    return Gait(
+        PARAMETERS, PLANNER, (Foothold(True, 0.0, h, 0.0), Foothold(False, 0.0, -h, 0.0)), SOLE
+    )
 
 
 def tick(gait, velocity, *, moving=True):

@@ -13,9 +13,8 @@ from walking.parameters import WalkingParameters
 
 PARAMETERS = WalkingParameters()
 LIMITS = PARAMETERS.limits
-PLANNER = FootstepPlanner(
-    PARAMETERS.gait, LIMITS, Sole(centre=0.01, half_length=0.0525, half_width=0.03)
-)
+SOLE = Sole(centre=0.01, half_length=0.0525, half_width=0.03)
+PLANNER = FootstepPlanner(PARAMETERS.gait, LIMITS, SOLE)
 FASTEST = [
     (LIMITS.vx, 0.0, 0.0),
     (-LIMITS.vx_backward, 0.0, 0.0),
@@ -28,7 +27,9 @@ FASTEST = [
 def walk(velocity, stop_at, *, selective):
     """Footsteps completed by the command to stop and by the time of standing."""
     h = PARAMETERS.gait.half_stance
-    gait = Gait(PARAMETERS, PLANNER, (Foothold(True, 0.0, h, 0.0), Foothold(False, 0.0, -h, 0.0)))
+    gait = Gait(
+        PARAMETERS, PLANNER, (Foothold(True, 0.0, h, 0.0), Foothold(False, 0.0, -h, 0.0)), SOLE
+    )
     steering = Steering(PLANNER, LIMITS, selective=selective)
     gait.start(0)
     at_stop = 0

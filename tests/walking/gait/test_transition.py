@@ -48,7 +48,7 @@ def setting(robot):
     planner = FootstepPlanner(PARAMETERS.gait, PARAMETERS.limits, robot.sole)
     h = PARAMETERS.gait.half_stance
     stance = (Foothold(True, 0.0, h, 0.0), Foothold(False, 0.0, -h, 0.0))
-    gait = Gait(PARAMETERS, planner, stance)
+    gait = Gait(PARAMETERS, planner, stance, robot.sole)
     gait.start(0)
     generator = UpTo(gait)
     region = support_region(robot.sole, *stance, 0.005)

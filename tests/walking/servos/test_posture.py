@@ -17,7 +17,7 @@ PARAMETERS = WalkingParameters()
 def gait(robot):
     planner = FootstepPlanner(PARAMETERS.gait, PARAMETERS.limits, robot.sole)
     stance = (Foothold(True, 0.01, 0.045, 0.15), Foothold(False, -0.01, -0.04, -0.05))
-    return Gait(PARAMETERS, planner, stance)
+    return Gait(PARAMETERS, planner, stance, robot.sole)
 
 
 def test_feet_are_where_the_plan_has_them(robot, gait):

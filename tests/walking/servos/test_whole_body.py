@@ -25,7 +25,7 @@ def body(robot):
 
     def make(x=0.01, y=0.0):
         stance = (Foothold(True, 0.0, h, 0.0), Foothold(False, 0.0, -h, 0.0))
-        gait = Gait(PARAMETERS, planner, stance)
+        gait = Gait(PARAMETERS, planner, stance, robot.sole)
         return WholeBody(
             robot, PARAMETERS, lipm=LIPM, gait=gait, pendulum=PendulumState(x, y)
         ), gait
