@@ -15,7 +15,8 @@ from hsr8.render.portrait import portrait
 from hsr8.robots.description_file import description_text
 from hsr8.robots.facts import facts
 from hsr8.robots.inspection import Inspection, inspect
-from hsr8.robots.loaded import LoadedRobot, build_robot
+from hsr8.robots.loaded import LoadedRobot
+from hsr8.robots.trial_load import load_inspected
 
 
 def main(options: RobotInspect) -> int:
@@ -34,7 +35,7 @@ def main(options: RobotInspect) -> int:
         raise UsageError(f"--write {options.write}: {options.file} is a description already")
     robot, refusal = None, None
     try:
-        robot = build_robot(inspection.require_description(), inspection.file)
+        inspection, robot = load_inspected(inspection)
     except ModelError as error:
         refusal = error
     _show(options, inspection, robot, refusal)

@@ -9,6 +9,10 @@ TOUCHING = -5e-4  # distance of shapes that overlap [m]
 NEIGHBOURS = 3  # joints between links whose shapes may overlap by the maker's choice
 
 
+class SelfCollision(ModelError):
+    """Overlap of links in the ready posture."""
+
+
 def exclude_neighbours(spec: mujoco.MjSpec, ready: Posed, source: str) -> list[str]:
     """Exclude overlapping links close to each other from contact, and refuse other overlaps.
 
@@ -24,7 +28,7 @@ def exclude_neighbours(spec: mujoco.MjSpec, ready: Posed, source: str) -> list[s
         Notes, a line each.
 
     Raises:
-        ModelError: links far from each other overlap.
+        SelfCollision: links far from each other overlap.
     """
     model, notes = ready.model, []
     overlaps: dict[tuple[int, int], float] = {}
@@ -35,7 +39,7 @@ def exclude_neighbours(spec: mujoco.MjSpec, ready: Posed, source: str) -> list[s
     for (one, other), distance in overlaps.items():
         names = model.body(one).name, model.body(other).name
         if _joints_between(model, one, other) > NEIGHBOURS:
-            raise ModelError(
+            raise SelfCollision(
                 f"{source}: ready posture: {names[0]!r} and {names[1]!r} overlap by "
                 f"{-1e3 * distance:.1f} mm; expected a posture without self-collision: state "
                 "angles of the arms in posture, or exclude the pair in the model"

@@ -1,0 +1,82 @@
+from xml.etree import ElementTree
+
+import pytest
+
+from hsr8.errors import ModelError
+from hsr8.robots.inspection import inspect
+from hsr8.robots.trial_load import load_inspected
+from tests.hsr8.robots.robot_parts import part
+from tests.hsr8.robots.small_humanoid import SmallHumanoid
+
+
+@pytest.fixture
+def loaded(tmp_path):
+    """Write a changed robot and load it with its guessed description."""
+
+    def load(change=lambda root: None, flip=False):
+        root = SmallHumanoid(arm="prpp", flip=flip).element()
+        change(root)
+        file = tmp_path / "small.xml"
+        file.write_text(ElementTree.tostring(root, "unicode"))
+        return load_inspected(inspect(str(file)))
+
+    return load
+
+
+def findings(inspection, role):
+    return [finding for finding in inspection.findings if finding.role == role]
+
+
+def wide(root, half_width="0.1"):
+    """Let the arms collide with the pelvis."""
+    pelvis = part(root, "body", "base").find("geom")
+    pelvis.attrib.update(size=f"0.06 {half_width} 0.04", contype="1", conaffinity="1")
+    for side in "lr":
+        hand = part(root, "body", f"{side}_elbow3_pitch_link").find("geom")
+        hand.attrib.update(contype="1", conaffinity="1")
+
+
+def test_a_robot_without_need_is_not_changed(loaded):
+    inspection, robot = loaded()
+    assert inspection.description == robot.description
+    assert (inspection.description.posture, inspection.description.servo) == ({}, None)
+    assert not findings(inspection, "posture") + findings(inspection, "servo")
+
+
+@pytest.mark.parametrize("flip", [False, True])
+def test_arms_that_touch_the_body_are_spread(loaded, flip):
+    inspection, robot = loaded(wide, flip)
+    posture = inspection.description.posture
+    assert set(posture) == {"l_shoulder_roll", "r_shoulder_roll"}
+    assert posture["l_shoulder_roll"] > 0.1
+    assert posture["r_shoulder_roll"] == (1.0 if flip else -1.0) * posture["l_shoulder_roll"]
+    (finding,) = findings(inspection, "posture")
+    assert finding.reason == "the arms touch the body at zero angles"
+    assert robot.description.posture == posture
+
+
+def test_arms_inside_the_body_are_refused(loaded):
+    with pytest.raises(ModelError, match=r"overlap by .* mm; expected a posture without"):
+        loaded(lambda root: wide(root, "0.4"))
+
+
+def test_soft_servos_are_replaced_by_the_rule(loaded):
+    def soften(root):
+        for servo in root.iter("position"):
+            servo.attrib.update(kp="5", kv="0.2")
+
+    inspection, robot = loaded(soften)
+    assert inspection.description.servo == "rule"
+    (finding,) = findings(inspection, "servo")
+    assert "of the stiffness that holds it upright" in finding.reason
+    assert robot.model.stiffening == 1.0
+
+
+def test_a_stated_description_is_not_changed(loaded, tmp_path):
+    _, robot = loaded()
+    text = 'model = "small.xml"\nfeet = ["l_ankle_roll_link", "r_ankle_roll_link"]\n'
+    (tmp_path / "mine.toml").write_text(text)
+    inspection, again = load_inspected(inspect(str(tmp_path / "mine.toml")))
+    assert inspection.stated
+    assert again.description.head is None
+    assert again.model.mass == robot.model.mass
