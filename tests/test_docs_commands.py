@@ -25,6 +25,8 @@ from hsr8.cli.command_line import settings
 from hsr8.cli.main import COMMANDS, entry, parse
 from hsr8.errors import RenderingUnavailable
 from hsr8.gl import require_gl
+from hsr8.robots.description import read_description
+from hsr8.robots.locate import find_description, installed_model, robot_names
 
 ROOT = Path(__file__).parents[1]
 PAGES = [ROOT / "README.md", ROOT / "CONTRIBUTING.md", *sorted((ROOT / "docs").rglob("*.md"))]
@@ -34,7 +36,7 @@ OTHERS = {"cd", "dask", "git", "jq", "pip", "source"}  # other people's programs
 RUNS = ("quick", "course", "paper")  # that a page may take for done
 STANDS_FOR = {
     **dict.fromkeys(("SCENARIO", "NAME", "FILE"), "quick"),
-    **{"RUN": "runs/quick", "A": "runs/quick", "B": "runs/course", "A:B": "0:2"},
+    **{"ROBOT": "hsr8", "RUN": "runs/quick", "A": "runs/quick", "B": "runs/course", "A:B": "0:2"},
     **{"PNG": "picture.png", "IMAGE...": "image.png", "$SLURM_ARRAY_TASK_ID/32": "1/32"},
 }
 # Appended, since of an option given twice the last one holds.
@@ -46,7 +48,7 @@ IN_SHORT = {
     "replay": ["--time", "0.1"],
 }
 # Only read, since they would need what the page cannot give or take seconds.
-ONLY_READ = {"color-table"}
+ONLY_READ = {"color-table", "robot inspect", "robot check", "robot calibrate"}
 WITHOUT_ARGUMENTS = {"list", "doctor", "schema"}
 GOOD = {"success": True, "collisions": 0, "falls": 0, "path_length_m": 2.0, "exit_reason": "goal"}
 
@@ -124,12 +126,25 @@ def draws():
     return True
 
 
+def installed(robot):
+    """Whether the model of a robot is there, which a page may leave to its reader."""
+    if robot not in robot_names():
+        return False
+    file = find_description(robot)
+    return installed_model(read_description(file), file.parent) is not None
+
+
 def hsr8(words, capsys):
     """Execute a command of ours; what it prints."""
     given = [STANDS_FOR.get(word, word) for word in words[1:]]
     if " ".join(given) in COMMANDS and given[0] not in WITHOUT_ARGUMENTS:
         given = [*given, "--help"]  # no more than its name
-    elif ONLY_READ & set(given) or (given[0] in ("render", "doctor") and not draws()):
+    elif (
+        ONLY_READ & set(given)
+        or " ".join(given[:2]) in ONLY_READ
+        or (given[0] in ("render", "doctor") and not draws())
+        or ("--robot" in given and not installed(given[given.index("--robot") + 1]))
+    ):
         parse(given)
         return ""
     else:
