@@ -24,7 +24,7 @@ class Sole:
 
         Args:
             forward: distance from the ankle that the pitch joint can hold [m].
-            side: likewise of the roll joint [m].
+            side: distance that the roll joint can hold [m].
         """
         front, back = self.centre + self.half_length, self.centre - self.half_length
         if front <= forward and -back <= forward and self.half_width <= side:

@@ -191,8 +191,8 @@ class Scene:
             mujoco.mj_kinematics(self._model, data)
             mujoco.mj_comPos(self._model, data)
             mujoco.mj_camlight(self._model, data)
-            place = data.cam_xpos[self._camera].copy(), data.cam_xmat[self._camera].copy()
-            cameras.append(place)
+            pose = data.cam_xpos[self._camera].copy(), data.cam_xmat[self._camera].copy()
+            cameras.append(pose)
         for batch in self._movers:
             centres = np.concatenate(movers)
             heights = np.full(len(centres), self._model.geom_size[batch.geoms[0], 1])

@@ -103,9 +103,9 @@ def mesh_of(
     corners, normals, triangles, count = [], [], [], 0
     for geom in geoms.tolist():
         turn = frame.T @ data.geom_xmat[geom].reshape(3, 3)
-        place = frame.T @ (data.geom_xpos[geom] - origin)
+        offset = frame.T @ (data.geom_xpos[geom] - origin)
         vertex, normal, triangle = _mesh(model, int(model.geom_dataid[geom]))
-        corners.append(vertex @ turn.T + place)
+        corners.append(vertex @ turn.T + offset)
         normals.append(normal @ turn.T)
         triangles.append(triangle + count)
         count += len(vertex)

@@ -5,6 +5,7 @@ import signal
 import subprocess
 import sys
 import time
+from multiprocessing import forkserver
 from pathlib import Path
 
 import pytest
@@ -33,6 +34,13 @@ def entry(arguments):
     print("oh" * 100_000, "end", file=sys.stderr)
     return 7
 """
+
+
+@pytest.fixture(scope="module", autouse=True)
+def _server():
+    """Stop the fork server at the end: it has not loaded what other tests need."""
+    yield
+    forkserver._forkserver._stop()
 
 
 @pytest.fixture
