@@ -1,5 +1,7 @@
 """Builder of the world model and the body of a scenario."""
 
+from dataclasses import replace
+
 import mujoco
 
 from hsr8.robots.loaded import load_robot
@@ -35,12 +37,13 @@ def build_body(scenario: Scenario, seed: int, layout: Layout, model: mujoco.MjMo
     noise, rng = scenario.sensors, named_rng(seed, "body")
     if scenario.robot.body == "kinematic":
         return KinematicBody(model, robot, layout, noise, rng)
-    pushes = schedule(
+    scheduled = schedule(
         scenario.disturbance,
         scenario.duration,
         CONTROL_PERIOD,
         named_rng(seed, "push"),
         scenario.fault,
     )
+    pushes = [replace(push, body=robot.body_name(push.body)) for push in scheduled]
     with reading_models():
         return PhysicsBody(model, robot, layout, noise, rng, pushes=pushes, faults=scenario.fault)

@@ -111,8 +111,9 @@ class Simulation:
         self._body = build_body(scenario, self.seed, self.layout, self.model)
         self._robot = self._build_robot(planner, gaze, walker)
         self._watch = EventWatch(scenario.fault)
-        self._sensor_faults = SensorFaults(scenario.fault)
-        self._servo_faults = ServoFaults(scenario.fault)
+        names = self.humanoid.model.names
+        self._sensor_faults = SensorFaults(scenario.fault, names)
+        self._servo_faults = ServoFaults(scenario.fault, names)
         self._camera_faults = CameraFaults(scenario.fault)
         self._interrupted = False
         self._open = False

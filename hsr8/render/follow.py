@@ -10,7 +10,7 @@ from hsr8.world.rotation import heading
 
 Array = NDArray[np.float64]
 
-# Lengths are those in a world of scale 1.
+# Lengths are those for the default robot; they grow with the height of the robot.
 DISTANCE = 1.75  # from the robot [m]
 ELEVATION = -22.0  # looking down [deg]
 SIDE_ANGLE = 35.0  # of the camera to the right of straight behind [deg]
@@ -27,11 +27,11 @@ class FollowCamera:
         qpos: of the robot at each frame of the video (n, nq).
         fps: frames per second of the video.
         speed: simulated seconds per second of video.
-        scale: of the world [1].
+        size: height of the robot relative to the default robot [1].
     """
 
-    def __init__(self, qpos: Array, fps: float, speed: float, scale: float = 1.0) -> None:
-        self._scale = scale
+    def __init__(self, qpos: Array, fps: float, speed: float, size: float = 1.0) -> None:
+        self._ratio = size
         yaw = np.unwrap([heading(row[3:7]) for row in qpos])
         self._target = _smooth(qpos[:, :2], min(POSITION_TIME, MAX_POSITION_TIME / speed) * fps)
         direction = _smooth(np.column_stack([np.cos(yaw), np.sin(yaw)]), DIRECTION_TIME * fps)
@@ -41,8 +41,8 @@ class FollowCamera:
         """Return the camera of one frame."""
         camera = mujoco.MjvCamera()
         camera.type = mujoco.mjtCamera.mjCAMERA_FREE
-        camera.lookat[:] = (*self._target[index], HEIGHT * self._scale)
-        camera.distance = DISTANCE * self._scale
+        camera.lookat[:] = (*self._target[index], HEIGHT * self._ratio)
+        camera.distance = DISTANCE * self._ratio
         camera.elevation = ELEVATION
         camera.azimuth = degrees(self._yaw[index]) + SIDE_ANGLE
         return camera

@@ -12,6 +12,7 @@ from hsr8.render.text import Image, draw_text, font_size
 PANEL, GROOVE = (28, 30, 34), (70, 74, 82)
 INK, FAINT = (238, 239, 241), (164, 168, 176)
 OPACITY = 0.86
+MAX_RATIO = 1.0  # height to width of the map, which is narrow for a camera that does not pan
 EVALUATIONS = ("ψ lm", "ψ sf", "ψ ob", "ψ way")  # local map, self, obstacles, way
 
 
@@ -28,10 +29,8 @@ class GazePanel:
         self._max_pan, self._tilts = max_pan, tilts
         self._pad = pad = max(4, width // 28)
         self._letters = font_size(width / 21)
-        self._map = (
-            width - 2 * pad,
-            max(8, round((width - 2 * pad) * (tilts[1] - tilts[0]) / (2.0 * max_pan))),
-        )
+        ratio = min(MAX_RATIO, (tilts[1] - tilts[0]) / (2.0 * max_pan))
+        self._map = (width - 2 * pad, max(8, round((width - 2 * pad) * ratio)))
         self._top = self._letters + 2 * pad
         self.size = (width, self._top + self._map[1] + 3 * pad + self._letters)
         ramp = np.arange(256, dtype=np.uint8)[:, None]

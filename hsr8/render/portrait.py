@@ -46,19 +46,8 @@ def portrait(robot: LoadedRobot) -> Image:
             geom = model.geom(name)
             geom.group, geom.rgba, geom.matid = SHOWN_GROUP, SOLE, -1
         renderer.set_state(data.qpos.copy(), np.zeros((0, 2)))
-        height = _height(model, data, robot)
+        height = robot.stature
         return renderer.draw(_camera(height), _arrows(model, data, robot, height))
-
-
-def _height(model: mujoco.MjModel, data: mujoco.MjData, robot: LoadedRobot) -> float:
-    """Return the height of a robot above the floor [m]."""
-    root = model.body(robot.roles.base).rootid[0]
-    geoms = np.flatnonzero(model.body_rootid[model.geom_bodyid] == root)
-    rotations = data.geom_xmat[geoms].reshape(-1, 3, 3)
-    boxes = model.geom_aabb[geoms]
-    centres = data.geom_xpos[geoms, 2] + np.einsum("nj,nj->n", rotations[:, 2], boxes[:, :3])
-    halves = np.einsum("nj,nj->n", np.abs(rotations[:, 2]), boxes[:, 3:])
-    return float((centres + halves).max())
 
 
 def _camera(height: float) -> mujoco.MjvCamera:

@@ -21,6 +21,7 @@ from hsr8.render.timeline import Timeline
 from hsr8.render.top_down import TRAIL
 from hsr8.robots.loaded import load_robot
 from hsr8.robots.normal_form import HEAD_CAMERA
+from hsr8.robots.scale import DEFAULT_STATURE
 from hsr8.world.field.generator import draw_layout
 from hsr8.world.model.assembly import Optics, Quality
 
@@ -61,7 +62,7 @@ class RunImages:
         if any(event["kind"] == "push" for event in self._events):
             self._pushes = push_arrows(run.walking(), self._trajectory, self._layout.scale)
         self._follow = FollowCamera(
-            self._trajectory.qpos[self._rows], fps, speed, self._layout.scale
+            self._trajectory.qpos[self._rows], fps, speed, self._robot.stature / DEFAULT_STATURE
         )
         camera = self._scenario.camera
         self._optics = Optics(

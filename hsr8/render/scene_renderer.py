@@ -12,6 +12,7 @@ from hsr8.gl import require_gl
 from hsr8.render.push_arrows import Arrow
 from hsr8.robots.loaded import LoadedRobot
 from hsr8.suggestion import suggestion
+from hsr8.world.camera.offscreen import camera_option
 from hsr8.world.field.layout import Layout
 from hsr8.world.model.assembly import Optics, Quality, assemble
 
@@ -63,6 +64,7 @@ class SceneRenderer:
         self._arrow_radius = ARROW_RADIUS * layout.scale
         visual = self.model.vis
         self._size, self._soft = size, quality == "show"
+        self._option = mujoco.MjvOption() if quality == "show" else camera_option()
         oversampling = min(oversampling, MAX_SIDE / max(size))
         width, height = (round(oversampling * side) for side in size)
         visual.global_.offwidth, visual.global_.offheight = width, height
@@ -89,7 +91,7 @@ class SceneRenderer:
             view: camera of the model or a free one.
             arrows: tail and tip of each in W (3,) [m].
         """
-        self._renderer.update_scene(self.data, camera=view)
+        self._renderer.update_scene(self.data, camera=view, scene_option=self._option)
         scene = self._renderer.scene
         for tail, tip in arrows[: scene.maxgeom - scene.ngeom]:
             geom = scene.geoms[scene.ngeom]

@@ -22,6 +22,9 @@ Length = Annotated[float, Interval(ge=-5.0, le=5.0)]
 Size = Annotated[float, Interval(gt=0.0, le=5.0)]
 Sigma = Annotated[float, Interval(ge=0.0, le=1.0)]
 
+TRUNK = "trunk"
+"""Name, for any robot, of the body that carries its arms or head, else of its base."""
+
 
 class Table(BaseModel):
     """Table of a description: strict types, no unknown keys, immutable."""

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from hsr8.errors import ModelError
 from hsr8.robots.arms import arm_spheres, robot_height, robot_radius
-from hsr8.robots.description import RobotDescription, read_description
+from hsr8.robots.description import TRUNK, RobotDescription, read_description
 from hsr8.robots.locate import find_description, find_model
 from hsr8.robots.models import reading_models
 from hsr8.robots.normal_form import normalise
@@ -70,6 +70,14 @@ class LoadedRobot:
     height: float
     stature: float
     notes: tuple[str, ...]
+
+    def body_names(self) -> list[str]:
+        """Return the names of all bodies with a mass."""
+        return [body.name for body in self.spec.bodies[1:] if body.mass > 0.0]
+
+    def body_name(self, name: str) -> str:
+        """Return the name of a body; ``trunk`` means that of the roles, if no body has the name."""
+        return self.roles.trunk if name == TRUNK and self.spec.body(name) is None else name
 
 
 def load_robot(name_or_file: str) -> LoadedRobot:

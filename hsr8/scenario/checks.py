@@ -4,7 +4,7 @@ from collections.abc import Iterator
 from math import cos, hypot, radians, sin
 from pathlib import Path as FilePath
 
-from hsr8.scenario.fault_checks import fault_problems
+from hsr8.scenario.fault_checks import fault_problems, robot_problems
 from hsr8.scenario.key_lines import Path
 from hsr8.scenario.mission import Course, Points, Tour, Walk
 from hsr8.scenario.problem import Problem
@@ -26,6 +26,7 @@ def check(scenario: Scenario) -> list[Problem]:
         *_mission(scenario),
         *_command(scenario),
         *fault_problems(scenario),
+        *robot_problems(scenario),
         *_outside(scenario),
         *_gaps(scenario),
         *_overlaps(scenario),

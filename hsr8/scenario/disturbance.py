@@ -1,22 +1,15 @@
 """Section ``[disturbance]``: random pushes; single pushes are faults."""
 
-from typing import Annotated, Literal
+from typing import Annotated
 
-from annotated_types import Interval
+from annotated_types import Interval, Len
 from pydantic import AfterValidator
 
+from hsr8.robots.description import TRUNK
 from hsr8.scenario.command import SecondsRange
 from hsr8.scenario.section import Degrees, Section, ordered
 
-PushedBody = Literal[
-    "base_link",
-    "torso_link",
-    "head_tilt_link",
-    "l_knee_link",
-    "r_knee_link",
-    "l_foot_link",
-    "r_foot_link",
-]
+PushedBody = Annotated[str, Len(1, 1000)]
 PushDuration = Annotated[float, Interval(ge=0.005, le=60.0)]
 Impulse = Annotated[float, Interval(gt=0.0, le=1000.0), "N s"]
 ImpulseRange = Annotated[tuple[Impulse, Impulse], AfterValidator(ordered)]
@@ -36,8 +29,8 @@ class RandomPushes(Section):
     """Duration of a push, rounded to control ticks of 5 ms [s]."""
     direction_deg: DegreesRange = (-180.0, 180.0)
     """Range of directions of the force from the robot's heading, counter-clockwise [deg]."""
-    body: PushedBody = "torso_link"
-    """Body that the force acts on."""
+    body: PushedBody = TRUNK
+    """Body that the force acts on; "trunk" is that which carries the arms or the head."""
 
 
 class Disturbance(Section):

@@ -1,14 +1,14 @@
 """Faults of sensors, servos and the environment: kind, start, duration and magnitude."""
 
+from collections.abc import Sequence
 from typing import Annotated, Literal
 
-from annotated_types import Interval
-from pydantic import AfterValidator, Field, WithJsonSchema, model_validator
+from annotated_types import Interval, Len
+from pydantic import Field, model_validator
 
+from hsr8.robots.description import TRUNK
 from hsr8.scenario.disturbance import Impulse, PushDuration, PushedBody
 from hsr8.scenario.section import CONTROL_PERIOD_MS, Degrees, Point, Section
-from hsr8.suggestion import suggestion
-from walking.body.joints import JOINT_NAMES, LEFT_LEG, RIGHT_LEG
 
 StartTime = Annotated[float, Interval(ge=0.0, le=7200.0), "s"]
 FaultDuration = Annotated[float, Interval(ge=0.001 * CONTROL_PERIOD_MS, le=7200.0), "s"]
@@ -16,25 +16,17 @@ Offset = Annotated[float, Interval(ge=-2.0, le=2.0), "m"]
 Fraction = Annotated[float, Interval(ge=0.0, le=1.0)]
 Angle = Annotated[float, Interval(ge=-0.5, le=0.5)]
 Foot = Literal["left", "right", "both"]
-_GROUPS = {
-    "all": JOINT_NAMES,
-    "legs": (*JOINT_NAMES[LEFT_LEG], *JOINT_NAMES[RIGHT_LEG]),
-    "left_leg": JOINT_NAMES[LEFT_LEG],
-    "right_leg": JOINT_NAMES[RIGHT_LEG],
+JOINT_GROUPS = {
+    "all": slice(None),
+    "legs": slice(0, 12),
+    "left_leg": slice(0, 6),
+    "right_leg": slice(6, 12),
 }
-_JOINTS = (*_GROUPS, *JOINT_NAMES)
+"""Groups of joints in the order of every robot, legs first."""
 _FEET = {"left": [0], "right": [1], "both": [0, 1]}
 
 
-def _known(joint: str) -> str:
-    if joint not in _JOINTS:
-        raise ValueError(f"must be one of {', '.join(_JOINTS)}{suggestion(joint, _JOINTS)}")
-    return joint
-
-
-Joint = Annotated[
-    str, AfterValidator(_known), WithJsonSchema({"type": "string", "enum": list(_JOINTS)})
-]
+Joint = Annotated[str, Len(1, 1000)]
 
 
 def ticks(seconds: float) -> int:
@@ -74,14 +66,21 @@ class _Fault(Section):
         return ", ".join((self.kind, *words))
 
 
-class _JointFault(_Fault):
-    joint: Joint = "legs"
-    """One joint, one leg, both legs or all joints."""
+class JointFault(_Fault):
+    """Fault of some joints."""
 
-    @property
-    def joints(self) -> list[int]:
-        """Indices in ``JOINT_NAMES``."""
-        return [JOINT_NAMES.index(name) for name in _GROUPS.get(self.joint, (self.joint,))]
+    joint: Joint = "legs"
+    """A joint of the robot, or left_leg, right_leg, legs or all."""
+
+    def joints(self, names: Sequence[str]) -> list[int]:
+        """Return the indices of the joints in the `names` of all joints of the robot.
+
+        Raises:
+            ValueError: the robot has no such joint.
+        """
+        if self.joint in JOINT_GROUPS and self.joint not in names:
+            return list(range(len(names)))[JOINT_GROUPS[self.joint]]
+        return [names.index(self.joint)]
 
 
 class _FootFault(_Fault):
@@ -166,7 +165,7 @@ class ImuFrozen(_Fault):
     kind: Literal["imu-frozen"]
 
 
-class EncoderOffset(_JointFault):
+class EncoderOffset(JointFault):
     """Joint encoders have a constant error."""
 
     kind: Literal["encoder-offset"]
@@ -174,7 +173,7 @@ class EncoderOffset(_JointFault):
     """Error of the joint angle [rad]."""
 
 
-class EncoderFrozen(_JointFault):
+class EncoderFrozen(JointFault):
     """Joint encoders repeat their last angle and report zero velocity."""
 
     kind: Literal["encoder-frozen"]
@@ -194,7 +193,7 @@ class FootGain(_FootFault):
     """Measured force divided by true force [1]."""
 
 
-class ServoWeak(_JointFault):
+class ServoWeak(JointFault):
     """Servos lose torque; requires the full body."""
 
     kind: Literal["servo-weak"]
@@ -202,15 +201,15 @@ class ServoWeak(_JointFault):
     """Remaining fraction of the maximum torque [1]."""
 
 
-class ServoStuck(_JointFault):
+class ServoStuck(JointFault):
     """Servos hold their last setpoint."""
 
     kind: Literal["servo-stuck"]
     joint: Joint
-    """One joint, one leg, both legs or all joints."""
+    """A joint of the robot, or left_leg, right_leg, legs or all."""
 
 
-class ServoDelay(_JointFault):
+class ServoDelay(JointFault):
     """Servos receive their setpoints late."""
 
     kind: Literal["servo-delay"]
@@ -228,8 +227,8 @@ class Push(_Fault):
     """Impulse: force times duration [N s]."""
     direction_deg: Degrees = 90.0
     """Direction of the force from the robot's heading at the start; 90 is to the left [deg]."""
-    body: PushedBody = "torso_link"
-    """Body that the force acts on."""
+    body: PushedBody = TRUNK
+    """Body that the force acts on; "trunk" is that which carries the arms or the head."""
     point: tuple[Offset, Offset, Offset] = (0.0, 0.0, 0.0)
     """Point of application relative to the body's centre of mass, in body axes [m]."""
 

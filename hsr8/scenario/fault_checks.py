@@ -1,20 +1,28 @@
-"""Consistency of the faults of a scenario."""
+"""Consistency of the faults of a scenario, also with its robot."""
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from math import ceil
 
+from hsr8.robots.description import TRUNK
+from hsr8.robots.scale import DEFAULT_ROBOT
 from hsr8.scenario.fault import (
+    JOINT_GROUPS,
     Bump,
     CameraLatency,
+    JointFault,
     Lighting,
     LowFriction,
     MoverAppears,
+    Push,
     WorldFault,
     ticks,
 )
+from hsr8.scenario.key_lines import Path
 from hsr8.scenario.problem import Problem
 from hsr8.scenario.schema import Scenario
 from hsr8.scenario.section import CONTROL_PERIOD_MS
+from hsr8.suggestion import suggestion
+from walking.body.joints import JOINT_NAMES
 
 MAX_LATENCY_MS = 500
 """Maximum latency of an image [ms]."""
@@ -66,3 +74,40 @@ def fault_problems(scenario: Scenario) -> Iterator[Problem]:
                     ("fault", i, "position"),
                     f"{list(fault.position)} is outside the field from {[-x, -y]} to {[x, y]}",
                 )
+
+
+def robot_problems(scenario: Scenario) -> Iterator[Problem]:
+    """Yield every joint and body of a fault or push that the robot does not have."""
+    joints: list[tuple[Path, str]] = [
+        (("fault", i, "joint"), f.joint)
+        for i, f in enumerate(scenario.fault)
+        if isinstance(f, JointFault) and f.joint not in JOINT_GROUPS
+    ]
+    bodies: list[tuple[Path, str]] = [
+        (("fault", i, "body"), f.body) for i, f in enumerate(scenario.fault) if isinstance(f, Push)
+    ]
+    if scenario.disturbance.random is not None:
+        bodies.append((("disturbance", "random", "body"), scenario.disturbance.random.body))
+    bodies = [(path, body) for path, body in bodies if body != TRUNK]
+    gets_up = scenario.walking.get_up.enabled and scenario.robot.model != DEFAULT_ROBOT
+    if not (joints or bodies or gets_up):
+        return
+    from hsr8.robots.loaded import load_robot  # noqa: PLC0415 (MuJoCo loads slowly)
+
+    robot = load_robot(scenario.robot.model)
+    for given, names in (
+        (joints, (*JOINT_GROUPS, *robot.model.names)),
+        (bodies, (TRUNK, *robot.body_names())),
+    ):
+        for path, name in given:
+            if name not in names:
+                yield _unknown(path, name, names)
+    if gets_up and robot.model.names != JOINT_NAMES:
+        yield Problem(
+            ("walking", "get_up", "enabled"),
+            f'the motions are for robot.model = "{DEFAULT_ROBOT}" only, got "{robot.name}"',
+        )
+
+
+def _unknown(path: Path, name: str, names: Sequence[str]) -> Problem:
+    return Problem(path, f"must be one of {', '.join(names)}{suggestion(name, names)}, got {name}")

@@ -25,9 +25,11 @@ class SensorFaults:
 
     Args:
         faults: of the scenario; faults of other parts are ignored.
+        names: of the robot's joints.
     """
 
-    def __init__(self, faults: Sequence[Fault]) -> None:
+    def __init__(self, faults: Sequence[Fault], names: Sequence[str]) -> None:
+        self._names = names
         self._faults = [f for f in faults if isinstance(f, SensorFault)]
         self._frozen: dict[int, BodySensors] = {}
         self._yaw_error = 0.0
@@ -44,7 +46,7 @@ class SensorFaults:
 
     def _with_fault(self, now: BodySensors, number: int, fault: SensorFault) -> BodySensors:
         if isinstance(fault, ImuFrozen | EncoderFrozen):
-            return _frozen(now, self._frozen.setdefault(number, now), fault)
+            return self._frozen_readings(now, self._frozen.setdefault(number, now), fault)
         if isinstance(fault, GyroBias):
             gyro = now.gyro.copy()
             gyro[AXES[fault.axis]] += fault.magnitude
@@ -57,22 +59,23 @@ class SensorFaults:
             return replace(now, orientation=tilted)
         if isinstance(fault, EncoderOffset):
             position = now.joint_position.copy()
-            position[fault.joints] += fault.magnitude
+            position[fault.joints(self._names)] += fault.magnitude
             return replace(now, joint_position=position)
         force = now.foot_force.copy()
         force[fault.feet] *= fault.magnitude if isinstance(fault, FootGain) else 0.0
         return replace(now, foot_force=force)
 
-
-def _frozen(now: BodySensors, then: BodySensors, fault: ImuFrozen | EncoderFrozen) -> BodySensors:
-    if isinstance(fault, ImuFrozen):
-        return replace(
-            now,
-            gyro=then.gyro,
-            accelerometer=then.accelerometer,
-            orientation=then.orientation,
-        )
-    position, velocity = now.joint_position.copy(), now.joint_velocity.copy()
-    position[fault.joints] = then.joint_position[fault.joints]
-    velocity[fault.joints] = 0.0
-    return replace(now, joint_position=position, joint_velocity=velocity)
+    def _frozen_readings(
+        self, now: BodySensors, then: BodySensors, fault: ImuFrozen | EncoderFrozen
+    ) -> BodySensors:
+        if isinstance(fault, ImuFrozen):
+            return replace(
+                now,
+                gyro=then.gyro,
+                accelerometer=then.accelerometer,
+                orientation=then.orientation,
+            )
+        position, velocity = now.joint_position.copy(), now.joint_velocity.copy()
+        joints = fault.joints(self._names)
+        position[joints], velocity[joints] = then.joint_position[joints], 0.0
+        return replace(now, joint_position=position, joint_velocity=velocity)

@@ -12,9 +12,11 @@ class ServoFaults:
 
     Args:
         faults: of the scenario; faults of other parts are ignored.
+        names: of the robot's joints.
     """
 
-    def __init__(self, faults: Sequence[Fault]) -> None:
+    def __init__(self, faults: Sequence[Fault], names: Sequence[str]) -> None:
+        self._names = names
         self._faults = [f for f in faults if isinstance(f, ServoFault)]
         delays = [ticks(f.magnitude) for f in self._faults if isinstance(f, ServoDelay)]
         self._commanded: deque[JointTargets] = deque(maxlen=max(delays, default=0) + 1)
@@ -34,7 +36,7 @@ class ServoFaults:
                 then = self._commanded[max(0, len(self._commanded) - 1 - ticks(fault.magnitude))]
             else:
                 then = self._frozen.setdefault(number, self._applied or targets)
-            position[fault.joints] = then.position[fault.joints]
-            setpoint[fault.joints] = then.setpoint[fault.joints]
+            joints = fault.joints(self._names)
+            position[joints], setpoint[joints] = then.position[joints], then.setpoint[joints]
         self._applied = JointTargets(position, setpoint)
         return self._applied

@@ -50,7 +50,8 @@ class WorldFaults:
             model.actuator_forcerange[:] = self._torque
             for weak in self._weak:
                 if weak.acts(tick):
-                    model.actuator_forcerange[self._index.actuators[weak.joints]] *= weak.magnitude
+                    joints = weak.joints(self._index.names)
+                    model.actuator_forcerange[self._index.actuators[joints]] *= weak.magnitude
         for bump, geom in self._bumps:
             mask = COLLIDES if bump.acts(tick) else (0, 0)
             model.geom_contype[geom], model.geom_conaffinity[geom] = mask

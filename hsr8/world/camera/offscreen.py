@@ -11,6 +11,13 @@ Image = NDArray[np.uint8]
 MAX_GEOMS = 10000  # per image
 
 
+def camera_option() -> mujoco.MjvOption:
+    """Return the drawing options of the head camera: solid meshes are drawn as convex hulls."""
+    option = mujoco.MjvOption()
+    option.flags[mujoco.mjtVisFlag.mjVIS_CONVEXHULL] = True
+    return option
+
+
 class Offscreen:
     """Renders one camera of a model; close it after use, and use it in one thread only.
 
@@ -29,7 +36,7 @@ class Offscreen:
         require_gl()
         self._model = model
         self._scene = mujoco.MjvScene(model, maxgeom=MAX_GEOMS)
-        self._option = mujoco.MjvOption()
+        self._option = camera_option()
         self._camera = mujoco.MjvCamera()
         self._camera.type = mujoco.mjtCamera.mjCAMERA_FIXED
         self._camera.fixedcamid = model.camera(camera).id

@@ -3,7 +3,7 @@ import numpy as np
 import pytest
 
 from hsr8.robots.loaded import load_robot
-from hsr8.scenario.disturbance import Disturbance, PushedBody, RandomPushes
+from hsr8.scenario.disturbance import Disturbance, RandomPushes
 from hsr8.scenario.fault import Push
 from hsr8.world.body.pushes import Pusher, ScheduledPush, schedule
 from hsr8.world.field.layout import Layout
@@ -23,7 +23,8 @@ def rng():
 
 
 def test_every_body_that_may_be_pushed_is_in_the_model(model):
-    for name in PushedBody.__args__:
+    robot = load_robot("hsr8")
+    for name in (robot.body_name("trunk"), *robot.body_names()):
         assert model.body(name).mass[0] > 0.0
 
 

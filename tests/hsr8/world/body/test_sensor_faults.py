@@ -14,6 +14,7 @@ from hsr8.scenario.fault import (
 )
 from hsr8.world.body.sensor_faults import SensorFaults
 from hsr8.world.rotation import heading, quaternion_from_yaw
+from walking.body.joints import JOINT_NAMES
 from walking.sensing import BodySensors
 
 KNEE = 3
@@ -58,7 +59,7 @@ def pitch(quaternion):
 )
 def test_a_fault_changes_its_own_sensor_alone_while_it_is_active(fault, fields_changed):
     timed = fault.model_copy(update={"start": 0.01, "duration": 0.015})
-    faults, changes = SensorFaults([timed]), []
+    faults, changes = SensorFaults([timed], JOINT_NAMES), []
     for tick in range(7):
         true = reading(tick, yaw=0.1 * tick)
         faulty = faults.apply_fault(true, tick)
@@ -74,17 +75,21 @@ def test_a_fault_changes_its_own_sensor_alone_while_it_is_active(fault, fields_c
 
 def test_magnitudes_have_their_unit():
     true = reading()
-    faulty = SensorFaults([AttitudeBias(kind="attitude-bias", magnitude=0.1)]).apply_fault(true, 0)
+    faulty = SensorFaults(
+        [AttitudeBias(kind="attitude-bias", magnitude=0.1)], JOINT_NAMES
+    ).apply_fault(true, 0)
     assert pitch(faulty.orientation) == pytest.approx(0.1, abs=1e-3)
-    faulty = SensorFaults([EncoderOffset(kind="encoder-offset", magnitude=0.1, joint="l_knee")])
+    faulty = SensorFaults(
+        [EncoderOffset(kind="encoder-offset", magnitude=0.1, joint="l_knee")], JOINT_NAMES
+    )
     difference = faulty.apply_fault(true, 0).joint_position - true.joint_position
     assert difference[KNEE] == pytest.approx(0.1)
     assert np.count_nonzero(difference) == 1
-    faulty = SensorFaults([FootGain(kind="foot-gain", magnitude=2.0, foot="right")]).apply_fault(
-        true, 0
-    )
+    faulty = SensorFaults(
+        [FootGain(kind="foot-gain", magnitude=2.0, foot="right")], JOINT_NAMES
+    ).apply_fault(true, 0)
     assert np.allclose(faulty.foot_force, true.foot_force * [[1.0], [2.0]])
-    turning = SensorFaults([GyroBias(kind="gyro-bias", magnitude=0.2)])
+    turning = SensorFaults([GyroBias(kind="gyro-bias", magnitude=0.2)], JOINT_NAMES)
     for tick in range(100):
         faulty = turning.apply_fault(true, tick)
     assert heading(faulty.orientation) - heading(true.orientation) == pytest.approx(0.1)
@@ -92,7 +97,9 @@ def test_magnitudes_have_their_unit():
 
 
 def test_a_frozen_encoder_repeats_its_first_reading():
-    faults = SensorFaults([EncoderFrozen(kind="encoder-frozen", start=0.01, joint="l_knee")])
+    faults = SensorFaults(
+        [EncoderFrozen(kind="encoder-frozen", start=0.01, joint="l_knee")], JOINT_NAMES
+    )
     faulty = [faults.apply_fault(reading(tick), tick) for tick in range(5)]
     for late in faulty[2:]:
         assert late.joint_position[KNEE] == reading(2).joint_position[KNEE]

@@ -2,6 +2,7 @@ import numpy as np
 
 from hsr8.scenario.fault import ServoDelay, ServoStuck
 from hsr8.world.body.servo_faults import ServoFaults
+from walking.body.joints import JOINT_NAMES
 from walking.targets import JointTargets
 
 KNEE = 3
@@ -13,7 +14,7 @@ def commanded(tick):
 
 def knees(faults, ticks=12):
     """Return the targets of the left and the right knee in every tick."""
-    servos = ServoFaults(faults)
+    servos = ServoFaults(faults, JOINT_NAMES)
     applied = [servos.apply_fault(commanded(tick), tick) for tick in range(ticks)]
     assert all(t.setpoint[k] == 0.01 * t.position[k] for t in applied for k in range(26))
     return [int(t.position[KNEE]) for t in applied], [int(t.position[KNEE + 6]) for t in applied]
@@ -21,7 +22,7 @@ def knees(faults, ticks=12):
 
 def test_without_a_fault_the_targets_pass_as_they_are():
     targets = commanded(1)
-    assert ServoFaults([]).apply_fault(targets, 1) is targets
+    assert ServoFaults([], JOINT_NAMES).apply_fault(targets, 1) is targets
 
 
 def test_a_stuck_servo_keeps_its_last_setpoint():
