@@ -110,4 +110,6 @@ def robot_problems(scenario: Scenario) -> Iterator[Problem]:
 
 
 def _unknown(path: Path, name: str, names: Sequence[str]) -> Problem:
-    return Problem(path, f"must be one of {', '.join(names)}{suggestion(name, names)}, got {name}")
+    hint, part = suggestion(name, names), path[-1]
+    expected = f"expected one of {', '.join(names)}"
+    return Problem(path, f"the robot has no {part} {name!r}{hint}{'' if hint else ';'} {expected}")
