@@ -35,7 +35,8 @@ class Robot(Section):
     """Body, initial pose and speed limits."""
 
     model: Annotated[str, Len(1, 1000)] = "hsr8"
-    """Robot: a shipped name or the file of a description."""
+    """Robot: a shipped name or the file of a description, next to the scenario or in the working
+    folder."""
     body: Literal["full", "kinematic"] = "full"
     """full: MuJoCo physics; kinematic: no dynamics, every footstep lands as planned."""
     radius: Radius = 0.12

@@ -94,6 +94,8 @@ def check_robot(
 ) -> tuple[list[WalkResult], list[JointUse]]:
     """Return the result of each walk, and the use of each joint, the worst first.
 
+    A robot that falls while standing does not walk.
+
     Args:
         robot: to check.
         report: receives each result.
@@ -109,6 +111,8 @@ def check_robot(
         report(result)
         results.append(result)
         walks.append(walk)
+        if result.fell and not result.speed:
+            break  # a robot that cannot stand cannot walk
     uses = _uses(robot, walks)
     return results, sorted(uses, key=JointUse.worst, reverse=True)
 

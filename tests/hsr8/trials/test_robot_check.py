@@ -2,7 +2,7 @@ from dataclasses import replace
 
 import pytest
 
-from hsr8.robots.loaded import load_robot
+from hsr8.robots.loaded import build_robot, load_robot
 from hsr8.trials.robot_check import (
     DIRECTIONS,
     FRACTION,
@@ -11,6 +11,8 @@ from hsr8.trials.robot_check import (
     check_robot,
     reasons,
 )
+from tests.hsr8.robots.robot_parts import described
+from tests.hsr8.robots.small_humanoid import SmallHumanoid
 
 GOOD = WalkResult("left", 0.1, fell=False, error=0.01, tilt=0.2, drift=None)
 JOINT = JointUse("l_knee", 0.4, 0.5, 0.6, saturated=0.0, stopped=0.0, one_leg=0.3)
@@ -69,3 +71,12 @@ def test_a_leg_too_weak_for_the_robot_is_a_reason():
 
 def test_limits_that_are_unknown_do_not_count():
     assert replace(JOINT, speed=None, range=None).worst() == 0.4
+
+
+def test_a_robot_that_cannot_stand_does_not_walk(tmp_path):
+    """Ankles far too soft for the weight, as in models meant for learned policies."""
+    xml = SmallHumanoid().xml().replace('kp="300" kv="5"', 'kp="1" kv="0.05"')
+    (tmp_path / "soft.xml").write_text(xml)
+    robot = build_robot(described(SmallHumanoid(), model="soft.xml"), tmp_path / "soft.toml")
+    walks, joints = check_robot(robot, duration=3.8)
+    assert reasons(walks, joints) == ["stand: fell"]
