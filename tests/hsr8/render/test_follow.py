@@ -1,4 +1,5 @@
 import numpy as np
+import pytest
 
 from hsr8.render.follow import SIDE_ANGLE, FollowCamera
 
@@ -50,3 +51,12 @@ def test_a_robot_that_turns_back_stays_in_a_fast_video():
     follow = FollowCamera(qpos, 25, speed=10.0)
     away = [abs(follow.at(i).lookat[0] - qpos[i, 0]) for i in range(150)]
     assert max(away) < 0.3
+
+
+@pytest.mark.parametrize("size", [0.5, 1.0, 3.0])
+def test_a_robot_of_any_size_has_the_same_size_in_the_image(size):
+    qpos = _walk(20, np.zeros(20))
+    usual, camera = FollowCamera(qpos, 25, 1.0).at(7), FollowCamera(qpos, 25, 1.0, size).at(7)
+    assert camera.distance == pytest.approx(size * usual.distance)
+    assert camera.lookat[2] == pytest.approx(size * usual.lookat[2])
+    assert (camera.azimuth, camera.elevation) == (usual.azimuth, usual.elevation)
