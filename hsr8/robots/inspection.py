@@ -16,6 +16,7 @@ from hsr8.robots.description import (
 from hsr8.robots.flat_feet import flat_feet
 from hsr8.robots.guess import Finding, Guess, guess, guess_roles
 from hsr8.robots.locate import find_description, find_model
+from hsr8.robots.mjcf import read_mjcf
 from hsr8.robots.models import reading_models
 from hsr8.robots.read_model import read_model
 from hsr8.robots.urdf import convert
@@ -94,7 +95,7 @@ def _guess_in(file: Path) -> tuple[Guess, mujoco.MjModel | None]:
     if file.suffix.lower() == ".urdf":
         return replace(guess_roles(skeleton_of_urdf(read_urdf(file))), base=""), None
     with reading_models(str(file)):
-        model = mujoco.MjModel.from_xml_path(str(file))
+        model = read_mjcf(file).compile()
     if not model.njnt:
         raise ModelError(f"{file}: the model has no joints; expected a robot")
     return guess(model), model

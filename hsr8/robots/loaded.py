@@ -26,12 +26,13 @@ from walking.body.robot_model import RobotModel
 from walking.parameters import WalkingParameters
 from walking.rehearsal import within_joints
 from walking.robot_measures import HSR_VIII
-from walking.rules import fit
+from walking.rules import fit, one_leg_load
 from walking.scaling import parameters_for
 
 Array = NDArray[np.float64]
 
 PRECISION = 1e-9  # of masses [kg] and places [m] in the normal form
+HEAVY = 0.8  # torque on one leg that is worth a note, of its maximum [1]
 STANDING = 1e-9  # maximum error of the legs in the ready posture [rad]
 
 
@@ -114,8 +115,8 @@ def build_robot(description: RobotDescription, file: Path) -> LoadedRobot:
         model = raw.spec.copy().compile()  # a compiled specification is slow to change
     roles = find_roles(model, description, source)
     zero = Posed.at(model, description.zero)
-    soles, sole_notes = soles_of(zero, roles.feet, description.sole, source)
     check_roles(model, roles, description, source)
+    soles, sole_notes = soles_of(zero, roles.feet, description.sole, source)
     servo_notes = choose_servos(raw.spec, model, roles, description, soles[0].height)
     normal = normalise(raw.spec, zero, roles, soles, description)
     with reading_models(source):
@@ -133,6 +134,7 @@ def build_robot(description: RobotDescription, file: Path) -> LoadedRobot:
             f"{source}: ready posture: the legs do not reach the floor with the hips at "
             f"{height:.3f} m; expected another zero posture"
         )
+    walk_notes += _strength(robot, parameters, source)
     driven = set(tree.names)
     held = {name: angle for name, angle in posture.items() if name not in driven}
     base = height - robot.legs[0].hip[2]
@@ -175,6 +177,24 @@ def _fitted(
     if robot.stiffening > 1.0:
         notes.insert(0, f"leg servos stiffened {robot.stiffening:.2f} times by feedback")
     return parameters, notes
+
+
+def _strength(robot: RobotModel, parameters: WalkingParameters, source: str) -> list[str]:
+    """Check that each leg can carry the robot alone; return notes.
+
+    Raises:
+        ModelError: a joint is too weak.
+    """
+    loads = one_leg_load(robot, parameters.gait.half_stance, parameters.pattern.pelvis_height)
+    worst = int(loads.argmax())
+    load, name, effort = float(loads[worst]), robot.names[worst], robot.tree.effort[worst]
+    if load > 1.0:
+        raise ModelError(
+            f"{source}: joint {name!r}: too weak to carry the robot on one leg, got a maximum "
+            f"torque of {effort:.3g} N m; expected at least {load * effort:.3g}: state effort, if "
+            "that of the model is wrong"
+        )
+    return [f"{load:.0%} of the torque of {name} on one leg"] if load > HEAVY else []
 
 
 def _compare(

@@ -54,7 +54,8 @@ def find_description(name_or_file: str) -> Path:
     if file.suffix.lower() in suffixes:
         if file.is_file():
             return file
-        siblings = [f.name for f in file.parent.glob("*") if f.suffix.lower() in suffixes]
+        files = (f for f in file.parent.glob("*") if f.is_file())
+        siblings = [f.name for f in files if f.suffix.lower() in suffixes]
         hint = suggestion(file.name, sorted(siblings))
         raise ModelError(f"robot file {str(file)!r} does not exist{hint}")
     raise ModelError(

@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from hsr8.robots.description import RobotDescription
+from hsr8.robots.mjcf import read_mjcf
 from hsr8.robots.models import reading_models
 from hsr8.robots.posture import stated_posture
 from hsr8.robots.urdf import convert
@@ -50,8 +51,7 @@ def read_model(file: Path, description: RobotDescription, folder: Path) -> RawMo
         return RawModel(converted.spec, converted.description, converted.notes)
     posture = stated_posture(description, folder)
     with reading_models(str(file)):
-        mujoco.MjModel.from_xml_path(str(file))  # a copy of a specification loses wrong names
-        spec = mujoco.MjSpec.from_file(str(file))
+        spec = read_mjcf(file, description.feet[0])
         _check_joints(spec)
         for name in description.rigid:
             _make_rigid(spec, name, posture.get(name, 0.0))
