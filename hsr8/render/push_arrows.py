@@ -12,7 +12,7 @@ Array = NDArray[np.float64]
 Arrow = tuple[Array, Array]
 
 SHOWN = 0.5  # duration of an arrow in video time [s]
-# In a world of scale 1; weights, and with them forces, grow with the cube of lengths.
+# For the default robot; forces are relative to the weight of the robot, lengths to its height.
 LENGTH = 0.02  # of an arrow per newton [m/N]
 MIN_LENGTH, MAX_LENGTH = 0.15, 0.40  # [m]
 GAP = 0.07  # between the tip and the point of action, which is inside the body [m]
@@ -36,9 +36,16 @@ class PushArrow:
 
 
 def push_arrows(
-    table: WalkingTable, trajectory: Trajectory, scale: float = 1.0
+    table: WalkingTable, trajectory: Trajectory, size: float = 1.0, weight: float = 1.0
 ) -> tuple[PushArrow, ...]:
-    """Return the arrows of all pushes of a run in a world of some scale."""
+    """Return the arrows of all pushes of a run.
+
+    Args:
+        table: of the run.
+        trajectory: of the run.
+        size: height of the robot relative to the default robot [1].
+        weight: of the robot relative to the default robot [1].
+    """
     arrows = []
     pushed = np.flatnonzero(table["push_impulse"] > 0.0)
     firsts = np.unique(table["push_begin"][pushed], return_index=True)[1]
@@ -46,12 +53,12 @@ def push_arrows(
         force = np.array([table[f"push_f{axis}"][row] for axis in "xyz"])
         point = np.array([table[f"push_{axis}"][row] for axis in "xyz"])
         newtons = float(np.linalg.norm(force))
-        length = scale * min(MAX_LENGTH, max(MIN_LENGTH, LENGTH * newtons / scale**3))
+        length = size * min(MAX_LENGTH, max(MIN_LENGTH, LENGTH * newtons / weight))
         arrows.append(
             PushArrow(
                 begin=float(table["push_begin"][row]),
                 impulse=float(table["push_impulse"][row]),
-                tip=point - GAP * scale / newtons * force - trajectory.qpos[row, :3],
+                tip=point - GAP * size / newtons * force - trajectory.qpos[row, :3],
                 vector=length / newtons * force,
             )
         )

@@ -24,6 +24,7 @@ from hsr8.robots.normal_form import HEAD_CAMERA
 from hsr8.robots.scale import DEFAULT_STATURE
 from hsr8.world.field.generator import draw_layout
 from hsr8.world.model.assembly import Optics, Quality
+from walking.robot_measures import HSR_VIII
 
 Array = NDArray[np.float64]
 Draw = Callable[[int], Image]
@@ -59,11 +60,11 @@ class RunImages:
         self._events = run.events()
         self._collisions = [e["time"] for e in self._events if e["kind"] == "collision"]
         self._pushes: tuple[PushArrow, ...] = ()
+        size_ratio = self._robot.stature / DEFAULT_STATURE
         if any(event["kind"] == "push" for event in self._events):
-            self._pushes = push_arrows(run.walking(), self._trajectory, self._layout.scale)
-        self._follow = FollowCamera(
-            self._trajectory.qpos[self._rows], fps, speed, self._robot.stature / DEFAULT_STATURE
-        )
+            weight = self._robot.model.measures().weight / HSR_VIII.weight
+            self._pushes = push_arrows(run.walking(), self._trajectory, size_ratio, weight)
+        self._follow = FollowCamera(self._trajectory.qpos[self._rows], fps, speed, size_ratio)
         camera = self._scenario.camera
         self._optics = Optics(
             camera.width, camera.height, camera.vertical_fov, self._scenario.world.brightness

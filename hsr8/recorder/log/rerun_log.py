@@ -121,7 +121,7 @@ class RerunLog:
                 PlanLayer(self._stream, rates.map, layout.scale),
             )
         self._plots = PlotLayer(self._stream)
-        self._walk = WalkLayer(self._stream, robot.model, layout.scale)
+        self._walk = WalkLayer(self._stream, robot.model, view.size)
         self._footsteps = Channel(self._stream, "/world/footsteps", rr.LineStrips3D)
         self._path = Channel(self._stream, "/world/path", rr.LineStrips3D)
         self._trail: list[list[float]] = []

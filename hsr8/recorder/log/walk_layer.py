@@ -17,6 +17,7 @@ from hsr8.recorder.run.walking_table import LIGHT, OdometryToWorld
 from navigation.angles import wrap
 from walking.body.robot_model import RobotModel
 from walking.command_limits import Limit
+from walking.robot_measures import HSR_VIII
 from walking.state import WalkingState
 
 Array = NDArray[np.float64]
@@ -31,7 +32,7 @@ GAIT = {
 }
 POINTS = (("ZMP planned", ORANGE), ("ZMP measured", BLUE), ("CoM", GREEN), ("DCM", VIOLET))
 FLOOR = 0.006  # height of drawings on the floor [m]
-# In a world of scale 1; weights, and with them forces, grow with the cube of lengths.
+# For the default robot; forces are relative to the weight of the robot, lengths to its height.
 PIN = 0.16  # height of the pins that mark points on the floor [m]
 ARROW = 0.025  # drawn length of a push per newton [m/N]
 GAP = 0.07  # between the tip of an arrow and the point of action [m]
@@ -47,11 +48,12 @@ class WalkLayer:
     Args:
         stream: recording.
         robot: that walks.
-        scale: of the world [1].
+        scale: height of the robot relative to the default robot [1].
     """
 
     def __init__(self, stream: BlockStream, robot: RobotModel, scale: float = 1.0) -> None:
-        self._pin, self._gap, self._arrow = PIN * scale, GAP * scale, ARROW / scale**2
+        self._pin, self._gap = PIN * scale, GAP * scale
+        self._arrow = ARROW * scale * HSR_VIII.weight / robot.measures().weight
         self._points = Channel(
             stream,
             "/world/walking/points",

@@ -37,7 +37,8 @@ class WorldFaults:
         self._bumps = list(zip(bumps, index.bumps, strict=True))
         self._any = bool(self._weak or self._low_friction or self._bumps)
         self._local = any(f.position is not None for f in self._low_friction)
-        self._torque = model.actuator_forcerange.copy()
+        self._torque = model.actuator_forcerange.copy(), model.jnt_actfrcrange.copy()
+        self._joints = model.dof_jntid[index.joint_dof]
         self._friction = [float(model.geom_friction[g, 0]) for g in index.foot_geoms]
         if self._low_friction:
             model.geom_priority[list(index.foot_geoms)] = SOLE_PRIORITY
@@ -47,11 +48,12 @@ class WorldFaults:
         if not self._any:
             return
         if self._weak:
-            model.actuator_forcerange[:] = self._torque
+            model.actuator_forcerange[:], model.jnt_actfrcrange[:] = self._torque
             for weak in self._weak:
                 if weak.acts(tick):
                     joints = weak.joints(self._index.names)
                     model.actuator_forcerange[self._index.actuators[joints]] *= weak.magnitude
+                    model.jnt_actfrcrange[self._joints[joints]] *= weak.magnitude
         for bump, geom in self._bumps:
             mask = COLLIDES if bump.acts(tick) else (0, 0)
             model.geom_contype[geom], model.geom_conaffinity[geom] = mask

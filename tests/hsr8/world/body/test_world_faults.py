@@ -3,6 +3,7 @@ import numpy as np
 import pytest
 
 from hsr8.robots.loaded import load_robot
+from hsr8.robots.tree import max_torque
 from hsr8.scenario.fault import Bump, LowFriction, MoverAppears, ServoWeak
 from hsr8.world.body.physics import place_robot
 from hsr8.world.body.world_faults import WorldFaults
@@ -91,3 +92,15 @@ def test_a_mover_appears_where_its_law_has_it_and_goes_again():
         assert np.array_equal(after.velocities(time)[1], before.velocities(time)[1] * there)
     assert layout.obstacles[1].position == (-1.0 + AWAY, 0.0)
     assert np.array_equal(after.top_speeds(), before.top_speeds())
+
+
+def test_a_weak_servo_loses_torque_where_the_joint_states_the_limit():
+    weak = ServoWeak(kind="servo-weak", joint="legs", magnitude=0.3)
+    model, data, index, _ = world(weak)
+    joints = model.dof_jntid[index.joint_dof]
+    model.jnt_actfrclimited[joints] = 1
+    model.jnt_actfrcrange[joints] = (-0.1, 0.1)
+    before = max_torque(model, joints, index.actuators)
+    WorldFaults(model, index, [weak]).apply_fault(model, data, 0)
+    ratio = max_torque(model, joints, index.actuators) / before
+    np.testing.assert_allclose(ratio, np.where(np.arange(len(joints)) < 12, 0.3, 1.0))
