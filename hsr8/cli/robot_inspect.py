@@ -52,6 +52,8 @@ def main(options: RobotInspect) -> int:
         image = portrait(robot)
         with writing("--image", options.image):
             write_png(options.image, image)
+        if not options.json:
+            print(f"image       {options.image}")
     if not options.json:
         words = ["hsr8", "robot", "inspect", options.file, "--write", "robot.toml"]
         if inspection.stated or options.write is not None:
