@@ -23,7 +23,7 @@ SHOWN_GROUP = 2
 HIDDEN_GROUP = 5
 """Group of geoms that MuJoCo does not draw."""
 CELL = 1.0 / 220.0  # side of the cells in which vertices are merged, in leg lengths [1]
-MAX_TRIANGLES = 100_000  # of a robot for people
+MAX_TRIANGLES = 100_000  # of a robot for people, reached within `MAX_ROUNDS` or nearly
 MIN_TRIANGLES = 400  # of a mesh that is simplified
 MAX_ROUNDS = 4  # of larger and larger cells
 MAX_SATURATION = 0.3  # of the colours of a robot in its camera [1]
