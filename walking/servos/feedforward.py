@@ -38,6 +38,7 @@ class FeedForward:
         self._started = False
         self._position = np.zeros(robot.damping.size)
         self._velocity = np.zeros(robot.damping.size)
+        self._ahead = np.zeros(robot.damping.size)
         self._offset = np.zeros(robot.damping.size)
 
     def offsets(
@@ -79,11 +80,13 @@ class FeedForward:
             acceleration,
             self._inertia,
         )
+        # The setpoint holds for the next tick; the difference is the rate half a tick ago.
+        self._ahead = self._velocity + CONTROL_PERIOD * robot.motion[2][robot.indices[1]]
         offset = self._offset
         feedforward_kernel.offsets(
             robot.forces(),
             robot.indices[1],
-            self._velocity,
+            self._ahead,
             self._servos,
             pelvis,
             foot_zmps,
@@ -99,5 +102,5 @@ class FeedForward:
     def torques(self) -> Array:
         """Return the planned torques of all joints in the last tick (n,) [N m]."""
         lag, compliance = self._servos[1:]
-        torques: Array = (self._offset - self._velocity * lag) / compliance
+        torques: Array = (self._offset - self._ahead * lag) / compliance
         return torques
