@@ -5,6 +5,7 @@ another build would fall, see `docs/robots.md`.
 """
 
 from dataclasses import replace
+from math import sqrt
 
 import numpy as np
 
@@ -20,10 +21,12 @@ from walking.parameters import (
     StabilizerParameters,
     WalkingParameters,
 )
+from walking.robot_measures import HSR_VIII
 
 MAX_GYRO_GAIN = 0.12  # ankle setpoint per angular velocity; above, soft ankles oscillate [s]
 PLAN_FRACTION = 0.6  # maximum margin of the planned ZMP, of the sole's half width [1]
 SOLE_FRACTION = 1.0 / 3.0  # maximum margin of the ZMP moved by the ankles, of that half width [1]
+REFERENCE_WIDTH = HSR_VIII.sole / HSR_VIII.leg  # of a sole, of the length of the leg [1]
 MAX_SLOWER = 1.4  # footstep time, of that by similarity [1]
 MIN_LAGS = 9.0  # duration of a footstep, of the lag of the slowest leg servo [1]
 MAX_STANCE = 0.2  # half stance, of the length of the leg [1]
@@ -39,7 +42,7 @@ def fit(robot: RobotModel, scaled: WalkingParameters) -> WalkingParameters:
     gait = with_clear_stance(robot, scaled.gait)
     pattern = with_plan_margin(robot, scaled.pattern)
     pattern = replace(pattern, pelvis_height=hip_height(robot, gait, pattern.pelvis_height))
-    gait = with_servo_time(robot, gait)
+    gait = with_calm_landing(robot, with_servo_time(robot, gait))
     return replace(
         scaled, gait=gait, pattern=pattern, stabilizer=with_gains(robot, scaled.stabilizer)
     )
@@ -82,6 +85,23 @@ def with_servo_time(robot: RobotModel, gait: GaitParameters) -> GaitParameters:
     lag = float((robot.damping[pitching] / robot.stiffness[pitching]).max())
     most = MAX_SLOWER * gait.footstep_time
     return replace(gait, footstep_time=max(gait.footstep_time, min(MIN_LAGS * lag, most)))
+
+
+def with_calm_landing(robot: RobotModel, gait: GaitParameters) -> GaitParameters:
+    """Return landings that change earlier and slower where soles are narrow.
+
+    A foot that is sent elsewhere pushes the robot back by a part of its weight, at the height of
+    the hips; soles that are narrow against the leg tip over. The push falls with the square of the
+    time left.
+    """
+    width = robot.support.half_width / robot.legs[0].length
+    part = min(1.0, width / REFERENCE_WIDTH)
+    return replace(
+        gait,
+        landing_freeze=1.0 - (1.0 - gait.landing_freeze) / sqrt(part),
+        landing_speed=part * gait.landing_speed,
+        landing_turn=part * gait.landing_turn,
+    )
 
 
 def hip_height(robot: RobotModel, gait: GaitParameters, height: float) -> float:
