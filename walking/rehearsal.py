@@ -127,6 +127,7 @@ def _with_lift(
     slow = VelocityCommand(0.0, 0.0, MIN_FRACTION * parameters.limits.wz)
     lowest = MIN_LIFT * robot.legs[0].length
     fitted, demand = parameters, rehearse(robot, parameters, slow)
+    reason = demand.text()
     while not demand.within(IN_PLACE_SPEED) and SHRINK * fitted.gait.swing_height > lowest:
         gait = replace(fitted.gait, swing_height=SHRINK * fitted.gait.swing_height)
         lower = replace(fitted, gait=gait)
@@ -143,7 +144,7 @@ def _with_lift(
     for name, unit in (("swing_height", "m"), ("footstep_time", "s")):
         before, after = getattr(parameters.gait, name), getattr(fitted.gait, name)
         if before != after:
-            notes.append(f"{name} {before:.3f} -> {after:.3f} {unit}: {demand.text()}")
+            notes.append(f"{name} {before:.3f} -> {after:.3f} {unit}: {reason}")
     return fitted
 
 
