@@ -36,7 +36,7 @@ class Parts:
 def driven_joints(model: mujoco.MjModel, roles: Roles) -> tuple[str, ...]:
     """Return the hinge joints with an actuator: legs first, then the others in model order."""
     legs = (*roles.legs[0], *roles.legs[1])
-    driven = {int(model.actuator_trnid[a, 0]) for a in range(model.nu) if _moves_joint(model, a)}
+    driven = servos_of(model)
     others = [
         model.joint(j).name
         for j in range(model.njnt)
@@ -126,7 +126,7 @@ class _Builder:
         model, names = self._model, self._names
         joints = np.array([model.joint(name).id for name in names])
         dofs = model.jnt_dofadr[joints]
-        servo = {int(model.actuator_trnid[a, 0]): a for a in range(model.nu)}
+        servo = servos_of(model)
         servos = np.array([servo[j] for j in joints.tolist()])
         limited = model.jnt_limited[joints].astype(bool)
         ranges = np.where(limited[:, None], model.jnt_range[joints], [[-UNLIMITED, UNLIMITED]])
@@ -181,8 +181,10 @@ def max_torque(model: mujoco.MjModel, joints: Ints, servos: Ints) -> Array:
     return torque
 
 
-def _moves_joint(model: mujoco.MjModel, actuator: int) -> bool:
-    return int(model.actuator_trntype[actuator]) == int(mujoco.mjtTrn.mjTRN_JOINT)
+def servos_of(model: mujoco.MjModel) -> dict[int, int]:
+    """Return the actuator of each joint that has one; those of tendons move no joint directly."""
+    on_joint = np.flatnonzero(model.actuator_trntype == mujoco.mjtTrn.mjTRN_JOINT)
+    return {int(model.actuator_trnid[a, 0]): int(a) for a in on_joint}
 
 
 def _on_robot(model: mujoco.MjModel, joint: int, roles: Roles) -> bool:

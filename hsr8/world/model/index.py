@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from hsr8.robots.models import reading_models
 from hsr8.robots.normal_form import ACCELEROMETER, FEET, PADS, SOLES, pad
+from hsr8.robots.tree import servos_of
 
 if TYPE_CHECKING:  # reading a run needs no robot
     from hsr8.robots.loaded import LoadedRobot
@@ -75,7 +76,7 @@ class ModelIndex:
         """
         names = robot.model.names
         joints = [model.joint(name) for name in names]
-        servo = {int(model.actuator_trnid[a, 0]): a for a in range(model.nu)}
+        servo = servos_of(model)
         base = model.body(robot.roles.base).id
         root = model.joint(int(model.body_jntadr[base]))
         obstacle_names = [

@@ -1,0 +1,92 @@
+"""A loaded robot has the kinematics, dynamics and servos of its model file."""
+
+from xml.etree import ElementTree
+
+import mujoco
+import numpy as np
+import pytest
+
+from hsr8.robots.loaded import load_robot
+from tests.hsr8.robots.robot_parts import adding
+from tests.hsr8.robots.small_humanoid import SmallHumanoid
+
+ROBOTS = {
+    "plain": SmallHumanoid(),
+    "other order": SmallHumanoid(hip="pry", ankle="rp", flip=True),
+    "oblique hips": SmallHumanoid(oblique=0.3, offset=0.02),
+    "waist": SmallHumanoid(waist="y"),
+    "no head": SmallHumanoid(head=""),
+}
+
+
+@pytest.fixture
+def load(tmp_path):
+    """Loads a generated robot, with changes to its MJCF."""
+
+    def make(robot, *changes):
+        element = robot.element()
+        for change in changes:
+            change(element)
+        (tmp_path / "robot.xml").write_text(ElementTree.tostring(element, encoding="unicode"))
+        left, right = robot.feet()
+        text = f'model = "robot.xml"\nfeet = ["{left}", "{right}"]\n'
+        if robot.head:
+            text += 'head = ["head_yaw", "head_pitch"]\n'
+        (tmp_path / "robot.toml").write_text(text)
+        return load_robot(str(tmp_path / "robot.toml"))
+
+    return make
+
+
+@pytest.mark.parametrize("name", ROBOTS)
+def test_kinematics_and_centre_of_mass_are_those_of_mujoco(load, name):
+    robot = load(ROBOTS[name])
+    model = robot.spec.copy().compile()
+    data, rng = mujoco.MjData(model), np.random.default_rng(4)
+    for joint, angle in robot.held.items():
+        data.joint(joint).qpos[0] = angle
+    joints = robot.model.names
+    angles = robot.model.ready + rng.uniform(-0.2, 0.2, len(joints))
+    for joint, angle in zip(joints, angles.tolist(), strict=True):
+        data.joint(joint).qpos[0] = angle
+    mujoco.mj_kinematics(model, data)
+    mujoco.mj_comPos(model, data)
+    base = data.body(robot.roles.base)
+    turned = base.xmat.reshape(3, 3).T
+    com = turned @ (data.subtree_com[model.body(robot.roles.base).id] - base.xpos)
+    np.testing.assert_allclose(robot.model.com(angles), com, rtol=0.0, atol=1e-12)
+    assert robot.model.mass == pytest.approx(model.body_subtreemass[1], rel=1e-12)
+    for leg, part, side in zip(robot.model.legs, (slice(0, 6), slice(6, 12)), "lr", strict=True):
+        foot = leg.pose(angles[part])
+        place = turned @ (data.site(f"hsr8/{side}_foot").xpos - base.xpos)
+        np.testing.assert_allclose((foot.x, foot.y, foot.z), place, rtol=0.0, atol=1e-12)
+        solved, error = leg.angles(foot)
+        assert error < 1e-9
+        np.testing.assert_allclose(solved, angles[part], atol=1e-8)
+
+
+def test_tendons_of_the_arms_are_no_servos_of_the_legs(load):
+    plain = load(SmallHumanoid())
+    tendons = adding(
+        "<tendon>"
+        + "".join(
+            f'<fixed name="t{k}"><joint joint="l_shoulder_pitch" coef="1"/></fixed>'
+            for k in range(3)
+        )
+        + "</tendon>"
+    )
+
+    def motors(root):
+        for k in range(3):
+            root.find("actuator").append(
+                ElementTree.fromstring(f'<motor name="m{k}" tendon="t{k}" gear="7"/>')
+            )
+
+    with_tendons = load(SmallHumanoid(), tendons, motors)
+    np.testing.assert_array_equal(with_tendons.model.stiffness, plain.model.stiffness)
+
+
+def test_a_larger_mass_makes_the_walk_no_different_in_shape(load):
+    light, heavy = load(SmallHumanoid()), load(SmallHumanoid(mass=1.5))
+    np.testing.assert_allclose(light.model.ready[:12], heavy.model.ready[:12], atol=1e-6)
+    assert heavy.model.mass == pytest.approx(1.5 * light.model.mass)
