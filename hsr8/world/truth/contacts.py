@@ -78,10 +78,15 @@ class ContactWatch:
                 obstacle=obstacle,
                 name=name,
                 moving=moving,
-                robot_geom=self._model.geom(geom).name,
+                robot_geom=self._name(geom),
                 force=force,
                 closing=float(velocity @ towards) > self._closing_speed * distance,
             )
+
+    def _name(self, geom: int) -> str:
+        """Return the name of a geom, or of its body if it has none."""
+        model = self._model
+        return model.geom(geom).name or model.body(int(model.geom_bodyid[geom])).name
 
     def take(self) -> tuple[Contact, ...]:
         """Return and clear the contacts since the last call, by obstacle and geom."""

@@ -20,7 +20,7 @@ class Contact:
         obstacle: number in the layout: obstacles, then beacons.
         name: of the obstacle or beacon, for people.
         moving: whether it is a mover.
-        robot_geom: name of the geom of the robot.
+        robot_geom: name of the geom of the robot, or of its body.
         force: normal force [N].
         closing: whether the motion of the robot closed the gap.
     """
