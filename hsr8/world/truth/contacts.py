@@ -86,7 +86,8 @@ class ContactWatch:
     def _name(self, geom: int) -> str:
         """Return the name of a geom, or of its body if it has none."""
         model = self._model
-        return model.geom(geom).name or model.body(int(model.geom_bodyid[geom])).name
+        name: str = model.geom(geom).name
+        return name or str(model.body(int(model.geom_bodyid[geom])).name)
 
     def take(self) -> tuple[Contact, ...]:
         """Return and clear the contacts since the last call, by obstacle and geom."""
