@@ -15,6 +15,7 @@ from walking.body.leg import FootPose
 from walking.body.robot_model import RobotModel
 from walking.body.tree import LEFT_LEG, RIGHT_LEG
 from walking.parameters import (
+    CONTROL_PERIOD,
     GRAVITY,
     GaitParameters,
     PatternParameters,
@@ -51,13 +52,15 @@ def fit(robot: RobotModel, scaled: WalkingParameters) -> WalkingParameters:
 def with_gains(robot: RobotModel, stabilizer: StabilizerParameters) -> StabilizerParameters:
     """Return full feed-forward of the lag, bounded damping, and ankles that use the sole.
 
-    A part of the lag lets slow servos fall behind; damping scaled to soft ankles oscillates with
+    A part of the lag lets slow servos fall behind, and so do rates of half a tick ago in a setpoint
+    that holds for the next tick; damping scaled to soft ankles oscillates with
     the delay of the servos; a margin scaled to the legs leaves nothing of a narrow sole.
     """
     margin = SOLE_FRACTION * robot.support.half_width
     return replace(
         stabilizer,
         velocity_gain=1.0,
+        velocity_ahead=CONTROL_PERIOD,
         gyro_gain=min(stabilizer.gyro_gain, MAX_GYRO_GAIN),
         sole_margin=min(stabilizer.sole_margin, margin),
     )

@@ -35,6 +35,7 @@ class FeedForward:
         self._ankles = np.array(ankles)
         inertia = parameters.inertia_gain, parameters.max_inertia_acceleration, CONTROL_PERIOD
         self._inertia = np.array(inertia)
+        self._time_ahead = parameters.velocity_ahead
         self._started = False
         self._position = np.zeros(robot.damping.size)
         self._velocity = np.zeros(robot.damping.size)
@@ -80,8 +81,7 @@ class FeedForward:
             acceleration,
             self._inertia,
         )
-        # The setpoint holds for the next tick; the difference is the rate half a tick ago.
-        self._ahead = self._velocity + CONTROL_PERIOD * robot.motion[2][robot.indices[1]]
+        self._ahead = self._velocity + self._time_ahead * robot.motion[2][robot.indices[1]]
         offset = self._offset
         feedforward_kernel.offsets(
             robot.forces(),
