@@ -4,6 +4,7 @@ import mujoco
 import numpy as np
 from numpy.typing import NDArray
 
+from hsr8.robots.normal_form import COLLISION_GROUP
 from hsr8.robots.posed import Posed
 from hsr8.robots.roles import Roles
 
@@ -25,12 +26,21 @@ def arm_spheres(robot: Posed, roles: Roles) -> list[tuple[Array, Array]]:
     for shoulder in roles.shoulders or ():
         root = int(model.joint(shoulder).bodyid[0])
         geoms = [g for g in range(model.ngeom) if _below(model, int(model.geom_bodyid[g]), root)]
-        solid = [g for g in geoms if model.geom_contype[g] or model.geom_conaffinity[g]]
-        spheres = [sphere for g in solid or geoms for sphere in _spheres(model, data, g)]
+        seen = [g for g in geoms if _seen(model, g)]
+        spheres = [sphere for g in seen for sphere in _spheres(model, data, g)]
         centres = np.array([centre for centre, _ in spheres]).reshape(-1, 3)
         away = np.linalg.norm(centres - data.xanchor[model.joint(shoulder).id], axis=1)
         arms.append((centres, np.array([radius for _, radius in spheres]) + SWING * away))
     return [arm for arm in arms if len(arm[1])]
+
+
+def _seen(model: mujoco.MjModel, geom: int) -> bool:
+    """Return whether the head camera sees a geom: of meshes it sees the colliding ones only."""
+    solid = bool(model.geom_contype[geom] or model.geom_conaffinity[geom])
+    if solid and model.nmesh:
+        return True
+    mesh = model.geom_type[geom] == mujoco.mjtGeom.mjGEOM_MESH
+    return bool(model.geom_group[geom] < COLLISION_GROUP) and not mesh
 
 
 def _below(model: mujoco.MjModel, body: int, root: int) -> bool:
