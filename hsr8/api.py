@@ -10,8 +10,8 @@ from hsr8.errors import UsageError
 from hsr8.evaluation.recording import Recording, Result, renderer_of
 from hsr8.loop import Simulation
 from hsr8.plugin_walker import CustomWalker
+from hsr8.record import Listener
 from hsr8.recorder.log_level import LogLevel
-from hsr8.recorder.record import Listener
 from hsr8.recorder.run.manifest import CALL, Manifest
 from hsr8.recorder.run.run_folder import SCENARIO, RunFolder
 from hsr8.scenario.loader import as_words, load_scenario

@@ -1,23 +1,15 @@
 """Events of a run: faults, collisions, falls, pushes, via points, goal, localization."""
 
 from collections.abc import Iterator, Sequence
-from typing import NamedTuple
 
-from hsr8.recorder.frame_record import FrameRecord
+from hsr8.frame_record import FrameRecord
+from hsr8.record import Event
 from hsr8.scenario.fault import Fault
 from hsr8.world.truth.collision_counter import CollisionCounter
 from hsr8.world.truth.falls import Falls
 from hsr8.world.truth.truth import Truth
 
 SAME_TIME = 1e-6  # times closer than this are equal [s]
-
-
-class Event(NamedTuple):
-    """Event with its time [s]."""
-
-    time: float
-    kind: str
-    text: str
 
 
 class EventWatch:

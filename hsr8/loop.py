@@ -1,26 +1,30 @@
 """Closed loop of world and robot, one control tick at a time."""
 
 import hashlib
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from contextlib import ExitStack, suppress
 from dataclasses import dataclass
+from time import perf_counter
 from typing import Self, SupportsIndex
 
 import cv2
+import numpy as np
+from numpy.typing import NDArray
 
 from hsr8.body_builder import build_body, build_model
 from hsr8.decisions import GazeController, MotionPlanner
 from hsr8.errors import ScenarioError, SimulationDiverged
-from hsr8.event_watch import Event, EventWatch
+from hsr8.event_watch import EventWatch
+from hsr8.frame_record import FrameRecord
 from hsr8.plugin_walker import CustomWalker
-from hsr8.recorder.frame_record import FrameRecord
-from hsr8.recorder.record import Listener, TickRecord
+from hsr8.record import Event, Listener, Second, Tick, TickRecord
 from hsr8.recorder.run.tape import TapeWriter
 from hsr8.robot import Robot, SensorFrame
 from hsr8.robot_builder import build_robot, head_camera
 from hsr8.robots.loaded import load_robot
 from hsr8.scenario.schema import Scenario
 from hsr8.seeds import named_rng
+from hsr8.walk_counters import WalkCounters
 from hsr8.world.body.sensor_faults import SensorFaults
 from hsr8.world.body.servo_faults import ServoFaults
 from hsr8.world.camera.analytic import AnalyticCamera
@@ -32,9 +36,11 @@ from hsr8.world.model.index import ModelIndex
 from hsr8.world.truth.truth import Truth
 from walking.parameters import CONTROL_PERIOD
 from walking.phase import Phase
+from walking.targets import JointTargets
 
 GOAL_DWELL = 1.0  # simulated time after the goal is reached [s]
 FALL_DWELL = 0.6  # simulated time after the final fall, so that it is visible [s]
+HASH = 16  # bytes of a hash
 TICKS_PER_SECOND = round(1.0 / CONTROL_PERIOD)
 
 
@@ -59,8 +65,8 @@ class Simulation:
     As a whole: ``outcome = Simulation(scenario, seed).run()``. Tick by tick:
 
         with Simulation(scenario, seed) as simulation:
-            while simulation.exit_reason is None:
-                record = simulation.step()
+            for tick in simulation:
+                ...
 
     Args:
         scenario: what to run.
@@ -131,6 +137,8 @@ class Simulation:
         self._ticks = round(scenario.duration / CONTROL_PERIOD) + 1
         self._end: tuple[int, str] | None = None
         self._published: FrameRecord | None = None
+        self._counters = WalkCounters()
+        self._not_sent = np.full(len(names), np.nan)
 
     def _build_robot(
         self,
@@ -193,14 +201,10 @@ class Simulation:
                 cleanup.callback(listener.close, self.exit_reason)
 
     def run(self) -> RunOutcome:
-        """Run to the end and close the listeners.
-
-        Raises:
-            SimulationDiverged: the physics diverged; the listeners are closed first.
-        """
+        """Run to the end and close the listeners."""
         with suppress(KeyboardInterrupt), self:
-            while self.exit_reason is None:
-                self.step()
+            for _ in self:
+                pass
         return self.outcome()
 
     def outcome(self) -> RunOutcome:
@@ -213,25 +217,22 @@ class Simulation:
             raise RuntimeError("the run has not ended: call step() until `exit_reason` is set")
         return RunOutcome(self.exit_reason, self._body.time, self.state_hash())
 
-    def step(self) -> TickRecord | None:
-        """Make one control tick.
+    def __iter__(self) -> Iterator[Tick]:
+        """Yield the control ticks until the run ends."""
+        while self.exit_reason is None:
+            yield self.step()
 
-        Returns:
-            The record of this tick; None between two records.
+    def step(self) -> Tick:
+        """Make one control tick.
 
         Raises:
             RuntimeError: the run has ended, or ``with`` is missing.
-            SimulationDiverged: the physics diverged.
         """
         if not self._open or self.exit_reason is not None:
             reason = "the run has ended" if self.exit_reason else "enter `with simulation:` first"
             raise RuntimeError(f"step: {reason}")
         try:
             return self._step()
-        except SimulationDiverged as error:
-            self.exit_reason = "diverged"
-            self._publish_event(Event(self._body.time, "diverged", str(error)))
-            raise
         except Exception as error:
             error.add_note(f"at {self._body.time:.3f} s of simulated time")
             raise
@@ -250,38 +251,98 @@ class Simulation:
             parts += (track.position, track.covariance)
         return b"".join(part.tobytes() for part in parts)
 
-    def _mark(self, tick: int) -> None:
-        """Record the hash of the state, once per second and at the end."""
+    def _mark(self) -> Second:
+        """Return the hashes of the state."""
+        world, belief = self._body.state_bytes(), self._belief_bytes()
         if self.tape is not None:
-            self.tape.mark(tick, self._body.state_bytes(), self._belief_bytes())
+            self.tape.mark(self.tick, world, belief)
+        state = hashlib.blake2b(world, digest_size=HASH)
+        digest = state.digest()
+        state.update(belief)
+        return Second(self.tick, self._body.time, digest, state.digest(), self._body.saturation())
 
-    def _step(self) -> TickRecord | None:
-        tick, record = self.tick, None
-        if tick % TICKS_PER_SECOND == 0:
-            self._mark(tick)
-        targets = self._robot.step(self._sense(tick))
-        if tick % self._record_ticks == 0:
-            truth = self._body.truth()
-            record = self._publish(tick, truth)
-            self._end = self._end or self._scheduled_end(tick, truth)
+    def _step(self) -> Tick:
+        number, robot = self.tick, self._robot
+        seconds = [self._mark()] if number % TICKS_PER_SECOND == 0 else []
+        sensed = self._sense(number)
+        started = perf_counter()
+        targets = robot.walk(sensed)
+        walking_time = perf_counter() - started
+        robot.perceive(sensed)
+        walker, setpoint = robot.walking, self._not_sent
+        if not walker.down:
+            self._counters.add(walker, walking_time)
+        record, events = self._record(number)
+        reason = self._reason(number)
+        if not reason:
+            targets = self._servo_faults.apply_fault(targets, number)
+            setpoint = self._body.setpoints(targets).copy()
+            reason, diverged = self._apply(targets, setpoint)
+            events += diverged
+        if reason:
+            self.exit_reason = reason
+            seconds.append(self._mark())
+        for event in events:
+            for listener in self.listeners:
+                listener.on_event(*event)
+        return Tick(
+            number=number,
+            time=sensed.time,
+            sensors=sensed.body,
+            setpoint=setpoint,
+            limits=walker.limits,
+            zmp_depth=float(walker.zmp_depth),
+            down=walker.down,
+            walking_time=walking_time,
+            record=record,
+            seconds=tuple(seconds),
+            events=tuple(events),
+        )
+
+    def _record(self, number: int) -> tuple[TickRecord | None, list[Event]]:
+        """Return the record that is due in this tick, if any, and the events."""
+        if number % self._record_ticks:
+            return None, []
+        truth = self._body.truth()
+        frame = self._robot.frame if self._robot.frame is not self._published else None
+        self._published = self._robot.frame
+        self._end = self._end or self._scheduled_end(number, truth)
+        events = list(self._watch.look(truth, frame))
+        record = TickRecord(
+            tick=number,
+            time=self._body.time,
+            truth=truth,
+            walking=self._robot.walking_state(),
+            counters=self._counters,
+            command=self._robot.command,
+            head=self._robot.head,
+            frame=frame,
+        )
+        for listener in self.listeners:
+            listener.on_record(record)
+        return record, events
+
+    def _reason(self, number: int) -> str:
+        """Return the reason to end before this tick is applied, empty for none."""
         if self._interrupted:
-            return self._finish("interrupted", record)
-        if self._end is not None and tick >= self._end[0]:
-            return self._finish(self._end[1], record)
-        targets = self._servo_faults.apply_fault(targets, tick)
-        if self.tape is not None:
-            self.tape.add(self._body.setpoints(targets))
-        self._body.apply(targets)
-        self.tick += 1
-        if self.tick == self._ticks:
-            finite = len(self.layout.waypoints) > 0 and not self.layout.endless
-            return self._finish("timeout" if finite else "completed", record)
-        return record
+            return "interrupted"
+        return self._end[1] if self._end is not None and number >= self._end[0] else ""
 
-    def _finish(self, reason: str, record: TickRecord | None) -> TickRecord | None:
-        self._mark(self.tick)
-        self.exit_reason = reason
-        return record
+    def _apply(
+        self, targets: JointTargets, setpoint: NDArray[np.float64]
+    ) -> tuple[str, list[Event]]:
+        """Advance the world; return the reason to end afterwards, empty for none, and events."""
+        if self.tape is not None:
+            self.tape.add(setpoint)
+        try:
+            self._body.apply(targets)
+        except SimulationDiverged as error:
+            return "diverged", [Event(self._body.time, "diverged", str(error))]
+        self.tick += 1
+        if self.tick < self._ticks:
+            return "", []
+        finite = len(self.layout.waypoints) > 0 and not self.layout.endless
+        return "timeout" if finite else "completed", []
 
     def _sense(self, tick: int) -> SensorFrame:
         body, time = self._sensor_faults.apply_fault(self._body.sense(), tick), self._body.time
@@ -311,26 +372,3 @@ class Simulation:
         if not self.scenario.walking.get_up.enabled:
             return True
         return self._robot.walking_state().phase is Phase.FALLEN
-
-    def _publish(self, tick: int, truth: Truth) -> TickRecord:
-        frame = self._robot.frame if self._robot.frame is not self._published else None
-        self._published = self._robot.frame
-        for event in self._watch.look(truth, frame):
-            self._publish_event(event)
-        record = TickRecord(
-            tick=tick,
-            time=self._body.time,
-            truth=truth,
-            walking=self._robot.walking_state(),
-            counters=self._robot.counters,
-            command=self._robot.command,
-            head=self._robot.head,
-            frame=frame,
-        )
-        for listener in self.listeners:
-            listener.on_record(record)
-        return record
-
-    def _publish_event(self, event: Event) -> None:
-        for listener in self.listeners:
-            listener.on_event(*event)

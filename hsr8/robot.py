@@ -3,14 +3,12 @@
 from collections import deque
 from collections.abc import Callable
 from operator import attrgetter
-from time import perf_counter
 from typing import Protocol
 
 import numpy as np
 
 from hsr8.decisions import DecisionContext, Decisions
-from hsr8.recorder.frame_record import FrameRecord, Image
-from hsr8.recorder.walk_counters import WalkCounters
+from hsr8.frame_record import FrameRecord, Image
 from navigation.belief.belief import Belief
 from navigation.observation import CameraView, Frame, Observation
 from vision.camera import CameraPose
@@ -97,7 +95,7 @@ class Robot:
         decisions: Decisions,
         schedule: CommandSource | None = None,
     ) -> None:
-        self._walking = walking
+        self.walking = walking
         self._fov = fov
         self._vision = vision
         self._pose = pose
@@ -110,34 +108,33 @@ class Robot:
         self._state: WalkingState | None = None  # after this tick, cached
         self._odometry: Odometry | None = None
         self.command: Command = VelocityCommand()
-        self.counters = WalkCounters()
         self.head = HeadTarget()
         self.frame: FrameRecord | None = None
 
-    def step(self, sensed: SensorFrame) -> JointTargets:
-        """Make one control tick; perceive and decide if a camera frame arrived."""
+    def walk(self, sensed: SensorFrame) -> JointTargets:
+        """Run the walking engine for one control tick."""
         if self._schedule is not None:
             self.command = self._schedule.at(sensed.time)
-        started = perf_counter()
-        targets = self._walking.step(sensed.body, self.command, self.head)
+        targets = self.walking.step(sensed.body, self.command, self.head)
         self._state = None
-        if not self._walking.down:
-            self.counters.add(self._walking, perf_counter() - started)
         if sensed.shutter:
             self._pending.append((sensed.time, self.walking_state()))
+        return targets
+
+    def perceive(self, sensed: SensorFrame) -> None:
+        """Perceive and decide if a camera frame arrived; `walk` precedes."""
         if sensed.image is not None or sensed.detections is not None:
             self._perceive(sensed)
-        return targets
 
     def walking_state(self) -> WalkingState:
         """Return the state of the walking engine."""
         if self._state is None:
-            self._state = self._walking.state()
+            self._state = self.walking.state()
         return self._state
 
     def _perceive(self, sensed: SensorFrame) -> None:
         captured_state = self._state_at(sensed.captured)
-        if captured_state.phase.down or self._walking.down:
+        if captured_state.phase.down or self.walking.down:
             self._wait()
             return
         image = None if sensed.image is None else sensed.image()

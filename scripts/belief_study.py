@@ -16,7 +16,7 @@ from time import process_time
 from typing import Annotated
 
 from hsr8.loop import Simulation
-from hsr8.recorder.record import Listener, TickRecord
+from hsr8.record import Listener, TickRecord
 from hsr8.robot_builder import build_estimator
 from hsr8.scenario.loader import load_scenario
 from hsr8.scenario.schema import Scenario

@@ -14,9 +14,9 @@ from math import degrees, hypot, pi
 from pathlib import Path
 
 from hsr8.evaluation.proportion import Proportion
+from hsr8.frame_record import FrameRecord
 from hsr8.loop import Simulation
-from hsr8.recorder.frame_record import FrameRecord
-from hsr8.recorder.record import Listener, TickRecord
+from hsr8.record import Listener, TickRecord
 from hsr8.recorder.run.frame_summary import from_line, to_line
 from hsr8.render.png import write_png
 from hsr8.render.top_down import TopDown

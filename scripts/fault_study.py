@@ -24,7 +24,7 @@ from pathlib import Path
 from hsr8.errors import SimulationDiverged
 from hsr8.evaluation.proportion import Proportion
 from hsr8.loop import Simulation
-from hsr8.recorder.record import Listener, TickRecord
+from hsr8.record import Listener, TickRecord
 from hsr8.scenario.loader import load_scenario
 from hsr8.scenario.robot import Robot
 

@@ -42,7 +42,7 @@ def ends(run: Run) -> dict[str, float]:
     Raises:
         Exception: a file is not readable.
     """
-    run.frames(), run.events()
+    run.frame_summaries(), run.event_lines()
     readers = (_log_end, _motion_end, _walking_end, _tape_end)
     return dict(zip(FILES, (reader(run) for reader in readers), strict=True))
 

@@ -15,8 +15,8 @@ from pathlib import Path
 from hsr8.evaluation.metrics import Metrics
 from hsr8.gl import require_gl
 from hsr8.loop import Simulation
+from hsr8.record import Listener, TickRecord
 from hsr8.recorder.log.rerun_log import RerunLog
-from hsr8.recorder.record import Listener, TickRecord
 from hsr8.recorder.run import run_folder
 from hsr8.recorder.run.manifest import Manifest
 from hsr8.recorder.run.run_folder import RunFolder

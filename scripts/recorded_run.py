@@ -2,9 +2,9 @@
 
 from dataclasses import dataclass, field
 
+from hsr8.frame_record import FrameRecord
 from hsr8.loop import Simulation
-from hsr8.recorder.frame_record import FrameRecord
-from hsr8.recorder.record import Listener, TickRecord
+from hsr8.record import Listener, TickRecord
 from hsr8.scenario.loader import load_scenario
 from hsr8.scenario.schema import Scenario
 

@@ -86,11 +86,11 @@ def tour(path: Path) -> Tour:
         f"profile {scenario.navigation.profile}",
         scenario,
         draw_layout(scenario, run.seed),
-        run.frames(),
+        run.frame_summaries(),
         run.trajectory(),
         run.walking(),
         float(measured.frame.view.position[2]),
-        run.events(),
+        run.event_lines(),
     )
 
 

@@ -15,7 +15,7 @@ from math import atan2, hypot
 os.environ.setdefault("MUJOCO_GL", "egl")
 
 from hsr8.loop import Simulation
-from hsr8.recorder.record import Listener, TickRecord
+from hsr8.record import Listener, TickRecord
 from hsr8.robots.normal_form import HEAD_CAMERA
 from hsr8.scenario.loader import load_scenario
 from vision.camera import PinholeCamera

@@ -22,7 +22,8 @@ def main(options: Info) -> int:
         UsageError: there is no such run, or it is damaged.
     """
     run = open_run(options.run)
-    manifest, results, criteria, events = run.manifest, run.metrics(), _criteria(run), run.events()
+    manifest, results, criteria = run.manifest, run.metrics(), _criteria(run)
+    events = run.event_lines()
     files = {f.name: f.stat().st_size for f in sorted(run.path.iterdir()) if f.is_file()}
     if options.json:
         met = exit_code(str(manifest.get("exit_reason")), criteria) == 0

@@ -14,8 +14,8 @@ from numpy.typing import NDArray
 
 from hsr8.evaluation.track_metrics import TrackMetrics
 from hsr8.evaluation.walk_metrics import WalkMetrics
-from hsr8.recorder.frame_record import FrameRecord
-from hsr8.recorder.record import Listener, TickRecord
+from hsr8.frame_record import FrameRecord
+from hsr8.record import Listener, TickRecord
 from hsr8.recorder.record_buffer import RecordBuffer
 from hsr8.world.field.layout import Layout
 from hsr8.world.truth.collision_counter import CollisionCounter

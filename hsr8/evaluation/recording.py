@@ -1,20 +1,21 @@
 """A simulation whose results are measured and which writes a run folder."""
 
 from collections.abc import Iterator, Sequence
-from contextlib import contextmanager, suppress
+from contextlib import contextmanager, nullcontext, suppress
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
-from hsr8.errors import RecordingFailed, SimulationDiverged
+from hsr8.errors import RecordingFailed
 from hsr8.evaluation.metrics import Metrics
 from hsr8.evaluation.verdict import Criterion, evaluate_criteria
 from hsr8.gl import require_gl
 from hsr8.loop import Simulation
 from hsr8.plugin_file import digests
+from hsr8.record import Listener
 from hsr8.recorder.files.writing import FAILED
-from hsr8.recorder.log_level import LogLevel
-from hsr8.recorder.record import Listener
+from hsr8.recorder.log_level import RATES, LogLevel, LogRates
+from hsr8.recorder.recorder import Recorder
 from hsr8.recorder.run import run_folder
 from hsr8.recorder.run.manifest import Manifest
 from hsr8.recorder.run.run_folder import RunFolder
@@ -76,6 +77,7 @@ class Recording:
         self._listeners = list(listeners)
         self._metrics = Metrics(simulation.layout, mission.r_via, mission.r_goal)
         self._folder: RunFolder | None = None
+        self._images: LogRates | None = None
 
     def into(
         self,
@@ -100,6 +102,7 @@ class Recording:
         libraries = manifest.libraries | digests(scenario.plugin) | digest(scenario.robot.model)
         manifest = replace(manifest, libraries=libraries, log=log or "")
         self._folder = RunFolder(path, manifest, dump(scenario), len(simulation.layout.movers))
+        self._images = None if log is None else RATES[log]
         with self._failure_noted():
             simulation.tape = TapeWriter(
                 path / run_folder.TAPE, len(simulation.humanoid.model.names)
@@ -150,11 +153,22 @@ class Recording:
     def _run(self) -> Result:
         simulation = self._simulation
         simulation.listeners += [self._metrics, *self._listeners]
+        recorder: Recorder | nullcontext[None] = nullcontext()
         diverged = ""
-        try:
-            outcome = simulation.run()
-        except SimulationDiverged as error:
-            diverged, outcome = str(error), simulation.outcome()
+        if self._folder is not None:
+            recorder = Recorder(
+                self._folder.path,
+                simulation.humanoid.model.names,
+                scale=simulation.layout.scale,
+                images=self._images,
+            )
+            self._folder.rows = lambda: recorder.rows if isinstance(recorder, Recorder) else {}
+        with suppress(KeyboardInterrupt), simulation, recorder as tables:
+            for tick in simulation:
+                if tables is not None:
+                    tables.append(tick)
+                diverged = next((e.text for e in tick.events if e.kind == "diverged"), "")
+        outcome = simulation.outcome()
         results = self._metrics.result(outcome.exit_reason, outcome.state_hash)
         path = None if self._folder is None else self._folder.path
         if path is not None:

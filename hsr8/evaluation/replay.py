@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 from hsr8.body_builder import build_body, build_model
 from hsr8.errors import SimulationDiverged
-from hsr8.recorder.run.fingerprints import CHANNELS, DECISIONS, decision_fingerprints, fingerprints
+from hsr8.recorder.fingerprints import CHANNELS, DECISIONS, decision_fingerprints, fingerprints
 from hsr8.recorder.run.measurements import Measurement
 from hsr8.recorder.run.run_reader import Run
 from hsr8.recorder.run.tape import HASH, Block
@@ -50,7 +50,7 @@ def replay(run: Run) -> tuple[Replayed, ...]:
         UsageError: a record is missing or damaged, or the scenario cannot be read.
     """
     if run.ended:
-        for read in (run.trajectory, run.walking, run.frames, run.events):
+        for read in (run.trajectory, run.walking, run.frame_summaries, run.event_lines):
             read()  # refuses a record that is cut off
     tape, measurements = run.tape(), run.measurements()
     return replay_physics(run, tape), *replay_decisions(run, measurements)

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from hsr8.errors import UsageError
-from hsr8.recorder.run.fingerprints import CHANNELS, DECISIONS
+from hsr8.recorder.fingerprints import CHANNELS, DECISIONS
 from hsr8.recorder.run.measurements import Measurement
 from hsr8.recorder.run.run_reader import Run
 from hsr8.recorder.run.tape import Block
@@ -65,7 +65,7 @@ def motion(a: Run, b: Run) -> list[RunDifference]:
     """
     tapes = a.tape(), b.tape()
     inputs = ([(m.frame.time, _values(m)) for m in run.measurements()] for run in (a, b))
-    summaries = ([(frame.time, asdict(frame)) for frame in run.frames()] for run in (a, b))
+    summaries = ([(frame.time, asdict(frame)) for frame in run.frame_summaries()] for run in (a, b))
     differences = (
         _first_set_point(a, *tapes),
         _first_hash(*tapes),
@@ -165,7 +165,7 @@ def _first_frame(
 
 
 def _first_event(a: Run, b: Run) -> RunDifference | None:
-    for index, (x, y) in enumerate(zip_longest(a.events(), b.events(), fillvalue=None)):
+    for index, (x, y) in enumerate(zip_longest(a.event_lines(), b.event_lines(), fillvalue=None)):
         for channel, u, v in _unequal(x or {}, y or {}):
             if channel == "time" and None in (x, y):
                 continue  # the text names the missing event

@@ -7,7 +7,7 @@ from math import hypot, sqrt
 import numpy as np
 from numpy.typing import NDArray
 
-from hsr8.recorder.frame_record import FrameRecord
+from hsr8.frame_record import FrameRecord
 from hsr8.world.field.layout import Obstacle
 from hsr8.world.truth.truth import Truth
 from navigation.belief.belief import Motion, Track

@@ -5,9 +5,9 @@ from math import isfinite
 import numpy as np
 from numpy.typing import NDArray
 
+from hsr8.record import TickRecord
 from hsr8.recorder.arc import mean_velocity
-from hsr8.recorder.record import TickRecord
-from hsr8.recorder.walk_counters import WalkCounters
+from hsr8.walk_counters import WalkCounters
 from hsr8.world.truth.saturation import Saturation, SaturationWatch
 from navigation.angles import wrap
 from walking.phase import Phase

@@ -1,6 +1,6 @@
 """Buffer of records: work done once a second in one batch keeps code in the caches."""
 
-from hsr8.recorder.record import TickRecord
+from hsr8.record import TickRecord
 
 PERIOD = 1.0  # a killed run loses at most this much of its records [s]
 

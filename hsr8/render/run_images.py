@@ -55,9 +55,9 @@ class RunImages:
         self._times, self._size, self._speed, self._fine = times, size, speed, fine
         self._trajectory = run.trajectory()
         self._rows = rows_at(self._trajectory.time, times)
-        self._frames = run.frames()
+        self._frames = run.frame_summaries()
         self._frame_times = [frame.time for frame in self._frames]
-        self._events = run.events()
+        self._events = run.event_lines()
         self._collisions = [e["time"] for e in self._events if e["kind"] == "collision"]
         self._pushes: tuple[PushArrow, ...] = ()
         size_ratio = self._robot.stature / DEFAULT_STATURE

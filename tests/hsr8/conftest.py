@@ -7,10 +7,10 @@ import numpy as np
 import pytest
 
 from hsr8.decisions import Decision, DecisionContext
-from hsr8.recorder.frame_record import FrameRecord
-from hsr8.recorder.record import TickRecord
-from hsr8.recorder.walk_counters import WalkCounters
+from hsr8.frame_record import FrameRecord
+from hsr8.record import TickRecord
 from hsr8.robots.loaded import load_robot
+from hsr8.walk_counters import WalkCounters
 from hsr8.world.field.layout import Beacon, Layout, Obstacle
 from hsr8.world.field.motion import Shuttle
 from hsr8.world.model.assembly import Optics, assemble

@@ -4,7 +4,7 @@ import pytest
 from hsr8.decisions import GazeController, MotionPlanner
 from hsr8.errors import RenderingUnavailable
 from hsr8.loop import Simulation
-from hsr8.recorder.record import Listener
+from hsr8.record import Listener
 from hsr8.scenario.loader import load_scenario
 from navigation.decision import GazeDecision, MotionDecision
 
@@ -38,14 +38,14 @@ class Closes(Listener):
 
 def test_tick_by_tick_is_the_same_run():
     at_once = Simulation(quick(), 4).run()
-    records = []
     with Simulation(quick(), 4) as simulation:
-        while simulation.exit_reason is None:
-            records.append(simulation.step())
+        ticks = list(simulation)
     assert simulation.outcome() == at_once
-    assert simulation.tick == len(records) == 201
-    published = [r for r in records if r is not None]
-    assert [r.tick for r in published] == list(range(0, 201, 4))
+    assert [tick.number for tick in ticks] == list(range(201))
+    records = [tick.record for tick in ticks if tick.record is not None]
+    assert [record.tick for record in records] == list(range(0, 201, 4))
+    assert [second.tick for tick in ticks for second in tick.seconds] == [0, 200, 201]
+    assert all(np.isfinite(tick.setpoint).all() for tick in ticks)
 
 
 def test_a_run_left_early_closes_its_listeners():
@@ -87,8 +87,8 @@ def test_a_given_planner_and_gaze_replace_those_of_the_scenario():
     stare: GazeController = Stare()
     record = None
     with Simulation(quick(4.0), 4, planner=spin, gaze=stare) as simulation:
-        while simulation.exit_reason is None:
-            record = simulation.step() or record
+        for tick in simulation:
+            record = tick.record or record
     assert record.head.pan == 0.7
     assert record.command.velocity == (0.0, 0.0, 0.8)
     assert np.hypot(*(record.truth.robot[:2] - simulation.layout.start[:2])) < 0.15

@@ -250,8 +250,8 @@ def test_the_engine_of_hsr8_as_a_custom_walker_walks_the_same_bit_for_bit():
     states, record = [], None
     for walker in (None, BuiltIn()):
         with hsr8.Simulation(scenario, 1, walker=walker, gaze=Ahead()) as simulation:
-            while simulation.exit_reason is None:
-                record = simulation.step() or record
+            for tick in simulation:
+                record = tick.record or record
         states.append(record.truth.qpos)
     assert np.array_equal(*states)
 

@@ -1,7 +1,7 @@
 import numpy as np
 
 from hsr8.loop import Simulation
-from hsr8.recorder.record import Listener
+from hsr8.record import Listener
 from hsr8.scenario.loader import load_scenario
 
 SEED = 3  # two obstacles stand behind the robot at 1.1 and 1.3 m

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from hsr8.loop import Simulation
-from hsr8.recorder.record import Listener
+from hsr8.record import Listener
 from hsr8.scenario.loader import load_scenario
 
 STAND_INS = ['robot.body="kinematic"', 'camera.source="analytic"']

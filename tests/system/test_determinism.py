@@ -3,10 +3,10 @@
 import pytest
 
 from hsr8.loop import Simulation
+from hsr8.record import Listener
 from hsr8.recorder.log.log_reader import Log
 from hsr8.recorder.log.rerun_log import RerunLog
 from hsr8.recorder.log_level import LogLevel
-from hsr8.recorder.record import Listener
 from hsr8.scenario.loader import load_scenario
 
 STAND_INS = ['robot.body="kinematic"', 'camera.source="analytic"']

@@ -7,11 +7,11 @@ import numpy as np
 import rerun as rr
 from numpy.typing import NDArray
 
+from hsr8.frame_record import FrameRecord
 from hsr8.recorder import ellipse, palette
-from hsr8.recorder.frame_record import FrameRecord
 from hsr8.recorder.log.block_stream import BlockStream
 from hsr8.recorder.log.channel import Channel
-from hsr8.recorder.log.throttle import Throttle
+from hsr8.recorder.throttle import Throttle
 from navigation.belief.belief import Belief, Motion
 from navigation.decision import MotionDecision
 from navigation.observation import CameraView

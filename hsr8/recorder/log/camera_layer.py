@@ -9,8 +9,8 @@ import numpy as np
 import rerun as rr
 from numpy.typing import NDArray
 
+from hsr8.frame_record import FrameRecord, Image
 from hsr8.recorder import palette
-from hsr8.recorder.frame_record import FrameRecord, Image
 from hsr8.recorder.log.block_stream import BlockStream
 from hsr8.recorder.log.channel import Channel
 from hsr8.recorder.log.geometry import quaternions

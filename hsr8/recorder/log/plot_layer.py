@@ -6,11 +6,11 @@ import numpy as np
 import rerun as rr
 from numpy.typing import NDArray
 
+from hsr8.frame_record import FrameRecord
+from hsr8.record import TickRecord
 from hsr8.recorder import ellipse, palette
-from hsr8.recorder.frame_record import FrameRecord
 from hsr8.recorder.log.block_stream import BlockStream
 from hsr8.recorder.log.channel import Channel
-from hsr8.recorder.record import TickRecord
 from navigation.angles import wrap
 
 Array = NDArray[np.float64]

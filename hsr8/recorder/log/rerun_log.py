@@ -10,6 +10,7 @@ import rerun as rr
 import rerun_bindings
 from numpy.typing import NDArray
 
+from hsr8.record import TickRecord
 from hsr8.recorder import palette
 from hsr8.recorder.files.writing import failure
 from hsr8.recorder.log.belief_layer import BeliefLayer
@@ -21,12 +22,11 @@ from hsr8.recorder.log.geometry import Scene, sole_outline
 from hsr8.recorder.log.plan_layer import PlanLayer
 from hsr8.recorder.log.plot_layer import PlotLayer
 from hsr8.recorder.log.robot_layer import RobotLayer, followed_entity
-from hsr8.recorder.log.throttle import Throttle
 from hsr8.recorder.log.walk_layer import WalkLayer
 from hsr8.recorder.log_level import RATES, LogLevel
-from hsr8.recorder.record import TickRecord
 from hsr8.recorder.record_buffer import PERIOD, RecordBuffer
 from hsr8.recorder.run.walking_table import OdometryToWorld
+from hsr8.recorder.throttle import Throttle
 from hsr8.robots.loaded import LoadedRobot
 from hsr8.robots.scale import DEFAULT_ROBOT, DEFAULT_STATURE
 from hsr8.robots.shown import visual_model

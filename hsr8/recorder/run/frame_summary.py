@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from hsr8.recorder.frame_record import FrameRecord
+from hsr8.frame_record import FrameRecord
 from hsr8.world.truth.truth import Truth
 from navigation.belief.belief import Track
 

@@ -2,7 +2,7 @@
 
 import platform
 from collections.abc import Mapping, Sequence
-from dataclasses import asdict, dataclass, replace
+from dataclasses import asdict, dataclass, field, replace
 from datetime import UTC, datetime
 from importlib import metadata
 from pathlib import Path
@@ -47,6 +47,7 @@ class Manifest:
         libraries: version by name, and the arithmetic in use.
         log: level of the Rerun log; empty without a log.
         format: format number of the run folder.
+        rows: number of rows of each table, at the end.
     """
 
     scenario: str
@@ -61,6 +62,7 @@ class Manifest:
     libraries: dict[str, str]
     log: str = ""
     format: int = FORMAT
+    rows: dict[str, int] = field(default_factory=dict)
 
     @classmethod
     def now(cls, scenario: str, seed: int, command: Sequence[str], renderer: str) -> "Manifest":
@@ -78,9 +80,9 @@ class Manifest:
             libraries=versions(),
         )
 
-    def ended(self, exit_reason: str) -> "Manifest":
-        """Return the manifest with an exit reason."""
-        return replace(self, exit_reason=exit_reason)
+    def ended(self, exit_reason: str, rows: Mapping[str, int]) -> "Manifest":
+        """Return the manifest with an exit reason and the number of rows of each table."""
+        return replace(self, exit_reason=exit_reason, rows=dict(rows))
 
     def write(self, path: Path) -> None:
         """Write to `path` atomically; on a full disk overwrite the file in place."""

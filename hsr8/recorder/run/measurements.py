@@ -13,10 +13,10 @@ from numpy.typing import NDArray
 
 from hsr8.decisions import DecisionContext
 from hsr8.errors import UsageError
+from hsr8.frame_record import FrameRecord
 from hsr8.recorder.files.binary import guarded, read_payloads
 from hsr8.recorder.files.writing import GrowingFile
-from hsr8.recorder.frame_record import FrameRecord
-from hsr8.recorder.run.fingerprints import (
+from hsr8.recorder.fingerprints import (
     DECISIONS,
     FINGERPRINT,
     decision_fingerprints,

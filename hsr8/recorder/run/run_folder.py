@@ -19,7 +19,7 @@ complete up to its last second.
 
 import errno
 import secrets
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from contextlib import ExitStack
 from pathlib import Path
 from typing import Any
@@ -28,9 +28,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from hsr8.errors import UsageError
+from hsr8.record import TickRecord
 from hsr8.recorder.files import atomic
 from hsr8.recorder.files.writing import NO_ROOM, GrowingFile, failure, writing
-from hsr8.recorder.record import TickRecord
 from hsr8.recorder.record_buffer import RecordBuffer
 from hsr8.recorder.run import frame_summary
 from hsr8.recorder.run.manifest import Manifest
@@ -77,6 +77,7 @@ class RunFolder:
             manifest.write(path / MANIFEST)
             atomic.write_text(path / SCENARIO, scenario)
         self._events = GrowingFile(path / EVENTS)
+        self.rows: Callable[[], Mapping[str, int]] = dict
         self._measurements = MeasurementWriter(path / MEASUREMENTS)
         self._frames = GrowingFile(path / FRAMES)
 
@@ -136,7 +137,7 @@ class RunFolder:
     def note(self, exit_reason: str) -> None:
         """Write the exit reason into the manifest."""
         with writing(self.path):
-            self._manifest.ended(exit_reason).write(self.path / MANIFEST)
+            self._manifest.ended(exit_reason, self.rows()).write(self.path / MANIFEST)
 
     def _write_buffer(self) -> None:
         records = self._buffer.take()

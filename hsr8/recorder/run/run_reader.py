@@ -3,6 +3,7 @@
 import json
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
+from functools import cached_property
 from pathlib import Path
 from typing import Any, TypeVar
 
@@ -13,6 +14,7 @@ from hsr8.errors import ScenarioError, UsageError
 from hsr8.file_format import check_number
 from hsr8.recorder.files.json_lines import read_lines
 from hsr8.recorder.files.writing import FAILED
+from hsr8.recorder.rows import TABLES
 from hsr8.recorder.run import run_folder
 from hsr8.recorder.run.frame_summary import FrameSummary, from_line
 from hsr8.recorder.run.manifest import FORMAT, RUNNING
@@ -20,8 +22,11 @@ from hsr8.recorder.run.measurements import Measurement, read_measurements
 from hsr8.recorder.run.tape import Block, read_tape
 from hsr8.recorder.run.trajectory import Trajectory, read_trajectory
 from hsr8.recorder.run.walking_table import WalkingTable, read_walking_table
+from hsr8.recorder.stream import SUFFIX, read_table
+from hsr8.recorder.table import Table
 from hsr8.scenario.loader import load_scenario
 from hsr8.scenario.schema import Scenario
+from hsr8.suggestion import suggestion
 from hsr8.version import VERSION
 
 T = TypeVar("T")
@@ -29,9 +34,13 @@ T = TypeVar("T")
 INCOMPLETE = (RUNNING, FAILED, "interrupted", "error")  # exit reasons of runs without all records
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True)
 class Run:
     """A run folder.
+
+        run = open_run("runs/course")
+        run.records["zmp"]  # planned ZMP (n, 2)
+        run.unit("records.zmp")  # "m"
 
     Attributes:
         path: the folder.
@@ -97,6 +106,65 @@ class Run:
         file = self.path / run_folder.METRICS
         return _json(file) if file.exists() else {}
 
+    @cached_property
+    def ticks(self) -> Table:
+        """Sensors and setpoints of every control tick.
+
+        Raises:
+            UsageError: here and for the other tables, the file is damaged or, in a run that ended,
+                cut off.
+        """
+        return self._table("ticks")
+
+    @cached_property
+    def records(self) -> Table:
+        """True state of the world and state of the walking engine, every 20 ms."""
+        return self._table("records")
+
+    @cached_property
+    def frames(self) -> Table:
+        """Detections, belief and decisions of every camera frame."""
+        return self._table("frames")
+
+    @cached_property
+    def seconds(self) -> Table:
+        """Hashes and saturation, every second."""
+        return self._table("seconds")
+
+    @cached_property
+    def events(self) -> Table:
+        """Events."""
+        return self._table("events")
+
+    @cached_property
+    def images(self) -> Table:
+        """Images of the head camera."""
+        return self._table("images")
+
+    def unit(self, column: str) -> str:
+        """Return the unit of a column, for example of ``records.zmp``.
+
+        Raises:
+            UsageError: unknown table or column.
+        """
+        table, _, name = column.partition(".")
+        if table not in TABLES:
+            raise UsageError(f"unknown table {table!r}{suggestion(table, list(TABLES))}")
+        unit: str = getattr(self, table).unit(name)
+        return unit
+
+    def to_pandas(self) -> dict[str, Any]:
+        """Return all tables as pandas data frames by name; pandas must be installed."""
+        return {name: getattr(self, name).to_pandas() for name in TABLES}
+
+    def _table(self, name: str) -> Table:
+        path = self.path / f"{name}{SUFFIX}"
+        table = read_table(path, TABLES[name], whole=self.ended)
+        expected = self.manifest.get("rows", {}).get(name, 0)
+        if self.ended and len(table) < expected:
+            raise UsageError(f"{path}: cut off, it holds {len(table)} of {expected} rows")
+        return table
+
     def trajectory(self) -> Trajectory:
         """Return the motion of robot and movers.
 
@@ -113,7 +181,7 @@ class Run:
         self._require_end(run_folder.WALKING, table.time)
         return table
 
-    def frames(self) -> tuple[FrameSummary, ...]:
+    def frame_summaries(self) -> tuple[FrameSummary, ...]:
         """Return belief and decisions of every camera frame; errors as `trajectory`."""
         frames: list[FrameSummary] = []
 
@@ -126,7 +194,7 @@ class Run:
             self._require(run_folder.FRAMES, len(frames), "camera_frames", "frames")
         return tuple(frames)
 
-    def events(self) -> tuple[dict[str, Any], ...]:
+    def event_lines(self) -> tuple[dict[str, Any], ...]:
         """Return the events, each with ``time``, ``kind`` and ``text``; errors as `trajectory`."""
         return tuple(self._lines(run_folder.EVENTS, _event))
 

@@ -18,9 +18,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from hsr8.errors import UsageError
+from hsr8.record import Listener, TickRecord
 from hsr8.recorder.files.binary import head, read_rows
 from hsr8.recorder.files.writing import GrowingFile
-from hsr8.recorder.record import Listener, TickRecord
 from hsr8.recorder.record_buffer import RecordBuffer
 from hsr8.world.truth.truth import Truth
 from walking.command_limits import Limit

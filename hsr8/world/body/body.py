@@ -6,6 +6,7 @@ import mujoco
 import numpy as np
 from numpy.typing import NDArray
 
+from hsr8.world.truth.saturation import Saturation
 from hsr8.world.truth.truth import Truth
 from walking.sensing import BodySensors
 from walking.targets import JointTargets
@@ -35,6 +36,9 @@ class Body(Protocol):
 
     def truth(self) -> Truth:
         """Return the ground truth now, with the contacts since the last call."""
+
+    def saturation(self) -> Saturation | None:
+        """Return the saturation of the servos so far; None without dynamics."""
 
     def state_bytes(self) -> bytes:
         """Return the state that determines the future of the world, for hashing."""

@@ -155,6 +155,9 @@ class KinematicBody:
             fallen=False,
         )
 
+    def saturation(self) -> None:
+        return None
+
     def state_bytes(self) -> bytes:
         """Return configuration, movers and pose of the planted foot."""
         return b"".join(a.tobytes() for a in (self.data.qpos, self.data.mocap_pos, self._anchor))

@@ -17,7 +17,7 @@ from hsr8.world.body.surroundings import Surroundings
 from hsr8.world.body.world_faults import WorldFaults
 from hsr8.world.field.layout import Layout
 from hsr8.world.rotation import heading, quaternion_from_yaw, up_component
-from hsr8.world.truth.saturation import SaturationWatch
+from hsr8.world.truth.saturation import Saturation, SaturationWatch
 from hsr8.world.truth.truth import Truth
 from walking.parameters import CONTROL_PERIOD
 from walking.sensing import BodySensors
@@ -167,6 +167,9 @@ class PhysicsBody:
             pushes=self._pusher.take(),
             saturation=self._saturation,
         )
+
+    def saturation(self) -> Saturation:
+        return self._saturation.so_far()
 
     def state_bytes(self) -> bytes:
         mujoco.mj_getState(self.model, self.data, self._state, mujoco.mjtState.mjSTATE_INTEGRATION)

@@ -3,6 +3,7 @@ import os
 import signal
 import tomllib
 
+import numpy as np
 import pytest
 
 from hsr8.cli.main import entry
@@ -133,15 +134,18 @@ def test_ctrl_c_during_setup_leaves_a_whole_folder(tmp_path, monkeypatch, capsys
 
 
 def test_a_diverged_run_is_reported_and_recorded(tmp_path, monkeypatch, capsys):
-    def diverging(self):
+    def diverging(self, targets):
         raise SimulationDiverged("the physics diverged at tick 12")
 
-    monkeypatch.setattr("hsr8.world.body.kinematic.KinematicBody.truth", diverging)
+    monkeypatch.setattr("hsr8.world.body.kinematic.KinematicBody.apply", diverging)
     assert _run(tmp_path, "--json") == 3
     printed = capsys.readouterr()
     assert "tick 12" in printed.err
     assert json.loads(printed.out)["exit_reason"] == "diverged"
-    assert open_run(tmp_path).manifest["exit_reason"] == "diverged"
+    run = open_run(tmp_path)
+    assert run.manifest["exit_reason"] == "diverged"
+    assert run.events["kind"].tolist() == ["diverged"]
+    assert np.isfinite(run.ticks["setpoint"]).all()
 
 
 def test_an_internal_error_leaves_its_traceback_in_the_run_folder(tmp_path, monkeypatch, capsys):

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from hsr8.evaluation.walk_metrics import WalkMetrics
-from hsr8.recorder.walk_counters import WalkCounters
+from hsr8.walk_counters import WalkCounters
 from hsr8.world.truth.saturation import Saturation
 from hsr8.world.truth.truth import ActivePush
 from walking.body.joints import JOINT_NAMES

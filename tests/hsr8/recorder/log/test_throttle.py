@@ -1,6 +1,6 @@
 from math import inf
 
-from hsr8.recorder.log.throttle import Throttle
+from hsr8.recorder.throttle import Throttle
 
 
 def test_one_sample_per_period_passes():

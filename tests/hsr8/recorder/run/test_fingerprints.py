@@ -3,7 +3,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from hsr8.recorder.run.fingerprints import CHANNELS, DECISIONS, decision_fingerprints, fingerprints
+from hsr8.recorder.fingerprints import CHANNELS, DECISIONS, decision_fingerprints, fingerprints
 
 
 @pytest.mark.parametrize(

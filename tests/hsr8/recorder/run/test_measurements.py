@@ -4,7 +4,7 @@ import numpy as np
 from hypothesis import given
 from hypothesis import strategies as st
 
-from hsr8.recorder.run.fingerprints import decision_fingerprints, fingerprints
+from hsr8.recorder.fingerprints import decision_fingerprints, fingerprints
 from hsr8.recorder.run.measurements import MeasurementWriter, read_measurements
 from navigation.observation import Observation
 

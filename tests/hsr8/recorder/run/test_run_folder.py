@@ -36,14 +36,14 @@ def test_a_finished_run_can_be_read_back(folder, walk, fake):
     assert run.manifest["exit_reason"] == "goal"
     assert run.manifest["libraries"]["mujoco"].startswith("4.0")
     assert run.metrics() == {"success": True, "time_to_goal_s": None}
-    assert [e["kind"] for e in run.events()] == ["collision"]
+    assert [e["kind"] for e in run.event_lines()] == ["collision"]
     trajectory = run.trajectory()
     assert len(trajectory) == 51
     assert trajectory.qpos[50, 0] == pytest.approx(0.2)
     assert np.array_equal(
         trajectory.movers[:, 0], [r.truth.obstacle_positions[2] for r in walk(1.0)]
     )
-    assert [f.time for f in run.frames()] == pytest.approx([0.06 * k for k in range(17)])
+    assert [f.time for f in run.frame_summaries()] == pytest.approx([0.06 * k for k in range(17)])
     assert run.scenario_file.read_text() == 'name = "quick"\n'
 
 
@@ -57,15 +57,15 @@ def test_a_killed_run_can_be_read_up_to_its_last_second(folder, walk):
     run = open_run(folder.path)
     assert run.manifest["exit_reason"] == "running"
     assert run.metrics() == {}
-    assert [e["kind"] for e in run.events()] == ["via_point"]
+    assert [e["kind"] for e in run.event_lines()] == ["via_point"]
     assert run.trajectory().time[-1] >= 1.5
-    assert run.frames()[-1].time >= 1.5
+    assert run.frame_summaries()[-1].time >= 1.5
 
 
 def test_a_run_without_a_camera_frame_has_none(folder, fake):
     folder.on_record(fake.record(0.0))
     folder.close("completed")
-    assert open_run(folder.path).frames() == ()
+    assert open_run(folder.path).frame_summaries() == ()
 
 
 def test_the_newest_run_below_a_folder_is_meant(tmp_path):
@@ -129,7 +129,7 @@ def test_a_damaged_line_is_a_usage_error(folder, fake, name):
         file.write("{}\n")
     run = open_run(folder.path)
     with pytest.raises(UsageError, match=name):
-        run.events() if name == run_folder.EVENTS else run.frames()
+        run.event_lines() if name == run_folder.EVENTS else run.frame_summaries()
 
 
 def test_a_folder_that_cannot_be_created_is_a_usage_error(tmp_path):

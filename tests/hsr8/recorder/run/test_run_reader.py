@@ -100,4 +100,4 @@ def test_only_a_run_that_ended_must_be_complete(tmp_path, walk):
         write_metrics(path, {"sim_time_s": 1.0, "camera_frames": 17})
         run = open_run(path)
         assert run.ended == ended
-        assert (len(run.trajectory()), len(run.frames())) == (51, 17)
+        assert (len(run.trajectory()), len(run.frame_summaries())) == (51, 17)

@@ -1,6 +1,6 @@
 from types import SimpleNamespace
 
-from hsr8.recorder.walk_counters import WalkCounters
+from hsr8.walk_counters import WalkCounters
 from walking.command_limits import Limit
 
 

@@ -1,0 +1,115 @@
+"""Ticks and records that the loop publishes, and the interface of listeners."""
+
+from typing import NamedTuple, Protocol
+
+import numpy as np
+from numpy.typing import NDArray
+
+from hsr8.frame_record import FrameRecord
+from hsr8.walk_counters import WalkCounters
+from hsr8.world.truth.saturation import Saturation
+from hsr8.world.truth.truth import Truth
+from walking.command import Command, HeadTarget
+from walking.command_limits import Limit
+from walking.sensing import BodySensors
+from walking.state import WalkingState
+from walking.value import value
+
+
+class Event(NamedTuple):
+    """Event with its time [s]."""
+
+    time: float
+    kind: str
+    text: str
+
+
+@value
+class TickRecord:
+    """State of the run, published once per record period (20 ms by default).
+
+    Attributes:
+        tick: number of the control tick.
+        time: simulated time [s].
+        truth: state of the world.
+        walking: state of the walking engine.
+        counters: counters of all ticks since the start; the object is updated further.
+        command: commanded velocity or footsteps.
+        head: commanded gaze.
+        frame: camera frame that arrived since the last record, if any.
+    """
+
+    tick: int
+    time: float
+    truth: Truth
+    walking: WalkingState
+    counters: WalkCounters
+    command: Command
+    head: HeadTarget
+    frame: FrameRecord | None
+
+
+@value
+class Second:
+    """State of the run, published once per second and at the end.
+
+    Attributes:
+        tick: number of the next control tick.
+        time: simulated time [s].
+        world: hash of the state of the world.
+        robot: hash of the state of the world and the belief of the robot.
+        saturation: of the servos so far; None of a body without dynamics.
+    """
+
+    tick: int
+    time: float
+    world: bytes
+    robot: bytes
+    saturation: Saturation | None
+
+
+@value
+class Tick:
+    """One control tick.
+
+    Attributes:
+        number: of the tick.
+        time: simulated time at its start [s].
+        sensors: as the robot received them.
+        setpoint: sent to the servos; NaN in the last tick (joints,) [rad].
+        limits: constraints that limited the command.
+        zmp_depth: distance of the planned ZMP from the edge of the soles, negative outside [m].
+        down: whether the robot lies or gets up.
+        walking_time: wall time of the walking engine [s].
+        record: state of the run, if one is due.
+        seconds: states with hashes: at the start of every second and at the end of the run.
+        events: since the previous tick.
+    """
+
+    number: int
+    time: float
+    sensors: BodySensors
+    setpoint: NDArray[np.float64]
+    limits: tuple[Limit, ...]
+    zmp_depth: float
+    down: bool
+    walking_time: float
+    record: TickRecord | None
+    seconds: tuple[Second, ...]
+    events: tuple[Event, ...]
+
+
+class Listener(Protocol):
+    """Observer of a run; it never changes the run. Methods do nothing by default."""
+
+    def on_record(self, record: TickRecord) -> None:
+        """Receive one record."""
+        return
+
+    def on_event(self, time: float, kind: str, text: str) -> None:
+        """Receive one event, for example ``via_point``, ``collision``, ``fall``."""
+        return
+
+    def close(self, exit_reason: str) -> None:
+        """End the observation; called once, also after an error."""
+        return

@@ -1,0 +1,123 @@
+"""Recorder: writes the tables of a run as it happens, one batch per second."""
+
+import errno
+from collections.abc import Callable, Sequence
+from contextlib import ExitStack
+from pathlib import Path
+from typing import Any, Self
+
+from hsr8.frame_record import FrameRecord
+from hsr8.record import Tick
+from hsr8.recorder.files.writing import GrowingFile, writing
+from hsr8.recorder.log_level import LogRates
+from hsr8.recorder.recorded import FrameRows, image_row, record_row, second_row, tick_row
+from hsr8.recorder.rows import TABLES, EventRow
+from hsr8.recorder.stream import CHECKSUMS, TableWriter
+from hsr8.recorder.table import Table
+from hsr8.recorder.throttle import Throttle
+
+Tables = dict[str, Table]
+
+PERIOD = 200  # ticks of a batch: a killed run loses at most one second
+
+
+class Recorder:
+    """Writer of the tables of a run, see `hsr8.recorder.rows`.
+
+        with Recorder(folder, joints) as recorder:
+            for tick in simulation:
+                recorder.append(tick)
+
+    Args:
+        folder: of the run; it exists.
+        joints: names of the joints.
+        scale: of the world [1].
+        images: rate and quality of the recorded images; None for no images.
+        listeners: receive every batch of tables, those without new rows left out.
+        period: ticks of a batch.
+
+    Raises:
+        RecordingFailed: in every method, the folder cannot be written.
+    """
+
+    def __init__(
+        self,
+        folder: Path,
+        joints: Sequence[str],
+        *,
+        scale: float = 1.0,
+        images: LogRates | None = None,
+        listeners: Sequence[Callable[[Tables], None]] = (),
+        period: int = PERIOD,
+    ) -> None:
+        self._folder = folder
+        self._period = period
+        self._listeners = listeners
+        self._frame_rows = FrameRows(scale)
+        self._images = images
+        self._throttle = Throttle(images.frame if images else 0.0)
+        self._checksums = GrowingFile(folder / CHECKSUMS)
+        labels = {"joints": joints}
+        self._writers = {
+            name: TableWriter(folder, name, labels, self._checksums) for name in TABLES
+        }
+        self._ticks: list[Tick] = []
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        """Write the remaining rows and close the files."""
+        with ExitStack() as stack:
+            stack.callback(self._checksums.close)
+            for writer in self._writers.values():
+                stack.callback(writer.close)
+            self._write()
+
+    @property
+    def rows(self) -> dict[str, int]:
+        """Number of rows of each table so far."""
+        return {name: writer.count for name, writer in self._writers.items()}
+
+    def append(self, tick: Tick) -> None:
+        """Record one control tick."""
+        self._ticks.append(tick)
+        if len(self._ticks) >= self._period:
+            self._write()
+
+    def _write(self) -> None:
+        ticks, self._ticks = self._ticks, []
+        if not ticks:
+            return
+        with writing(self._folder):
+            if not self._folder.exists():  # open files outlive their folder
+                raise FileNotFoundError(errno.ENOENT, "the folder was removed")
+        tables = {
+            name: self._writers[name].write(rows)
+            for name, rows in self._rows_of(ticks).items()
+            if rows
+        }
+        for listener in self._listeners:
+            listener(tables)
+
+    def _rows_of(self, ticks: Sequence[Tick]) -> dict[str, list[Any]]:
+        records = [tick.record for tick in ticks if tick.record is not None]
+        frames = [record.frame for record in records if record.frame is not None]
+        return {
+            "ticks": [tick_row(tick) for tick in ticks],
+            "records": [record_row(record) for record in records],
+            "frames": [self._frame_rows.row(frame) for frame in frames],
+            "seconds": [second_row(second) for tick in ticks for second in tick.seconds],
+            "events": [EventRow(*event) for tick in ticks for event in tick.events],
+            "images": self._image_rows(frames),
+        }
+
+    def _image_rows(self, frames: Sequence[FrameRecord]) -> list[Any]:
+        if self._images is None or not self._images.jpeg:
+            return []
+        quality = self._images.jpeg
+        return [
+            image_row(frame, frame.image, quality)
+            for frame in frames
+            if frame.image is not None and self._throttle.due(frame.time)
+        ]

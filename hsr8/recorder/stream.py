@@ -1,0 +1,158 @@
+"""Files of tables: Arrow IPC streams, one compressed batch per second.
+
+The file `CHECKSUMS` has a line for each batch: table, rows and bytes of its file up to the end of
+the batch, and the CRC-32 of the bytes of the batch. Arrow does not check what it reads, and a
+damaged file may crash it: only bytes that match their checksum are passed to Arrow. A file that is
+cut off at any byte loses its last batch only.
+"""
+
+import io
+import zlib
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from typing import Any
+
+import pyarrow as pa
+
+from hsr8.errors import UsageError
+from hsr8.recorder.columns import batch_of, schema_of, sizes_of
+from hsr8.recorder.files.writing import GrowingFile, writing
+from hsr8.recorder.table import Table
+
+SUFFIX = ".arrows"
+CHECKSUMS = "checksums.txt"
+OPTIONS = pa.ipc.IpcWriteOptions(
+    compression=pa.Codec("zstd", compression_level=1), use_threads=False
+)
+
+
+class TableWriter:
+    """Writer of one table; the file is created with the first rows.
+
+    Args:
+        folder: of the run.
+        name: of the table.
+        labels: names of the elements of each named dimension, such as the joints.
+        checksums: open file of the checksums.
+
+    Attributes:
+        count: number of rows.
+
+    Raises:
+        RecordingFailed: in every method, the file cannot be written.
+    """
+
+    def __init__(
+        self,
+        folder: Path,
+        name: str,
+        labels: Mapping[str, Sequence[str]],
+        checksums: GrowingFile,
+    ) -> None:
+        self._folder = folder
+        self._name = name
+        self._labels = labels
+        self._checksums = checksums
+        self._file: _CheckedFile | None = None
+        self._writer: pa.RecordBatchStreamWriter | None = None
+        self.count = 0
+
+    def write(self, rows: Sequence[Any]) -> Table:
+        """Append rows, at least one, and return them as a table."""
+        with writing(self._folder):
+            if self._writer is None:
+                self._schema = schema_of(type(rows[0]), sizes_of(rows), self._labels)
+                self._file = _CheckedFile(self._folder / f"{self._name}{SUFFIX}")
+                self._writer = pa.ipc.new_stream(self._file, self._schema, options=OPTIONS)
+            batch = batch_of(rows, self._schema)
+            self._writer.write_batch(batch)
+        self.count += len(rows)
+        self._check()
+        return Table(self._name, pa.Table.from_batches([batch]))
+
+    def close(self) -> None:
+        """End the stream and close the file."""
+        if self._file is None or self._writer is None:
+            return
+        try:
+            with writing(self._folder):
+                self._writer.close()
+            self._check()
+        finally:
+            self._file.close()
+
+    def _check(self) -> None:
+        """Write the checksum of the bytes since the last one."""
+        assert self._file is not None
+        size, checksum = self._file.checked()
+        line = f"{self._name} {self.count} {size} {checksum:08x}\n"
+        self._checksums.write(line.encode())
+        self._checksums.flush()
+
+
+class _CheckedFile(io.RawIOBase):
+    """File that computes the checksum of the bytes written."""
+
+    def __init__(self, path: Path) -> None:
+        self._file = path.open("wb", buffering=0)
+        self._size = self._checksum = 0
+
+    def writable(self) -> bool:
+        return True
+
+    def write(self, content: Any) -> int:
+        self._file.write(content)
+        self._size += len(content)
+        self._checksum = zlib.crc32(content, self._checksum)
+        return len(content)
+
+    def close(self) -> None:
+        self._file.close()
+        super().close()
+
+    def checked(self) -> tuple[int, int]:
+        """Return the size of the file, and the checksum of the bytes since the last call."""
+        checksum, self._checksum = self._checksum, 0
+        return self._size, checksum
+
+
+def read_table(path: Path, rows: type, *, whole: bool) -> Table:
+    """Read a table; one without a file has no rows.
+
+    Args:
+        path: file.
+        rows: class of its rows.
+        whole: refuse a file that is cut off, which that of a killed run may be.
+
+    Raises:
+        UsageError: the file cannot be read or is damaged.
+    """
+    if not path.exists():
+        return Table(path.stem, schema_of(rows, {}, {}).empty_table())
+    try:
+        content = path.read_bytes()
+        lines = (path.parent / CHECKSUMS).read_text().splitlines(keepends=True)
+    except (OSError, UnicodeDecodeError) as error:
+        raise UsageError(f"cannot read {path}: {error}") from error
+    count, size = 0, 0
+    for line in lines:
+        name, *numbers = line.split(" ")
+        if name != path.stem or not line.endswith("\n"):
+            continue
+        try:
+            last, end, checksum = int(numbers[0]), int(numbers[1]), int(numbers[2], 16)
+        except (ValueError, IndexError) as error:
+            raise UsageError(f"{path.parent / CHECKSUMS}: damaged line {line!r}") from error
+        if end > len(content):
+            break
+        if zlib.crc32(content[size:end]) != checksum:
+            raise UsageError(f"{path}: damaged in rows {count} to {last}")
+        count, size = last, end
+    else:
+        whole = False
+    if whole:
+        raise UsageError(f"{path}: cut off after {count} rows")
+    if not size:
+        return Table(path.stem, schema_of(rows, {}, {}).empty_table())
+    with pa.ipc.open_stream(content[:size]) as reader:
+        return Table(path.stem, pa.Table.from_batches(reader, reader.schema))

@@ -1,0 +1,174 @@
+"""Tables of a run: rows out are rows in, at any cut a readable rest, damage located."""
+
+from dataclasses import dataclass
+
+import numpy as np
+import pytest
+from numpy.typing import NDArray
+
+from hsr8.errors import UsageError
+from hsr8.recorder.columns import columns_of
+from hsr8.recorder.files.writing import GrowingFile
+from hsr8.recorder.rows import TABLES
+from hsr8.recorder.stream import CHECKSUMS, TableWriter, read_table
+
+Array = NDArray[np.float64]
+
+
+@dataclass
+class Part:
+    """Part of a row.
+
+    Attributes:
+        name: of the part.
+        place: of the part (2,) [m].
+    """
+
+    name: str
+    place: Array
+
+
+@dataclass
+class Row:
+    """Row of a table.
+
+    Attributes:
+        time: simulated time [s].
+        count: number of things.
+        angle: of the joints (joints,) [rad].
+        outline: of something (n, 2) [m].
+        parts: of something.
+        labels: of something.
+        guess: may be missing [m].
+        image: may be missing (rows, columns) [1].
+        state: content.
+    """
+
+    time: float
+    count: int
+    angle: Array
+    outline: Array
+    parts: tuple[Part, ...]
+    labels: tuple[str, ...]
+    guess: float | None
+    image: NDArray[np.uint8] | None
+    state: bytes
+
+
+def rows(n, seed=0):
+    rng = np.random.default_rng(seed)
+    return [
+        Row(
+            time=0.1 * k,
+            count=k,
+            angle=rng.normal(size=3),
+            outline=rng.normal(size=(k % 4, 2)),
+            parts=tuple(Part(f"part {i}", rng.normal(size=2)) for i in range(k % 3)),
+            labels=("a", "b")[: k % 3],
+            guess=None if k % 2 else 0.5 * k,
+            image=rng.integers(0, 255, (2, 5)).astype(np.uint8) if k % 3 == 0 else None,
+            state=bytes([k % 256]),
+        )
+        for k in range(n)
+    ]
+
+
+def written(folder, content, size=7):
+    checksums = GrowingFile(folder / CHECKSUMS)
+    writer = TableWriter(folder, "things", {"joints": ("hip", "knee", "ankle")}, checksums)
+    for start in range(0, len(content), size):
+        writer.write(content[start : start + size])
+    writer.close()
+    checksums.close()
+    return folder / "things.arrows"
+
+
+def check(table, content):
+    assert len(table) == len(content)
+    if not content:
+        return
+    assert table["time"].tolist() == [row.time for row in content]
+    assert np.array_equal(table["angle"], [row.angle for row in content])
+    parts = table["parts"]
+    assert parts.counts.tolist() == [len(row.parts) for row in content]
+    assert [*parts["name"]] == [part.name for row in content for part in row.parts]
+    for k, row in enumerate(content):
+        assert np.array_equal(table["outline"][k], row.outline)
+        assert tuple(table["labels"][k]) == row.labels
+        places = parts.of(k)["place"]
+        assert np.array_equal(places, np.reshape([p.place for p in row.parts], (-1, 2)))
+        assert (table["image"][k] is None) == (row.image is None)
+    chosen, images = table.present("image")
+    assert chosen.tolist() == [k for k, row in enumerate(content) if row.image is not None]
+    assert np.array_equal(images, [row.image for row in content if row.image is not None])
+    assert np.array_equal(np.isnan(table["guess"]), [row.guess is None for row in content])
+    assert [*table["state"]] == [row.state for row in content]
+
+
+def test_rows_out_are_rows_in(tmp_path):
+    content = rows(30)
+    table = read_table(written(tmp_path, content), Row, whole=True)
+    check(table, content)
+    check(table.rows(4, 19), content[4:19])
+    check(table.window(0.5, 1.2), content[5:13])
+    assert table.unit("angle") == "rad"
+    assert table.names("angle") == ("hip", "knee", "ankle")
+    assert table.description("count") == "number of things"
+    assert table["parts"].unit("place") == "m"
+
+
+def test_a_table_cut_off_at_any_byte_keeps_its_whole_batches(tmp_path):
+    content = rows(21)
+    file = written(tmp_path, content)
+    whole, lengths = file.read_bytes(), set()
+    for size in range(0, len(whole), 97):
+        file.write_bytes(whole[:size])
+        table = read_table(file, Row, whole=False)
+        check(table, content[: len(table)])
+        lengths.add(len(table))
+        with pytest.raises(UsageError, match=r"things\.arrows: cut off after \d+ rows"):
+            read_table(file, Row, whole=True)
+    assert lengths == {0, 7, 14, 21}
+
+
+def test_checksums_cut_off_at_any_byte_lose_the_last_batches_only(tmp_path):
+    content = rows(21)
+    file = written(tmp_path, content)
+    checksums = file.with_name(CHECKSUMS)
+    whole = checksums.read_bytes()
+    for size in range(len(whole)):
+        checksums.write_bytes(whole[:size])
+        table = read_table(file, Row, whole=False)
+        check(table, content[: 7 * min(3, whole[:size].count(b"\n"))])
+
+
+def test_a_damaged_table_is_refused_with_the_rows(tmp_path):
+    file = written(tmp_path, rows(21))
+    whole = file.read_bytes()
+    for k in range(0, len(whole), 61):
+        file.write_bytes(whole[:k] + bytes([whole[k] ^ 0x5A]) + whole[k + 1 :])
+        with pytest.raises(UsageError, match=r"things\.arrows: damaged in rows \d+ to \d+"):
+            read_table(file, Row, whole=bool(k % 2))
+
+
+def test_an_unknown_column_is_an_error_with_a_suggestion(tmp_path):
+    table = read_table(written(tmp_path, rows(3)), Row, whole=True)
+    with pytest.raises(UsageError, match=r"unknown column 'angel'.*angle"):
+        table["angel"]
+
+
+@pytest.mark.parametrize("name", TABLES)
+def test_every_column_has_a_description_and_every_quantity_a_unit(name):
+    for column in columns_of(TABLES[name]):
+        assert column.description
+        if str(column.type) == "double":
+            assert column.unit, column.name
+
+
+@pytest.mark.parametrize("name", TABLES)
+def test_a_table_without_rows_has_all_columns(name, tmp_path):
+    table = read_table(tmp_path / f"{name}.arrows", TABLES[name], whole=True)
+    assert len(table) == 0
+    assert [*table] == [column.name for column in columns_of(TABLES[name])]
+    for column in table:
+        assert len(table[column]) == 0
