@@ -1,7 +1,7 @@
 """Files of tables: Arrow IPC streams, one compressed batch per second.
 
 The file `CHECKSUMS` has a line for each batch: table, rows and bytes of its file up to the end of
-the batch, and the CRC-32 of the bytes of the batch. Arrow does not check what it reads, and a
+the batch, and the CRC-32 of the bytes of the batch. Arrow does not check its input, and a
 damaged file may crash it: only bytes that match their checksum are passed to Arrow. A file that is
 cut off at any byte loses its last batch only.
 """

@@ -11,6 +11,11 @@ from hsr8.robots.roles import Roles
 Array = NDArray[np.float64]
 
 CORNERS = np.array([[x, y, z] for x in (-1, 1) for y in (-1, 1) for z in (-1, 1)], float)
+ROUND = (
+    mujoco.mjtGeom.mjGEOM_SPHERE,
+    mujoco.mjtGeom.mjGEOM_CAPSULE,
+    mujoco.mjtGeom.mjGEOM_ELLIPSOID,
+)
 SWING = 0.12  # room for the motion of an arm, per distance from the shoulder [1]
 
 
@@ -55,7 +60,9 @@ def _spheres(model: mujoco.MjModel, data: mujoco.MjData, geom: int) -> list[tupl
     rotation, half = data.geom_xmat[geom].reshape(3, 3), model.geom_aabb[geom, 3:]
     centre = data.geom_xpos[geom] + rotation @ model.geom_aabb[geom, :3]
     longest = int(np.argmax(half))
-    radius = float(np.delete(half, longest).max())
+    across = np.delete(half, longest)
+    round_ = model.geom_type[geom] in ROUND
+    radius = float(across.max() if round_ else np.hypot(*across))
     reach = rotation[:, longest] * max(0.0, float(half[longest]) - radius)
     return [(centre - reach, radius), (centre + reach, radius)]
 
