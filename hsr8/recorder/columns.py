@@ -184,6 +184,8 @@ def _array(values: list[Any], column: Column, type_: pa.DataType) -> pa.Array:
             _offsets(present), _flat(np.concatenate(present), column.type), mask=missing
         )
     if not column.varying:
+        if not type_.list_size:  # such as the obstacles of a world without any
+            return pa.array([[]] * len(values), type_)
         return pa.FixedSizeListArray.from_arrays(
             _flat(np.reshape(values, -1), column.type), type_.list_size
         )

@@ -1,6 +1,6 @@
 """Tables of a run: rows out are rows in, at any cut a readable rest, damage located."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 import pytest
@@ -149,6 +149,11 @@ def test_a_damaged_table_is_refused_with_the_rows(tmp_path):
         file.write_bytes(whole[:k] + bytes([whole[k] ^ 0x5A]) + whole[k + 1 :])
         with pytest.raises(UsageError, match=r"things\.arrows: damaged in rows \d+ to \d+"):
             read_table(file, Row, whole=bool(k % 2))
+
+
+def test_a_column_may_have_no_elements(tmp_path):
+    content = [replace(row, angle=np.empty(0)) for row in rows(9)]
+    check(read_table(written(tmp_path, content), Row, whole=True), content)
 
 
 def test_an_unknown_column_is_an_error_with_a_suggestion(tmp_path):
