@@ -187,14 +187,14 @@ def _array(values: list[Any], column: Column, type_: pa.DataType) -> pa.Array:
         if not type_.list_size:  # such as the obstacles of a world without any
             return pa.array([[]] * len(values), type_)
         return pa.FixedSizeListArray.from_arrays(
-            _flat(np.reshape(values, -1), column.type), type_.list_size
+            _flat(_ravel(values), column.type), type_.list_size
         )
     offsets = _offsets(values)
     elements = [element for value in values for element in value]
     if column.items is not None:
         return pa.ListArray.from_arrays(offsets, _structs(elements, column))
     if isinstance(type_.value_type, pa.FixedSizeListType):
-        flat = _flat(np.reshape(elements, -1), column.type)
+        flat = _flat(_ravel(elements), column.type)
         inner = pa.FixedSizeListArray.from_arrays(flat, type_.value_type.list_size)
         return pa.ListArray.from_arrays(offsets, inner)
     return pa.ListArray.from_arrays(offsets, pa.array(elements, column.type))
@@ -210,6 +210,13 @@ def _structs(items: list[Any], column: Column) -> pa.StructArray:
         for part, field in zip(columns, types, strict=True)
     ]
     return pa.StructArray.from_arrays(arrays, fields=types)
+
+
+def _ravel(values: Sequence[Any]) -> np.ndarray:
+    """Return all elements of arrays or tuples in one array."""
+    if values and isinstance(values[0], np.ndarray):
+        return np.concatenate(values, axis=None)
+    return np.reshape(values, -1)
 
 
 def _flat(values: np.ndarray, type_: pa.DataType) -> pa.Array:

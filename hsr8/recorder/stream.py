@@ -21,9 +21,7 @@ from hsr8.recorder.table import Table
 
 SUFFIX = ".arrows"
 CHECKSUMS = "checksums.txt"
-OPTIONS = pa.ipc.IpcWriteOptions(
-    compression=pa.Codec("zstd", compression_level=1), use_threads=False
-)
+OPTIONS = pa.ipc.IpcWriteOptions(compression="lz4", use_threads=False)  # zstd: 7 % less, 6x as slow
 
 
 class TableWriter:
@@ -67,7 +65,7 @@ class TableWriter:
             batch = batch_of(rows, self._schema)
             self._writer.write_batch(batch)
         self.count += len(rows)
-        self._check()
+        self._end_part()
         return Table(self._name, pa.Table.from_batches([batch]))
 
     def close(self) -> None:
@@ -77,43 +75,48 @@ class TableWriter:
         try:
             with writing(self._folder):
                 self._writer.close()
-            self._check()
+            self._end_part()
         finally:
             self._file.close()
 
-    def _check(self) -> None:
-        """Write the checksum of the bytes since the last one."""
+    def _end_part(self) -> None:
+        """Write the bytes since the last call and their checksum."""
         assert self._file is not None
-        size, checksum = self._file.checked()
+        with writing(self._folder):
+            size, checksum = self._file.end_part()
         line = f"{self._name} {self.count} {size} {checksum:08x}\n"
         self._checksums.write(line.encode())
         self._checksums.flush()
 
 
 class _CheckedFile(io.RawIOBase):
-    """File that computes the checksum of the bytes written."""
+    """File that is written with a checksum of each part.
+
+    Arrow writes many small pieces: they are joined.
+    """
 
     def __init__(self, path: Path) -> None:
         self._file = path.open("wb", buffering=0)
-        self._size = self._checksum = 0
+        self._pieces: list[bytes] = []
+        self._size = 0
 
     def writable(self) -> bool:
         return True
 
-    def write(self, content: Any) -> int:
-        self._file.write(content)
-        self._size += len(content)
-        self._checksum = zlib.crc32(content, self._checksum)
-        return len(content)
+    def write(self, piece: Any) -> int:
+        self._pieces.append(bytes(piece))
+        return len(piece)
 
     def close(self) -> None:
         self._file.close()
         super().close()
 
-    def checked(self) -> tuple[int, int]:
-        """Return the size of the file, and the checksum of the bytes since the last call."""
-        checksum, self._checksum = self._checksum, 0
-        return self._size, checksum
+    def end_part(self) -> tuple[int, int]:
+        """Write the pieces; return the size of the file and the checksum of the part."""
+        part, self._pieces = b"".join(self._pieces), []
+        self._file.write(part)
+        self._size += len(part)
+        return self._size, zlib.crc32(part)
 
 
 def read_table(path: Path, rows: type, *, whole: bool) -> Table:
