@@ -254,6 +254,17 @@ class Plot:
 
 
 @dataclass(frozen=True)
+class Export:
+    """Export a robot in the format of other tools. Existing files are not overwritten."""
+
+    urdf: File = None
+    """URDF file of the robot, with its meshes in a folder next to it."""
+    robot: Text = None
+    """Robot of --urdf: a shipped name or the file of a description; default: hsr8."""
+    json: Json = False
+
+
+@dataclass(frozen=True)
 class ColorTable:
     """Learn a color table for vision from labelled images.
 
@@ -338,5 +349,5 @@ class Robot:
 
 
 RobotAction = RobotList | RobotInspect | RobotCheck | RobotCalibrate
-OfRun = Verify | Info | Diff | Render | Replay | Plot
+OfRun = Verify | Info | Diff | Render | Replay | Plot | Export
 Command = Run | Sweep | Compare | List | Check | OfRun | Robot | ColorTable | Schema | Doctor

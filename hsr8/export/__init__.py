@@ -1,0 +1,1 @@
+"""Exports of runs and robots in the formats of other tools."""
