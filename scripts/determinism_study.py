@@ -18,9 +18,7 @@ from pathlib import Path
 
 from hsr8.evaluation.replay import replay
 from hsr8.evaluation.sweep.definition import Definition
-from hsr8.recorder.run import run_folder
 from hsr8.recorder.run.run_reader import Run, open_run
-from hsr8.recorder.run.tape import read_tape
 from hsr8.scenario.loader import dump, load_scenario
 from walking.parameters import CONTROL_PERIOD
 
@@ -78,8 +76,9 @@ CONDITIONS: dict[str, Callable[[Case, Path], Run]] = {
 
 
 def hashes(run: Run) -> list[tuple[int, str, str]]:
-    tape = read_tape(run.path / run_folder.TAPE, whole=True)
-    return [(block.tick, block.world, block.robot) for block in tape]
+    seconds = run.seconds
+    rows = zip(seconds["tick"], seconds["world"], seconds["robot"], strict=True)
+    return [(int(tick), world.hex(), robot.hex()) for tick, world, robot in rows]
 
 
 class Replays:

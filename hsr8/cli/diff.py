@@ -11,6 +11,7 @@ from hsr8.cli.options import Diff
 from hsr8.evaluation import run_difference
 from hsr8.evaluation.run_difference import RunDifference
 from hsr8.recorder.files import atomic
+from hsr8.recorder.rows import TABLES
 from hsr8.recorder.run.run_reader import Run, open_run
 
 DIFFERENT = 1
@@ -53,7 +54,7 @@ def _show(a: Run, b: Run, motion: list[RunDifference], about: list[RunDifference
         where = f"at tick {d.tick} ({d.time:.3f} s), {d.channel}: {values}"
         console.print(f"differ      {where}", markup=False)
     else:
-        console.print(f"equal       bit for bit ({', '.join(run_difference.RECORDS)})")
+        console.print(f"equal       bit for bit ({', '.join(TABLES)})")
     if not (motion or about):
         return
     table = Table("record", escape("first at [s]"))

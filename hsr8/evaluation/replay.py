@@ -2,19 +2,36 @@
 
 import hashlib
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
+from itertools import islice
+from operator import attrgetter
+from typing import Any
+
+import numpy as np
+import pyarrow as pa
 
 from hsr8.body_builder import build_body, build_model
+from hsr8.decisions import DecisionContext
 from hsr8.errors import SimulationDiverged
-from hsr8.recorder.fingerprints import CHANNELS, DECISIONS, decision_fingerprints, fingerprints
-from hsr8.recorder.run.measurements import Measurement
+from hsr8.evaluation.run_difference import PRINTS, first_cell, first_print
+from hsr8.frame_record import FrameRecord
+from hsr8.loop import HASH
+from hsr8.recorder.columns import batch_of
+from hsr8.recorder.fingerprints import CHANNELS
+from hsr8.recorder.recorded import FrameRows
+from hsr8.recorder.rows import TABLES, FrameRow
 from hsr8.recorder.run.run_reader import Run
-from hsr8.recorder.run.tape import HASH, Block
+from hsr8.recorder.table import Table
 from hsr8.robot_builder import build_decisions, build_estimator, build_schedule
 from hsr8.seeds import named_rng
 from hsr8.world.field.generator import draw_layout
+from navigation.observation import CameraView, Frame, Observation
+from vision.detection import Detection
 from walking.parameters import CONTROL_PERIOD
 from walking.targets import JointTargets
+
+_observed = attrgetter(*(field.name for field in fields(Observation)))
+CHUNK = 200  # frames computed between two comparisons
 
 
 @dataclass(frozen=True, slots=True)
@@ -44,79 +61,150 @@ class Replayed:
 
 
 def replay(run: Run) -> tuple[Replayed, ...]:
-    """Compute all stages of a run again from its records.
+    """Compute all stages of a run again from its tables.
 
     Raises:
-        UsageError: a record is missing or damaged, or the scenario cannot be read.
+        UsageError: a table is damaged or cut off, or the scenario cannot be read.
     """
-    if run.ended:
-        for read in (run.trajectory, run.walking, run.frame_summaries, run.event_lines):
-            read()  # refuses a record that is cut off
-    tape, measurements = run.tape(), run.measurements()
-    return replay_physics(run, tape), *replay_decisions(run, measurements)
+    for name in TABLES:
+        getattr(run, name)  # refuses a damaged table
+    return replay_physics(run), *replay_decisions(run)
 
 
-def replay_physics(run: Run, tape: list[Block]) -> Replayed:
+def replay_physics(run: Run) -> Replayed:
     """Apply the recorded setpoints in the same world and compare the hash every second."""
     scenario = run.scenario()
     layout = draw_layout(scenario, run.seed)
     body = build_body(scenario, run.seed, layout, build_model(scenario, layout))
+    setpoints = run.ticks["setpoint"]
+    if len(setpoints) and np.isnan(setpoints[-1]).all():
+        setpoints = setpoints[:-1]  # those of the last tick are not sent
+    due = run.seconds["tick"].tolist()
+    diverged = run.manifest.get("exit_reason") == "diverged"
+    if diverged and due:
+        due[-1] += 1  # the hash follows the tick that diverged, which is not counted
     ticks = 0
-    for block in tape:
-        world = hashlib.blake2b(body.state_bytes(), digest_size=HASH).hexdigest()
-        if world != block.world or block.tick != ticks:
-            return Replayed(
-                "physics", "ticks", ticks, block.tick, block.tick * CONTROL_PERIOD, "world"
-            )
-        try:
-            for setpoints in block.setpoints:
-                body.apply(JointTargets(setpoints, setpoints))
-                ticks += 1
-        except SimulationDiverged:
-            time = ticks * CONTROL_PERIOD
-            return Replayed("physics", "ticks", ticks, ticks, time, "the physics diverged")
+
+    def different(tick: int, channel: str) -> Replayed:
+        return Replayed("physics", "ticks", ticks, tick, tick * CONTROL_PERIOD, channel)
+
+    for tick, world in zip([*due, len(setpoints)], [*run.seconds["world"], None], strict=True):
+        if tick > len(setpoints) and not run.ended:
+            continue
+        for setpoint in setpoints[ticks:tick]:
+            try:
+                body.apply(JointTargets(setpoint, setpoint))
+            except SimulationDiverged:
+                if not diverged or ticks + 1 < len(setpoints):
+                    return different(ticks, "the physics diverged")
+            ticks += 1
+        digest = hashlib.blake2b(body.state_bytes(), digest_size=HASH).digest()
+        if tick != ticks or world not in (None, digest):
+            return different(tick, "world")
     return Replayed("physics", "ticks", ticks)
 
 
-def replay_decisions(run: Run, measurements: list[Measurement]) -> tuple[Replayed, Replayed]:
-    """Give estimator and decisions the recorded inputs and compare the fingerprints."""
-    count = len(measurements)
-    estimator, decisions = Replayed("estimator", "frames", count), None
-    for stage, index, channel in _differences(run, measurements):
-        time = measurements[index].frame.time
-        different = Replayed(stage, "frames", count, index, time, channel)
-        if stage == "estimator":
-            estimator = different
-            break
-        decisions = decisions or different
-    return estimator, decisions or Replayed("decisions", "frames", count)
+def replay_decisions(run: Run) -> tuple[Replayed, Replayed]:
+    """Give estimator and decisions the recorded inputs and compare all columns of the frames.
+
+    The decisions are compared up to the first difference of the estimator.
+    """
+    different, count = _first_difference(run), len(run.frames)
+    estimator, decisions = (
+        different
+        if different is not None and different.stage == stage
+        else Replayed(stage, "frames", count)
+        for stage in ("estimator", "decisions")
+    )
+    return estimator, decisions
 
 
-def _differences(run: Run, measurements: list[Measurement]) -> Iterator[tuple[str, int, str]]:
-    """Yield stage, frame and channel of every difference; stop at one of the estimator."""
+def _first_difference(run: Run) -> Replayed | None:
+    frames, computed = run.frames, _computed(run)
+    for first in range(0, len(frames), CHUNK):
+        recorded = frames.rows(first, first + CHUNK)
+        rows = list(islice(computed, len(recorded)))
+        row, stage, channel = len(rows), "estimator", "order"
+        if rows:
+            batch = batch_of(rows, frames.arrow.schema)
+            cell = first_cell(recorded, Table("frames", pa.Table.from_batches([batch])))
+            if cell is not None:
+                prints = rows[cell.row].fingerprints, recorded["fingerprints"][cell.row]
+                k = first_print(*prints)
+                row, channel = cell.row, cell.channel if k is None else PRINTS[k]
+                stage = "decisions" if k is None or k >= len(CHANNELS) else "estimator"
+        if row < len(recorded):
+            time = float(recorded["time"][row])
+            return Replayed(stage, "frames", len(frames), first + row, time, channel)
+    return None
+
+
+def _computed(run: Run) -> Iterator[FrameRow]:
+    """Yield the rows of the frames that follow from the inputs, up to one out of order."""
     scenario = run.scenario()
     layout = draw_layout(scenario, run.seed)
     estimator = build_estimator(scenario, layout, named_rng(run.seed, "belief"))
     schedule = build_schedule(scenario, named_rng(run.seed, "command"))
     decisions = build_decisions(scenario, layout, run.seed, schedule)
-    for index, recorded in enumerate(measurements):
+    frame_rows = FrameRows(layout.scale)
+    inputs = zip(_inputs(run.frames), run.frames["first_plan"], strict=True)
+    for index, ((detections, measured, context), first_plan) in enumerate(inputs):
         try:
-            estimate = estimator.update(recorded.frame)
+            estimate = estimator.update(measured)
         except ValueError:  # the frames are not in order
-            yield "estimator", index, "order"
             return
-        for channel, a, b in zip(
-            CHANNELS, fingerprints(estimate), recorded.fingerprints, strict=True
-        ):
-            if a != b:
-                yield "estimator", index, channel
-                return
-        if recorded.fresh:
+        if first_plan:
             decisions.forget()
-        decided = decisions.make(estimate, recorded.frame, recorded.context)
-        for channel, a, b in zip(
-            DECISIONS, decision_fingerprints(decided), recorded.decision, strict=True
-        ):
-            if a != b:
-                yield "decisions", index, channel
-                break
+        decision = decisions.make(estimate, measured, context)
+        yield frame_rows.row(
+            FrameRecord(
+                index=index,
+                time=context.time,
+                image=None,
+                detections=detections,
+                measured=measured,
+                estimate=estimate,
+                context=context,
+                decision=decision,
+            )
+        )
+
+
+def _inputs(frames: Table) -> Iterator[tuple[tuple[Detection, ...], Frame, DecisionContext]]:
+    """Yield the inputs of estimator and decisions of every frame."""
+    found = frames["detections"]
+    columns = [_values(found[field.name]) for field in fields(Detection)]
+    detections = (Detection(*values) for values in zip(*columns, strict=True))
+    for row, count in enumerate(found.counts.tolist()):
+        seen = tuple(islice(detections, count))
+        capture = _view(frames, row, "capture", "capture_head")
+        now = _view(frames, row, "camera", "head")
+        measured = Frame(
+            time=float(frames["captured"][row]),
+            odometry=frames["capture_odometry"][row],
+            motion_covariance=frames["motion_covariance"][row],
+            view=capture,
+            observations=tuple(Observation(*_observed(detection)) for detection in seen),
+        )
+        step_count = int(frames["step_count"][row])
+        odometry = frames["odometry"][row]
+        yield seen, measured, DecisionContext(float(frames["time"][row]), odometry, now, step_count)
+
+
+def _view(frames: Table, row: int, camera: str, head: str) -> CameraView:
+    pan, tilt = frames[head][row].tolist()
+    horizontal_fov, vertical_fov = frames["fov"][row].tolist()
+    return CameraView(
+        rotation=frames[f"{camera}_rotation"][row],
+        position=frames[f"{camera}_position"][row],
+        pan=pan,
+        tilt=tilt,
+        horizontal_fov=horizontal_fov,
+        vertical_fov=vertical_fov,
+        yaw_sigma=float(frames["yaw_sigma"][row]),
+    )
+
+
+def _values(column: Any) -> list[Any]:
+    """Return the values of the rows of a column: Python objects, and arrays."""
+    return list(column) if column.ndim > 1 else column.tolist()

@@ -1,35 +1,31 @@
-"""Differences between two runs: the first tick, channel and values of every record."""
+"""Differences between two runs: the first row, column and values of every table."""
 
 import tomllib
-from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import asdict, dataclass
-from itertools import zip_longest
+from collections.abc import Collection, Iterator, Mapping, Sequence
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from hsr8.errors import UsageError
-from hsr8.recorder.fingerprints import CHANNELS, DECISIONS
-from hsr8.recorder.run.measurements import Measurement
+from hsr8.recorder.fingerprints import CHANNELS, DECISIONS, FINGERPRINT
+from hsr8.recorder.rows import TABLES
 from hsr8.recorder.run.run_reader import Run
-from hsr8.recorder.run.tape import Block
-from hsr8.robots.loaded import LoadedRobot, load_robot
+from hsr8.recorder.table import Items, Table
 from walking.parameters import CONTROL_PERIOD
 
-Array = NDArray[np.float64]
-
-RECORDS = ("tape", "trajectory", "measurements", "walking", "frames", "events")
 CLOCKED = ("wall_time_s", "real_time_factor", "walk_tick_")  # results of the wall clock
-ROOT = ("x", "y", "z", "qw", "qx", "qy", "qz")
+CLOCKED_COLUMNS = ("walking_time",)
+PRINTS = (*CHANNELS, *DECISIONS)
 
 
 @dataclass(frozen=True, slots=True)
 class RunDifference:
-    """The first difference in one record of two runs.
+    """The first difference in one table of two runs.
 
     Attributes:
-        record: file, or ``settings`` and ``results``.
+        record: table, or ``settings`` and ``results``.
         channel: quantity that differs.
         a, b: the two values; None if a run lacks the value.
         tick: control tick, None without a time.
@@ -42,6 +38,22 @@ class RunDifference:
     b: Any
     tick: int | None = None
     time: float | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class Cell:
+    """The first difference of two tables.
+
+    Attributes:
+        row: of the tables.
+        channel: column and element, with unit.
+        a, b: the two values.
+    """
+
+    row: int
+    channel: str
+    a: Any
+    b: Any
 
 
 def settings(a: Run, b: Run) -> Iterator[RunDifference]:
@@ -58,166 +70,114 @@ def results(a: Run, b: Run) -> Iterator[RunDifference]:
 
 
 def motion(a: Run, b: Run) -> list[RunDifference]:
-    """Return the first difference of every record, the earliest first.
+    """Return the first difference of every table, the earliest first.
+
+    Recorded images are compared only if both runs have the same log level.
 
     Raises:
-        UsageError: a record is missing, damaged or, in a run that ended, cut off.
+        UsageError: a table is damaged or, in a run that ended, cut off.
     """
-    tapes = a.tape(), b.tape()
-    inputs = ([(m.frame.time, _values(m)) for m in run.measurements()] for run in (a, b))
-    summaries = ([(frame.time, asdict(frame)) for frame in run.frame_summaries()] for run in (a, b))
-    differences = (
-        _first_set_point(a, *tapes),
-        _first_hash(*tapes),
-        _first_row(a, b),
-        _first_frame("measurements", *inputs),
-        _first_walking(a, b),
-        _first_frame("frames", *summaries),
-        _first_event(a, b),
-    )
-    present = [difference for difference in differences if difference is not None]
-    return sorted(present, key=lambda difference: difference.tick or 0)
+    same_log = a.manifest.get("log") == b.manifest.get("log")
+    differences = [
+        difference
+        for name in TABLES
+        if (name != "images" or same_log)
+        and (difference := _first(name, getattr(a, name), getattr(b, name)))
+    ]
+    return sorted(differences, key=lambda difference: difference.tick or 0)
 
 
-def _first_set_point(run: Run, a: list[Block], b: list[Block]) -> RunDifference | None:
-    joints = [{block.setpoints.shape[1] for block in tape} or {0} for tape in (a, b)]
-    if joints[0] != joints[1]:
-        x, y = (max(n) for n in joints)
-        return RunDifference("tape", "number of joints", x, y, 0, 0.0)
-    none = np.empty((0, max(joints[0])))
-    rows = [np.concatenate([none, *(block.setpoints for block in tape)]) for tape in (a, b)]
-    n = min(map(len, rows))
-    differ = rows[0][:n].view(np.int64) != rows[1][:n].view(np.int64)
-    ticks = np.flatnonzero(differ.any(axis=1))
-    if len(ticks):
-        tick = int(ticks[0])
-        joint = int(np.argmax(differ[tick]))
-        x, y = (float(table[tick, joint]) for table in rows)
-        channel = f"setpoint of {_robot(run).model.names[joint]} [rad]"
-        return RunDifference("tape", channel, x, y, tick, tick * CONTROL_PERIOD)
-    if len(rows[0]) != len(rows[1]):
-        x, y = map(len, rows)
-        return RunDifference("tape", "number of ticks", x, y, n, n * CONTROL_PERIOD)
+def first_cell(a: Table, b: Table, ignored: Collection[str] = ()) -> Cell | None:
+    """Return the first difference in the rows and columns that two tables share.
+
+    Floating-point numbers are compared bit for bit; NaN equals NaN.
+    """
+    names = [name for name in a if name in b and name not in ignored]
+    cells = [cell for name in names if (cell := _first_of_column(a, b, name)) is not None]
+    return min(cells, key=lambda cell: cell.row, default=None)
+
+
+def first_print(x: bytes, y: bytes) -> int | None:
+    """Return the index in `PRINTS` of the first fingerprint of a frame that differs."""
+    return next((k for k in range(len(PRINTS)) if _print(x, k) != _print(y, k)), None)
+
+
+def _first(name: str, a: Table, b: Table) -> RunDifference | None:
+    cell, longer = first_cell(a, b, CLOCKED_COLUMNS), max(a, b, key=len)
+    if cell is None:
+        if len(a) == len(b):
+            return None
+        cell = Cell(min(len(a), len(b)), "number of rows", len(a), len(b))
+    time = float(longer["time"][cell.row])
+    tick = int(longer["tick"][cell.row]) if "tick" in longer else round(time / CONTROL_PERIOD)
+    return RunDifference(name, cell.channel, cell.a, cell.b, tick, time)
+
+
+def _first_of_column(a: Table, b: Table, name: str) -> Cell | None:
+    x, y, rows = a[name], b[name], min(len(a), len(b))
+    if isinstance(x, Items) and isinstance(y, Items):
+        row = _first_row(x.counts, y.counts, rows)
+        cell = first_cell(x, y)
+        if cell is not None and (row is None or x.parents[cell.row] < row):
+            parent = int(x.parents[cell.row])
+            number = cell.row - int(x.counts[:parent].sum())
+            return Cell(parent, f"{name}[{number}].{cell.channel}", cell.a, cell.b)
+        if row is None:
+            return None
+        return Cell(row, f"number of {name}", int(x.counts[row]), int(y.counts[row]))
+    row = _first_row(x, y, rows)
+    return None if row is None else _cell(a, name, row, x[row], y[row])
+
+
+def _first_row(x: Any, y: Any, rows: int) -> int | None:
+    """Return the first of the rows of two columns that differs."""
+    if isinstance(x, np.ndarray) and x.shape[1:] == y.shape[1:]:
+        differ = np.argwhere(_differ(x[:rows], y[:rows]))
+        return int(differ[0, 0]) if len(differ) else None
+    for row in range(rows):
+        p, q = np.asarray(x[row]), np.asarray(y[row])
+        if p.shape != q.shape or _differ(p, q).any():
+            return row
     return None
 
 
-def _first_hash(a: list[Block], b: list[Block]) -> RunDifference | None:
-    for x, y in zip(a, b, strict=False):
-        for channel in ("world", "robot"):
-            if x.tick == y.tick and getattr(x, channel) != getattr(y, channel):
-                values = getattr(x, channel), getattr(y, channel)
-                name = f"hash of {'the world' if channel == 'world' else 'world and belief'}"
-                return RunDifference("tape", name, *values, x.tick, x.tick * CONTROL_PERIOD)
-    return _longer(
-        "tape", "hashes", *([block.tick * CONTROL_PERIOD for block in tape] for tape in (a, b))
-    )
+def _differ(x: NDArray[Any], y: NDArray[Any]) -> NDArray[np.bool_]:
+    """Return which elements differ, in any bit; NaN equals NaN."""
+    if x.dtype.kind != "f" or y.dtype != x.dtype:
+        return np.asarray(x != y)
+    bits = f"i{x.dtype.itemsize}"
+    p, q = np.ascontiguousarray(x).view(bits), np.ascontiguousarray(y).view(bits)
+    return np.asarray((p != q) & ~(np.isnan(x) & np.isnan(y)))
 
 
-def _first_row(a: Run, b: Run) -> RunDifference | None:
-    p, q = a.trajectory(), b.trajectory()
-    if p.qpos.shape[1] != q.qpos.shape[1] or p.movers.shape[1] != q.movers.shape[1]:
-        shapes = [f"{t.qpos.shape[1]} coordinates, {t.movers.shape[1]} movers" for t in (p, q)]
-        return RunDifference("trajectory", "columns", shapes[0], shapes[1], 0, 0.0)
-    names = ["time [s]", *_qpos_names(_robot(a), p.qpos.shape[1])]
-    names += [f"mover {k // 2} {'xy'[k % 2]} [m]" for k in range(2 * p.movers.shape[1])]
-    tables = [np.hstack([t.time[:, None], t.qpos, t.movers.reshape(len(t), -1)]) for t in (p, q)]
-    return _first_value("trajectory", names, *tables)
+def _cell(table: Table, name: str, row: int, x: Any, y: Any) -> Cell:
+    """Return the first element that differs in the values of one row."""
+    p, q = np.asarray(x), np.asarray(y)
+    if p.shape != q.shape:
+        sizes = [None if v is None else list(np.shape(v)) for v in (x, y)]
+        return Cell(row, f"shape of {name}", *sizes)
+    if name == "fingerprints":
+        k = first_print(x, y) or 0
+        return Cell(row, f"fingerprint of the {PRINTS[k]}", _print(x, k), _print(y, k))
+    unit = f" [{table.unit(name)}]" if table.unit(name) else ""
+    if not p.shape:
+        return Cell(row, f"{name}{unit}", _plain(x), _plain(y))
+    index = np.unravel_index(int(np.argmax(_differ(p, q))), p.shape)
+    names = table.names(name)
+    element = f"[{', '.join(map(str, index))}]"
+    if len(names) == len(p):
+        element = f" of {names[index[0]]}"
+    return Cell(row, f"{name}{element}{unit}", _plain(p[index]), _plain(q[index]))
 
 
-def _first_walking(a: Run, b: Run) -> RunDifference | None:
-    walks = a.walking(), b.walking()
-    tables = [np.column_stack([t.time, *t.columns.values()]) for t in walks]
-    return _first_value("walking", ["time [s]", *walks[0].columns], *tables)
+def _print(value: bytes, k: int) -> str:
+    return value[FINGERPRINT * k : FINGERPRINT * (k + 1)].hex()
 
 
-def _first_value(record: str, names: Sequence[str], a: Array, b: Array) -> RunDifference | None:
-    """Compare two tables (n, columns) with the time in the first column."""
-    n = min(len(a), len(b))
-    bits = [np.ascontiguousarray(table[:n]).view(np.int64) for table in (a, b)]
-    differ = bits[0] != bits[1]
-    rows = np.flatnonzero(differ.any(axis=1))
-    if not len(rows):
-        return _longer(record, "rows", a[:, 0].tolist(), b[:, 0].tolist())
-    row = int(rows[0])
-    column = int(np.argmax(differ[row]))
-    x, y, time = float(a[row, column]), float(b[row, column]), float(a[row, 0])
-    return RunDifference(record, names[column], x, y, round(time / CONTROL_PERIOD), time)
-
-
-def _longer(record: str, unit: str, a: Sequence[float], b: Sequence[float]) -> RunDifference | None:
-    """Compare the lengths of two otherwise equal records, given their times [s]."""
-    if len(a) == len(b):
-        return None
-    time = max(a, b, key=len)[min(len(a), len(b))]
-    tick = round(time / CONTROL_PERIOD)
-    return RunDifference(record, f"number of {unit}", len(a), len(b), tick, time)
-
-
-def _first_frame(
-    record: str, a: list[tuple[float, dict[str, Any]]], b: list[tuple[float, dict[str, Any]]]
-) -> RunDifference | None:
-    """Compare two records of frames, each with its time [s] and values by channel."""
-    for index, ((time, x), (_, y)) in enumerate(zip(a, b, strict=False)):
-        for channel, u, v in _unequal(x, y):
-            name = f"{channel}, frame {index}"
-            return RunDifference(record, name, u, v, round(time / CONTROL_PERIOD), time)
-    return _longer(record, "frames", *([time for time, _ in frames] for frames in (a, b)))
-
-
-def _first_event(a: Run, b: Run) -> RunDifference | None:
-    for index, (x, y) in enumerate(zip_longest(a.event_lines(), b.event_lines(), fillvalue=None)):
-        for channel, u, v in _unequal(x or {}, y or {}):
-            if channel == "time" and None in (x, y):
-                continue  # the text names the missing event
-            time = min(float(event["time"]) for event in (x, y) if event is not None)
-            name = f"{channel} of event {index}"
-            return RunDifference("events", name, u, v, round(time / CONTROL_PERIOD), time)
-    return None
-
-
-def _values(measurement: Measurement) -> dict[str, Any]:
-    """Return all values of a frame by name, in the order of their computation."""
-    frame = measurement.frame
-    values: dict[str, Any] = {"time [s]": frame.time}
-    for name, array in (
-        ("odometry [m, m, rad]", frame.odometry),
-        ("covariance of the odometry", frame.motion_covariance),
-        ("position of the camera [m]", frame.view.position),
-        ("attitude of the camera", frame.view.rotation),
-    ):
-        values |= {f"{name} {k}": value for k, value in enumerate(array.ravel().tolist())}
-    values["number of observations"] = len(frame.observations)
-    for k, observation in enumerate(frame.observations):
-        name = f"observation {k}"
-        values |= {f"{name}: kind": observation.kind, f"{name}: label": observation.label}
-        values |= {
-            f"{name}: distance [m]": observation.distance,
-            f"{name}: bearing [rad]": observation.bearing,
-        }
-        values[f"{name}: covariance"] = observation.covariance.tolist()
-    for kind, names, prints in (
-        ("belief", CHANNELS, measurement.fingerprints),
-        ("decision", DECISIONS, measurement.decision),
-    ):
-        values |= {f"{kind}: {n}": p.hex() for n, p in zip(names, prints, strict=True)}
-    return values
-
-
-def _robot(run: Run) -> LoadedRobot:
-    return load_robot(run.scenario().robot.model)
-
-
-def _qpos_names(robot: LoadedRobot, count: int) -> list[str]:
-    """Return the name of every coordinate of a robot in MuJoCo's order."""
-    model = robot.spec.copy().compile()
-    names = [f"qpos[{k}]" for k in range(count)]
-    for k in range(model.njnt):
-        joint = model.joint(k)
-        address = int(joint.qposadr[0])
-        for offset, part in enumerate(ROOT if joint.type[0] == 0 else ("angle [rad]",)):
-            if address + offset < count:
-                names[address + offset] = f"{joint.name} {part}"
-    return names
+def _plain(value: Any) -> Any:
+    if isinstance(value, bytes):
+        return value[:16].hex()
+    return value.item() if isinstance(value, np.generic) else value
 
 
 def _scenario(run: Run) -> Mapping[str, Any]:

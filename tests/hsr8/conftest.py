@@ -1,14 +1,17 @@
 """Fixtures that stand in for the loop: a small world and records of any moment in it."""
 
+import zlib
 from math import cos, sin
 from types import SimpleNamespace
 
 import numpy as np
+import pyarrow as pa
 import pytest
 
 from hsr8.decisions import Decision, DecisionContext
 from hsr8.frame_record import FrameRecord
 from hsr8.record import TickRecord
+from hsr8.recorder.stream import CHECKSUMS
 from hsr8.robots.loaded import load_robot
 from hsr8.walk_counters import WalkCounters
 from hsr8.world.field.layout import Beacon, Layout, Obstacle
@@ -240,3 +243,28 @@ def walk(fake):
             yield fake.record(time, pose, frame=frame, **change)
 
     return records
+
+
+@pytest.fixture(scope="session")
+def rewrite():
+    """Change one value of a table of a run; the checksum is that of the new file."""
+
+    def changed(run, table, column, row, change):
+        path = run / f"{table}.arrows"
+        with pa.ipc.open_stream(path.read_bytes()) as reader:
+            arrow = reader.read_all()
+        values = arrow.column(column).to_pylist()
+        values[row] = change(values[row])
+        field = arrow.schema.field(column)
+        place = arrow.schema.get_field_index(column)
+        arrow = arrow.set_column(place, field, pa.array(values, field.type))
+        with pa.ipc.new_stream(path, arrow.schema) as writer:
+            writer.write_table(arrow)
+        content = path.read_bytes()
+        line = f"{table} {len(arrow)} {len(content)} {zlib.crc32(content):08x}\n"
+        checksums = run / CHECKSUMS
+        others = checksums.read_text().splitlines(keepends=True)
+        others = [other for other in others if not other.startswith(f"{table} ")]
+        checksums.write_text("".join([*others, line]))
+
+    return changed

@@ -1,12 +1,11 @@
 import json
 import re
 import shutil
-import struct
-import zlib
 
 import pytest
 
 from hsr8.cli.main import entry
+from hsr8.recorder.rows import TABLES
 from hsr8.recorder.run.run_reader import open_run
 
 RUN = ["run", "quick", "--body", "kinematic", "--camera", "analytic", "--duration", "2"]
@@ -39,12 +38,12 @@ def test_the_first_difference_is_where_the_setting_acts(recorded, capsys):
     code, result = diff(capsys, *recorded)
     assert code == 1
     first = result["first"]
-    assert (first["record"], first["channel"], first["tick"]) == ("events", "kind of event 0", 200)
-    assert (first["a"], first["b"]) == (None, "fault")
-    first = next(d for d in result["differences"] if d["record"] == "measurements")
+    assert (first["record"], first["channel"], first["tick"]) == ("events", "number of rows", 200)
+    assert (first["a"], first["b"]) == (0, 2)
+    first = next(d for d in result["differences"] if d["record"] == "frames")
     assert 1.0 <= first["time"] < 1.1
     assert first["tick"] == round(first["time"] / 0.005)
-    assert "number of observations" in first["channel"]
+    assert first["channel"] == "number of detections"
     assert first["a"] > first["b"] == 0
     keys = {d["channel"] for d in result["differences"] if d["record"] == "settings"}
     assert keys == {f"fault.0.{key}" for key in ("kind", "start", "duration")}
@@ -56,19 +55,52 @@ def test_the_order_of_the_runs_only_swaps_the_values(recorded, capsys):
     assert (one["first"]["a"], one["first"]["b"]) == (other["first"]["b"], other["first"]["a"])
 
 
-def test_one_changed_bit_of_a_setpoint_is_found_with_tick_and_joint(recorded, tmp_path, capsys):
+@pytest.mark.parametrize(
+    ("table", "column", "row", "change", "channel"),
+    [
+        ("ticks", "setpoint", 77, lambda v: [*v[:3], v[3] + 1e-15, *v[4:]], "setpoint of joint"),
+        ("ticks", "down", 77, lambda v: not v, "down"),
+        ("records", "odometry_covariance", 9, lambda v: [*v[:5], 1.0, *v[6:]], "[1, 2] [m, rad]"),
+        ("records", "phase", 9, lambda _: "flying", "phase"),
+        ("records", "support", 9, lambda v: [[v[0][0], -0.5], *v[1:]], "support[0, 1] [m]"),
+        ("records", "support", 9, lambda v: v[1:], "shape of support"),
+        ("records", "footsteps", 9, lambda v: v[:-1], "number of footsteps"),
+        ("frames", "tracks", 20, lambda v: [v[0] | {"age": -1.0}, *v[1:]], "tracks[0].age [s]"),
+        ("frames", "fingerprints", 20, lambda v: b"?" + v[1:], "fingerprint of the pose"),
+        ("frames", "look_request", 20, lambda _: 1.0, "look_request [rad]"),
+        ("frames", "local_map", 17, lambda v: [v[0] ^ 1, *v[1:]], "local_map[0, 0]"),
+        ("seconds", "robot", 1, lambda v: b"?" + v[1:], "robot"),
+    ],
+)
+def test_one_changed_value_is_found(
+    recorded, rewrite, tmp_path, capsys, table, column, row, change, channel
+):
     copy = shutil.copytree(recorded[0], tmp_path / "copy")
-    file = copy / "tape.bin"
-    content = bytearray(file.read_bytes())
-    (length, _) = struct.unpack_from("<II", content, 8)
-    content[16 + 40 + 8 * (26 * 77 + 3)] ^= 1
-    struct.pack_into("<II", content, 8, length, zlib.crc32(content[16 : 16 + length]))
-    file.write_bytes(content)
+    rewrite(copy, table, column, row, change)
     code, result = diff(capsys, recorded[0], copy)
     assert code == 1
-    assert result["first"]["tick"] == 77
-    assert re.fullmatch(r"setpoint of [lr]_\w+ \[rad\]", result["first"]["channel"])
-    assert result["first"]["a"] != result["first"]["b"]
+    (first,) = (d for d in result["differences"] if d["record"] != "results")
+    time = float(getattr(open_run(copy), table)["time"][row])
+    assert (first["record"], first["tick"], first["time"]) == (table, round(time / 0.005), time)
+    joint = open_run(copy).ticks.names("setpoint")[3]
+    assert channel.replace("joint", joint) in first["channel"]
+    assert first["a"] != first["b"]
+
+
+def test_the_wall_clock_is_not_compared(recorded, rewrite, tmp_path, capsys):
+    copy = shutil.copytree(recorded[0], tmp_path / "copy")
+    rewrite(copy, "ticks", "walking_time", 5, lambda _: 1.0)
+    assert diff(capsys, recorded[0], copy)[0] == 0
+
+
+def test_a_signed_zero_differs_and_nan_does_not(recorded, rewrite, tmp_path, capsys):
+    runs = [shutil.copytree(recorded[0], tmp_path / name) for name in ("a", "b")]
+    for run in runs:
+        rewrite(run, "records", "cop", 5, lambda _: [float("nan"), float("nan")])
+    assert diff(capsys, *runs)[0] == 0
+    for run, zero in zip(runs, (0.0, -0.0), strict=True):
+        rewrite(run, "records", "cop", 6, lambda _, zero=zero: [zero, 1.0])
+    assert diff(capsys, *runs)[1]["first"]["channel"] == "cop[0] [m]"
 
 
 def test_the_first_difference_is_printed_in_one_line(recorded, capsys):
@@ -86,57 +118,31 @@ def _killed(run, to):
     return copy
 
 
-@pytest.mark.parametrize(
-    ("name", "record", "channel"),
-    [
-        ("trajectory.bin", "trajectory", "number of rows"),
-        ("walking.bin", "walking", "number of rows"),
-        ("frames.jsonl", "frames", "number of frames"),
-        ("measurements.bin", "measurements", "number of frames"),
-    ],
-)
-def test_a_shorter_record_differs(recorded, tmp_path, capsys, name, record, channel):
+@pytest.mark.parametrize("name", ["ticks", "records", "frames"])
+def test_a_shorter_table_differs(recorded, tmp_path, capsys, name):
     copy = _killed(recorded[0], tmp_path / "copy")
-    content = (copy / name).read_bytes()
-    (copy / name).write_bytes(content[: len(content) // 2])
+    file = copy / f"{name}.arrows"
+    content = file.read_bytes()
+    file.write_bytes(content[: len(content) * 2 // 3])
     code, result = diff(capsys, recorded[0], copy)
     assert code == 1
-    (first,) = [d for d in result["differences"] if d["record"] in (record, "tape")]
-    assert (first["record"], first["channel"]) == (record, channel)
+    (first,) = (d for d in result["differences"] if d["record"] != "results")
+    assert (first["record"], first["channel"]) == (name, "number of rows")
     assert first["a"] > first["b"] > 0
-    assert first["time"] == pytest.approx(1.0, abs=0.2)
+    assert first["time"] == pytest.approx(1.0, abs=0.1)
 
 
-@pytest.mark.parametrize("name", ["trajectory.bin", "walking.bin", "frames.jsonl", "tape.bin"])
-def test_a_cut_record_of_an_ended_run_is_refused(recorded, tmp_path, capsys, name):
-    copy = shutil.copytree(recorded[0], tmp_path / "copy")
-    content = (copy / name).read_bytes()
-    (copy / name).write_bytes(content[: len(content) // 2])
+@pytest.mark.parametrize("name", sorted(TABLES.keys() - {"images"}))
+def test_a_cut_or_missing_table_of_an_ended_run_is_refused(recorded, tmp_path, capsys, name):
+    copy = shutil.copytree(recorded[1], tmp_path / "copy")
+    file = copy / f"{name}.arrows"
+    content = file.read_bytes()
+    file.write_bytes(content[: len(content) // 2])
+    for command in (["diff", str(recorded[0]), str(copy)], ["verify", str(copy)]):
+        assert entry(command) == 2
+        message = capsys.readouterr().err
+        assert f"{name}.arrows: cut off" in message
+        assert message.count("\n") == 1
+    file.unlink()
     assert entry(["diff", str(recorded[0]), str(copy)]) == 2
-    assert f"{name}" in (message := capsys.readouterr().err)
-    assert "cut off" in message
-    assert entry(["verify", str(copy)]) == 2
-    assert "cut off" in capsys.readouterr().err
-
-
-@pytest.mark.parametrize("name", ["frames.jsonl", "events.jsonl"])
-def test_a_damaged_line_is_a_usage_error(recorded, tmp_path, capsys, name):
-    copy = shutil.copytree(recorded[0], tmp_path / "copy")
-    (copy / name).write_text("garbage\n")
-    assert entry(["diff", str(recorded[0]), str(copy)]) == 2
-    assert f"{name}:1: the line is damaged" in capsys.readouterr().err
-
-
-def test_values_of_walking_and_events_are_compared(recorded, tmp_path, capsys):
-    copy = shutil.copytree(recorded[0], tmp_path / "copy")
-    content = bytearray((copy / "walking.bin").read_bytes())
-    content[-1] ^= 1
-    (copy / "walking.bin").write_bytes(content)
-    with (copy / "events.jsonl").open("a") as events:
-        events.write('{"time": 1.5, "kind": "collision", "text": "made up"}\n')
-    code, result = diff(capsys, recorded[0], copy)
-    assert code == 1
-    first = {d["record"]: d for d in result["differences"]}
-    assert first.keys() == {"walking", "events"}
-    assert first["walking"]["channel"].startswith("torque_")
-    assert (first["events"]["channel"], first["events"]["tick"]) == ("kind of event 0", 300)
+    assert f"{name}.arrows: cut off, it holds 0 of " in capsys.readouterr().err

@@ -1,7 +1,5 @@
 import json
 import shutil
-import struct
-import zlib
 
 import pytest
 
@@ -25,32 +23,13 @@ def run(recorded, tmp_path):
     return shutil.copytree(recorded, tmp_path / "run")
 
 
-def payloads(content):
-    """Offset and payload of every frame of a file of measurements."""
-    offset = 8
-    while offset < len(content):
-        length, _ = struct.unpack_from("<II", content, offset)
-        yield offset, content[offset + 8 : offset + 8 + length]
-        offset += 8 + length
-
-
-def rewrite(run, index, change):
-    """Change a frame's payload and make its checksum right again."""
-    file = run / "measurements.bin"
-    content = bytearray(file.read_bytes())
-    offset, payload = list(payloads(content))[index]
-    payload = bytes(change(bytearray(payload)))
-    struct.pack_into("<II", content, offset, len(payload), zlib.crc32(payload))
-    content[offset + 8 : offset + 8 + len(payload)] = payload
-    file.write_bytes(content)
-
-
-def flipped(index):
-    def change(payload):
-        payload[index] ^= 1
-        return payload
-
-    return change
+def flipped(value):
+    """Return a value, or nested values with the first one, slightly changed."""
+    if isinstance(value, list):
+        return [flipped(value[0]), *value[1:]]
+    if isinstance(value, bytes):
+        return bytes([value[0] ^ 1]) + value[1:]
+    return value + 1e-9 if isinstance(value, float) else value + 1
 
 
 def stages(capsys):
@@ -70,50 +49,68 @@ def test_a_run_is_recomputed_bit_for_bit(run, capsys):
     }
 
 
-@pytest.mark.parametrize(("byte", "channel"), [(-40, "pose"), (-24, "tracks"), (-16, "local map")])
-def test_the_first_frame_and_channel_that_differ_are_named(run, capsys, byte, channel):
-    rewrite(run, 20, flipped(byte))
+@pytest.mark.parametrize(
+    ("byte", "channel"),
+    [(0, "pose"), (20, "tracks"), (24, "local map"), (40, "belief at the decision"), (71, "gaze")],
+)
+def test_the_first_frame_and_fingerprint_that_differ_are_named(run, rewrite, capsys, byte, channel):
+    rewrite(run, "frames", "fingerprints", 20, lambda p: p[:byte] + b"?" + p[byte + 1 :])
     assert entry(["verify", str(run)]) == 1
-    assert f": {channel} of frame 20 (1.200 s)" in capsys.readouterr().out
-
-
-def test_a_changed_measurement_is_found(run, capsys):
-    rewrite(run, 7, flipped(8 + 4))  # x of the odometry, in its tenth digit
-    assert entry(["verify", str(run), "--json"]) == 1
-    first = stages(capsys)["estimator"]
-    assert (first["index"], first["channel"]) == (7, "pose")
+    assert f": {channel} of frame 20 (1.260 s)" in capsys.readouterr().out
 
 
 @pytest.mark.parametrize(
-    ("byte", "channel"),
-    [(-72, "belief at the decision"), (-64, "task"), (-56, "motion"), (-48, "gaze")],
+    ("column", "stage"),
+    [
+        ("capture_odometry", "estimator"),
+        ("motion_covariance", "estimator"),
+        ("pose", "decisions"),
+        ("velocity", "decisions"),
+        ("index", "decisions"),
+        ("psi", "decisions"),
+    ],
 )
-def test_the_decision_that_differs_is_named(run, capsys, byte, channel):
-    rewrite(run, 11, flipped(byte))
+def test_a_changed_value_is_found(run, rewrite, capsys, column, stage):
+    rewrite(run, "frames", column, 7, flipped)
     assert entry(["verify", str(run), "--json"]) == 1
     result = stages(capsys)
-    assert (result["decisions"]["index"], result["decisions"]["channel"]) == (11, channel)
+    assert result[stage]["index"] == 7
+    assert not result[stage]["equal"]
     assert result["physics"]["equal"]
-    assert result["estimator"]["equal"]
 
 
-def test_a_changed_step_count_changes_the_decisions(run, capsys):
-    step_count = -(4 + 5) * 8 - 9
-    rewrite(run, 12, flipped(step_count))
+@pytest.mark.parametrize("key", ["distance", "bearing", "covariance", "radius_sigma", "by_radius"])
+def test_a_changed_detection_is_found(run, rewrite, capsys, key):
+    def change(detections):
+        return [detections[0] | {key: flipped(detections[0][key])}, *detections[1:]]
+
+    rewrite(run, "frames", "detections", 2, change)
+    assert entry(["verify", str(run), "--json"]) == 1
+    assert stages(capsys)["estimator"]["index"] in (2, 3)
+
+
+def test_a_changed_step_count_changes_the_decisions(run, rewrite, capsys):
+    rewrite(run, "frames", "step_count", 12, flipped)
     assert entry(["verify", str(run), "--json"]) == 1
     assert stages(capsys)["decisions"]["index"] >= 12
 
 
-def test_a_changed_setpoint_changes_the_world(run, capsys):
-    file = run / "tape.bin"
-    content = bytearray(file.read_bytes())
-    (length, _) = struct.unpack_from("<II", content, 8)
-    content[16 + 40 + 8 * 26 * 199 + 6] ^= 1  # of one joint, in the last tick of a second
-    struct.pack_into("<II", content, 8, length, zlib.crc32(content[16 : 16 + length]))
-    file.write_bytes(content)
+def test_frames_in_another_order_are_found(run, rewrite, capsys):
+    rewrite(run, "frames", "captured", 9, lambda time: time - 0.1)
+    assert entry(["verify", str(run), "--json"]) == 1
+    first = stages(capsys)["estimator"]
+    assert (first["index"], first["channel"]) == (9, "order")
+
+
+@pytest.mark.parametrize(
+    ("table", "column", "row", "tick"),
+    [("ticks", "setpoint", 199, 200), ("seconds", "world", 1, 200), ("seconds", "tick", 1, 201)],
+)
+def test_a_changed_setpoint_or_hash_is_found(run, rewrite, capsys, table, column, row, tick):
+    rewrite(run, table, column, row, flipped)
     assert entry(["verify", str(run), "--json"]) == 1
     first = stages(capsys)["physics"]
-    assert (first["index"], first["channel"]) == (200, "world")
+    assert (first["index"], first["channel"]) == (tick, "world")
 
 
 def test_a_changed_scenario_changes_the_belief(run, capsys):
@@ -123,27 +120,18 @@ def test_a_changed_scenario_changes_the_belief(run, capsys):
     assert "of frame 1" in capsys.readouterr().out
 
 
-def offset_of(content, index):
-    return list(payloads(content))[index][0]
-
-
 @pytest.mark.parametrize(
     ("name", "damage", "expected"),
     [
-        (
-            "measurements.bin",
-            lambda c: c[: (n := offset_of(c, 5) + 99)] + b"?" + c[n + 1 :],
-            "frame 5",
-        ),
-        ("measurements.bin", lambda c: c[: offset_of(c, 9) + 20], "cut off in frame 9"),
-        ("measurements.bin", lambda c: c[: offset_of(c, 9) + 3], "cut off in frame 9"),
-        ("measurements.bin", lambda c: c[:8], "cut off, it holds 0 of"),
-        ("measurements.bin", lambda c: b"something else", "not a file of measurements"),
-        ("measurements.bin", None, "cannot read the file of measurements"),
-        ("tape.bin", lambda c: c[:1000] + b"?" + c[1001:], "damaged in block 0"),
-        ("tape.bin", lambda c: c[:-1], "cut off in block"),
-        ("tape.bin", lambda c: b"HSR8TAP9" + c[8:], "tape of format 9, hsr8"),
-        ("tape.bin", None, "cannot read the tape"),
+        ("frames.arrows", lambda c: c[:9000] + b"?" + c[9001:], "damaged in rows 0 to "),
+        ("frames.arrows", lambda c: c[:-20], "cut off after "),
+        ("frames.arrows", None, "cut off, it holds 0 of 33 rows"),
+        ("ticks.arrows", lambda c: c[:-20], "cut off after 400 rows"),
+        ("ticks.arrows", lambda c: c[:2000], "cut off after 0 rows"),
+        ("seconds.arrows", lambda c: c[:-30] + b"?" + c[-29:], "damaged in rows "),
+        ("checksums.txt", lambda c: c[: len(c) // 2], "cut off, it holds "),
+        ("checksums.txt", lambda c: c.replace(b"ticks 2", b"ticks ?"), "damaged line"),
+        ("checksums.txt", None, "cannot read"),
     ],
 )
 def test_damaged_cut_and_missing_files_are_one_error(run, capsys, name, damage, expected):
@@ -159,16 +147,19 @@ def test_damaged_cut_and_missing_files_are_one_error(run, capsys, name, damage, 
     assert printed.out.splitlines() == [f"run         {run}"]
 
 
-def test_a_killed_run_is_checked_as_far_as_it_got(run, capsys):
-    file, manifest = run / "measurements.bin", run / "manifest.json"
-    content = file.read_bytes()
-    file.write_bytes(content[:-5])
+def test_a_killed_run_is_checked_up_to_its_last_batch(run, capsys):
+    manifest = run / "manifest.json"
     manifest.write_text(manifest.read_text().replace('"timeout"', '"running"'))
+    for name in ("frames", "ticks"):
+        file = run / f"{name}.arrows"
+        file.write_bytes(file.read_bytes()[:-1000])
     assert entry(["verify", str(run), "--json"]) == 0
-    assert stages(capsys)["estimator"]["count"] == 32
-    file.write_bytes(content[:8])
+    result = stages(capsys)
+    assert result["physics"]["count"] == 200 * (result["physics"]["count"] // 200) > 0
+    assert 0 < result["estimator"]["count"] < 33
+    (run / "frames.arrows").write_bytes(b"")
     assert entry(["verify", str(run), "--json"]) == 0
-    assert stages(capsys)["physics"]["count"] == 401
+    assert stages(capsys)["estimator"]["count"] == 0
 
 
 def test_a_robot_file_is_found_from_every_folder(tmp_path, monkeypatch, capsys):
