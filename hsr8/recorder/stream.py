@@ -70,7 +70,7 @@ class TableWriter:
 
     def close(self) -> None:
         """End the stream and close the file."""
-        if self._file is None or self._writer is None:
+        if self._file is None or self._writer is None or self._file.closed:
             return
         try:
             with writing(self._folder):
@@ -114,7 +114,13 @@ class _CheckedFile(io.RawIOBase):
     def end_part(self) -> tuple[int, int]:
         """Write the pieces; return the size of the file and the checksum of the part."""
         part, self._pieces = b"".join(self._pieces), []
-        self._file.write(part)
+        rest = part
+        try:
+            while rest:  # a disk that is nearly full takes some of the bytes
+                rest = rest[self._file.write(rest) :]
+        except OSError:
+            self.close()  # nothing follows a part that is cut off
+            raise
         self._size += len(part)
         return self._size, zlib.crc32(part)
 

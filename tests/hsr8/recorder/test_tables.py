@@ -1,12 +1,13 @@
 """Tables of a run: rows out are rows in, at any cut a readable rest, damage located."""
 
+import resource
 from dataclasses import dataclass, replace
 
 import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from hsr8.errors import UsageError
+from hsr8.errors import RecordingFailed, UsageError
 from hsr8.recorder.columns import columns_of
 from hsr8.recorder.files.writing import GrowingFile
 from hsr8.recorder.rows import TABLES
@@ -73,11 +74,15 @@ def rows(n, seed=0):
     ]
 
 
-def written(folder, content, size=7):
-    checksums = GrowingFile(folder / CHECKSUMS)
-    writer = TableWriter(folder, "things", {"joints": ("hip", "knee", "ankle")}, checksums)
+def write_all(writer, content, size=7):
     for start in range(0, len(content), size):
         writer.write(content[start : start + size])
+
+
+def written(folder, content):
+    checksums = GrowingFile(folder / CHECKSUMS)
+    writer = TableWriter(folder, "things", {"joints": ("hip", "knee", "ankle")}, checksums)
+    write_all(writer, content)
     writer.close()
     checksums.close()
     return folder / "things.arrows"
@@ -140,6 +145,23 @@ def test_checksums_cut_off_at_any_byte_lose_the_last_batches_only(tmp_path):
         checksums.write_bytes(whole[:size])
         table = read_table(file, Row, whole=False)
         check(table, content[: 7 * min(3, whole[:size].count(b"\n"))])
+
+
+@pytest.mark.parametrize("size", [100, 3000, 7001])
+def test_a_full_disk_is_one_error_and_the_whole_batches_stay(tmp_path, size):
+    content, lines = rows(70), GrowingFile(tmp_path / CHECKSUMS)
+    writer = TableWriter(tmp_path, "things", {}, lines)
+    limits = resource.getrlimit(resource.RLIMIT_FSIZE)
+    resource.setrlimit(resource.RLIMIT_FSIZE, (size, limits[1]))
+    try:
+        with pytest.raises(RecordingFailed, match="File too large"):
+            write_all(writer, content)
+    finally:
+        resource.setrlimit(resource.RLIMIT_FSIZE, limits)
+    writer.close()  # with room again
+    lines.close()
+    assert (tmp_path / "things.arrows").stat().st_size == size
+    check(read_table(tmp_path / "things.arrows", Row, whole=False), content[: writer.count - 7])
 
 
 def test_a_damaged_table_is_refused_with_the_rows(tmp_path):

@@ -1,6 +1,7 @@
 """A run folder that cannot be written: one error, and a readable rest."""
 
 import json
+import resource
 import shutil
 from pathlib import Path
 
@@ -9,20 +10,16 @@ import pytest
 from hsr8.cli.main import entry
 from hsr8.errors import RecordingFailed
 from hsr8.recorder.log import rerun_log
+from hsr8.recorder.recorder import Recorder
 from hsr8.recorder.run import run_folder
 from hsr8.recorder.run.manifest import Manifest
 from hsr8.recorder.run.run_folder import RunFolder
 from hsr8.recorder.run.run_reader import open_run
+from hsr8.recorder.stream import CHECKSUMS, SUFFIX
 
 FAST = ("--body", "kinematic", "--camera", "analytic", "--quiet")
-RECORDS = (
-    run_folder.TRAJECTORY,
-    run_folder.WALKING,
-    run_folder.MEASUREMENTS,
-    run_folder.TAPE,
-    run_folder.FRAMES,
-    run_folder.LOG,
-)
+TABLES = ("ticks", "records", "frames", "seconds")
+RECORDS = (*(f"{name}{SUFFIX}" for name in TABLES), CHECKSUMS, run_folder.LOG)
 
 
 def _run(out, *more):
@@ -83,16 +80,34 @@ def test_an_event_that_cannot_be_written_ends_the_run(tmp_path, full):
         folder.on_event(1.0, "fall", "it fell")
 
 
-def test_a_removed_folder_ends_the_run(tmp_path, walk):
-    path = RunFolder.create(tmp_path, "quick", 7)
-    folder = RunFolder(path, Manifest.now("quick", 7, ("hsr8",), "analytic"), "", movers=1)
-    first, *_, last = walk(2.0)
-    folder.on_record(first)
-    shutil.rmtree(path)
-    with pytest.raises(RecordingFailed, match="removed"):
-        folder.on_record(last)
-    with pytest.raises(RecordingFailed):
-        folder.close("goal")
+def test_a_removed_folder_ends_the_run(tmp_path, capfd, monkeypatch):
+    append = Recorder.append
+
+    def removing(recorder, tick):
+        if tick.number == 250:
+            shutil.rmtree(tmp_path)
+        append(recorder, tick)
+
+    monkeypatch.setattr(Recorder, "append", removing)
+    assert _run(tmp_path, "--no-log") == 3
+    (line,) = capfd.readouterr().err.splitlines()
+    assert line.startswith("hsr8: cannot write the run folder")
+
+
+def test_a_disk_that_is_full_after_a_second_leaves_a_readable_run(tmp_path, capfd):
+    assert _run(tmp_path / "whole", "--no-log") == 1
+    size = (open_run(tmp_path / "whole").path / f"ticks{SUFFIX}").stat().st_size
+    limits = resource.getrlimit(resource.RLIMIT_FSIZE)
+    resource.setrlimit(resource.RLIMIT_FSIZE, (size - 1000, limits[1]))
+    try:
+        assert _run(tmp_path / "full", "--no-log") == 3
+    finally:
+        resource.setrlimit(resource.RLIMIT_FSIZE, limits)
+    assert "cannot write the run folder" in capfd.readouterr().err
+    run = open_run(tmp_path / "full")
+    assert not run.ended
+    assert len(run.ticks) == 200
+    assert run.records["time"][-1] == pytest.approx(0.98)
 
 
 def test_a_read_only_disk_is_not_a_usage_error(tmp_path, capfd, monkeypatch):
