@@ -13,7 +13,6 @@ import pyarrow as pa
 from hsr8.body_builder import build_body, build_model
 from hsr8.decisions import DecisionContext
 from hsr8.errors import SimulationDiverged
-from hsr8.evaluation.run_difference import PRINTS, first_cell, first_print
 from hsr8.frame_record import FrameRecord
 from hsr8.loop import HASH
 from hsr8.recorder.columns import batch_of
@@ -22,6 +21,7 @@ from hsr8.recorder.recorded import FrameRows
 from hsr8.recorder.rows import TABLES, FrameRow
 from hsr8.recorder.run.run_reader import Run
 from hsr8.recorder.table import Table
+from hsr8.recorder.table_difference import PRINTS, first_cell, first_print
 from hsr8.robot_builder import build_decisions, build_estimator, build_schedule
 from hsr8.seeds import named_rng
 from hsr8.world.field.generator import draw_layout
@@ -172,11 +172,11 @@ def _computed(run: Run) -> Iterator[FrameRow]:
 
 def _inputs(frames: Table) -> Iterator[tuple[tuple[Detection, ...], Frame, DecisionContext]]:
     """Yield the inputs of estimator and decisions of every frame."""
-    found = frames["detections"]
-    columns = [_values(found[field.name]) for field in fields(Detection)]
+    items = frames["detections"]
+    columns = [_values(items[field.name]) for field in fields(Detection)]
     detections = (Detection(*values) for values in zip(*columns, strict=True))
-    for row, count in enumerate(found.counts.tolist()):
-        seen = tuple(islice(detections, count))
+    for row, count in enumerate(items.counts.tolist()):
+        detected = tuple(islice(detections, count))
         capture = _view(frames, row, "capture", "capture_head")
         now = _view(frames, row, "camera", "head")
         measured = Frame(
@@ -184,11 +184,15 @@ def _inputs(frames: Table) -> Iterator[tuple[tuple[Detection, ...], Frame, Decis
             odometry=frames["capture_odometry"][row],
             motion_covariance=frames["motion_covariance"][row],
             view=capture,
-            observations=tuple(Observation(*_observed(detection)) for detection in seen),
+            observations=tuple(Observation(*_observed(detection)) for detection in detected),
         )
-        step_count = int(frames["step_count"][row])
-        odometry = frames["odometry"][row]
-        yield seen, measured, DecisionContext(float(frames["time"][row]), odometry, now, step_count)
+        context = DecisionContext(
+            time=float(frames["time"][row]),
+            odometry=frames["odometry"][row],
+            view=now,
+            step_count=int(frames["step_count"][row]),
+        )
+        yield detected, measured, context
 
 
 def _view(frames: Table, row: int, camera: str, head: str) -> CameraView:

@@ -1,23 +1,19 @@
 """Differences between two runs: the first row, column and values of every table."""
 
 import tomllib
-from collections.abc import Collection, Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
-import numpy as np
-from numpy.typing import NDArray
-
 from hsr8.errors import UsageError
-from hsr8.recorder.fingerprints import CHANNELS, DECISIONS, FINGERPRINT
 from hsr8.recorder.rows import TABLES
 from hsr8.recorder.run.run_reader import Run
-from hsr8.recorder.table import Items, Table
+from hsr8.recorder.table import Table
+from hsr8.recorder.table_difference import Cell, first_cell
 from walking.parameters import CONTROL_PERIOD
 
 CLOCKED = ("wall_time_s", "real_time_factor", "walk_tick_")  # results of the wall clock
 CLOCKED_COLUMNS = ("walking_time",)
-PRINTS = (*CHANNELS, *DECISIONS)
 
 
 @dataclass(frozen=True, slots=True)
@@ -38,22 +34,6 @@ class RunDifference:
     b: Any
     tick: int | None = None
     time: float | None = None
-
-
-@dataclass(frozen=True, slots=True)
-class Cell:
-    """The first difference of two tables.
-
-    Attributes:
-        row: of the tables.
-        channel: column and element, with unit.
-        a, b: the two values.
-    """
-
-    row: int
-    channel: str
-    a: Any
-    b: Any
 
 
 def settings(a: Run, b: Run) -> Iterator[RunDifference]:
@@ -87,21 +67,6 @@ def motion(a: Run, b: Run) -> list[RunDifference]:
     return sorted(differences, key=lambda difference: difference.tick or 0)
 
 
-def first_cell(a: Table, b: Table, ignored: Collection[str] = ()) -> Cell | None:
-    """Return the first difference in the rows and columns that two tables share.
-
-    Floating-point numbers are compared bit for bit; NaN equals NaN.
-    """
-    names = [name for name in a if name in b and name not in ignored]
-    cells = [cell for name in names if (cell := _first_of_column(a, b, name)) is not None]
-    return min(cells, key=lambda cell: cell.row, default=None)
-
-
-def first_print(x: bytes, y: bytes) -> int | None:
-    """Return the index in `PRINTS` of the first fingerprint of a frame that differs."""
-    return next((k for k in range(len(PRINTS)) if _print(x, k) != _print(y, k)), None)
-
-
 def _first(name: str, a: Table, b: Table) -> RunDifference | None:
     cell, longer = first_cell(a, b, CLOCKED_COLUMNS), max(a, b, key=len)
     if cell is None:
@@ -111,73 +76,6 @@ def _first(name: str, a: Table, b: Table) -> RunDifference | None:
     time = float(longer["time"][cell.row])
     tick = int(longer["tick"][cell.row]) if "tick" in longer else round(time / CONTROL_PERIOD)
     return RunDifference(name, cell.channel, cell.a, cell.b, tick, time)
-
-
-def _first_of_column(a: Table, b: Table, name: str) -> Cell | None:
-    x, y, rows = a[name], b[name], min(len(a), len(b))
-    if isinstance(x, Items) and isinstance(y, Items):
-        row = _first_row(x.counts, y.counts, rows)
-        cell = first_cell(x, y)
-        if cell is not None and (row is None or x.parents[cell.row] < row):
-            parent = int(x.parents[cell.row])
-            number = cell.row - int(x.counts[:parent].sum())
-            return Cell(parent, f"{name}[{number}].{cell.channel}", cell.a, cell.b)
-        if row is None:
-            return None
-        return Cell(row, f"number of {name}", int(x.counts[row]), int(y.counts[row]))
-    row = _first_row(x, y, rows)
-    return None if row is None else _cell(a, name, row, x[row], y[row])
-
-
-def _first_row(x: Any, y: Any, rows: int) -> int | None:
-    """Return the first of the rows of two columns that differs."""
-    if isinstance(x, np.ndarray) and x.shape[1:] == y.shape[1:]:
-        differ = np.argwhere(_differ(x[:rows], y[:rows]))
-        return int(differ[0, 0]) if len(differ) else None
-    for row in range(rows):
-        p, q = np.asarray(x[row]), np.asarray(y[row])
-        if p.shape != q.shape or _differ(p, q).any():
-            return row
-    return None
-
-
-def _differ(x: NDArray[Any], y: NDArray[Any]) -> NDArray[np.bool_]:
-    """Return which elements differ, in any bit; NaN equals NaN."""
-    if x.dtype.kind != "f" or y.dtype != x.dtype:
-        return np.asarray(x != y)
-    bits = f"i{x.dtype.itemsize}"
-    p, q = np.ascontiguousarray(x).view(bits), np.ascontiguousarray(y).view(bits)
-    return np.asarray((p != q) & ~(np.isnan(x) & np.isnan(y)))
-
-
-def _cell(table: Table, name: str, row: int, x: Any, y: Any) -> Cell:
-    """Return the first element that differs in the values of one row."""
-    p, q = np.asarray(x), np.asarray(y)
-    if p.shape != q.shape:
-        sizes = [None if v is None else list(np.shape(v)) for v in (x, y)]
-        return Cell(row, f"shape of {name}", *sizes)
-    if name == "fingerprints":
-        k = first_print(x, y) or 0
-        return Cell(row, f"fingerprint of the {PRINTS[k]}", _print(x, k), _print(y, k))
-    unit = f" [{table.unit(name)}]" if table.unit(name) else ""
-    if not p.shape:
-        return Cell(row, f"{name}{unit}", _plain(x), _plain(y))
-    index = np.unravel_index(int(np.argmax(_differ(p, q))), p.shape)
-    names = table.names(name)
-    element = f"[{', '.join(map(str, index))}]"
-    if len(names) == len(p):
-        element = f" of {names[index[0]]}"
-    return Cell(row, f"{name}{element}{unit}", _plain(p[index]), _plain(q[index]))
-
-
-def _print(value: bytes, k: int) -> str:
-    return value[FINGERPRINT * k : FINGERPRINT * (k + 1)].hex()
-
-
-def _plain(value: Any) -> Any:
-    if isinstance(value, bytes):
-        return value[:16].hex()
-    return value.item() if isinstance(value, np.generic) else value
 
 
 def _scenario(run: Run) -> Mapping[str, Any]:
