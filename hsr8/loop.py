@@ -24,7 +24,6 @@ from hsr8.robot_builder import build_robot, head_camera
 from hsr8.robots.loaded import load_robot
 from hsr8.scenario.schema import Scenario
 from hsr8.seeds import named_rng
-from hsr8.walk_counters import WalkCounters
 from hsr8.world.body.sensor_faults import SensorFaults
 from hsr8.world.body.servo_faults import ServoFaults
 from hsr8.world.camera.analytic import AnalyticCamera
@@ -137,7 +136,6 @@ class Simulation:
         self._ticks = round(scenario.duration / CONTROL_PERIOD) + 1
         self._end: tuple[int, str] | None = None
         self._published: FrameRecord | None = None
-        self._counters = WalkCounters()
         self._not_sent = np.full(len(names), np.nan)
 
     def _build_robot(
@@ -270,8 +268,6 @@ class Simulation:
         walking_time = perf_counter() - started
         robot.perceive(sensed)
         walker, setpoint = robot.walking, self._not_sent
-        if not walker.down:
-            self._counters.add(walker, walking_time)
         record, events = self._record(number)
         reason = self._reason(number)
         if not reason:
@@ -313,7 +309,6 @@ class Simulation:
             time=self._body.time,
             truth=truth,
             walking=self._robot.walking_state(),
-            counters=self._counters,
             command=self._robot.command,
             head=self._robot.head,
             frame=frame,

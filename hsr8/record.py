@@ -6,7 +6,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from hsr8.frame_record import FrameRecord
-from hsr8.walk_counters import WalkCounters
 from hsr8.world.truth.saturation import Saturation
 from hsr8.world.truth.truth import Truth
 from walking.command import Command, HeadTarget
@@ -33,7 +32,6 @@ class TickRecord:
         time: simulated time [s].
         truth: state of the world.
         walking: state of the walking engine.
-        counters: counters of all ticks since the start; the object is updated further.
         command: commanded velocity or footsteps.
         head: commanded gaze.
         frame: camera frame that arrived since the last record, if any.
@@ -43,7 +41,6 @@ class TickRecord:
     time: float
     truth: Truth
     walking: WalkingState
-    counters: WalkCounters
     command: Command
     head: HeadTarget
     frame: FrameRecord | None

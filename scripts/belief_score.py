@@ -149,7 +149,20 @@ class Score:
     ) -> None:
         labels = [s.label for s in objects]
         tracks = [t for t in belief.tracks if t.particles is None]
-        by_owner = owners(tracks, labels, moment.positions)
+        by_owner = {
+            i: tracks[k]
+            for k, i in zip(
+                *owners(
+                    np.array([t.label for t in tracks], dtype=object),
+                    np.reshape([t.position for t in tracks], (-1, 2)),
+                    np.zeros(len(tracks), dtype=np.intp),
+                    labels,
+                    moment.positions[None],
+                    scale=1.0,
+                ),
+                strict=True,
+            )
+        }
         owned, taken = {t.id for t in by_owner.values()}, set(by_owner)
         for t in belief.tracks:
             if t.particles is not None:

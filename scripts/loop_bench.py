@@ -12,7 +12,6 @@ import hsr8  # noqa: F401  before MuJoCo: it chooses the OpenGL to draw with
 import tempfile
 from pathlib import Path
 
-from hsr8.evaluation.metrics import Metrics
 from hsr8.gl import require_gl
 from hsr8.loop import Simulation
 from hsr8.record import Listener, TickRecord
@@ -92,12 +91,10 @@ class Bench:
         with tempfile.TemporaryDirectory() as out, Stopwatch() as watch:
             path = RunFolder.create(Path(out), scenario.name, seed)
             manifest = Manifest.now(scenario.name, seed, ("bench",), require_gl())
-            mission = scenario.navigation.mission
             layout, humanoid, camera = simulation.layout, simulation.humanoid, scenario.camera
             simulation.listeners += [
                 floor,
                 RunFolder(path, manifest, dump(scenario), len(layout.movers)),
-                Metrics(layout, mission.r_via, mission.r_goal),
                 WalkingTableWriter(path / run_folder.WALKING, humanoid.model),
                 RerunLog(
                     path / run_folder.LOG,
@@ -171,7 +168,6 @@ class Bench:
             (type(parts["_planner"]), "plan", "planner"),
             (type(parts["_gaze"]), "choose", "gaze"),
             (RunFolder, "on_record", "run folder"),
-            (Metrics, "on_record", "metrics"),
             (WalkingTableWriter, "on_record", "walking table"),
             (RerunLog, "on_record", "Rerun log"),
             (Floor, "on_record", "floor: its own turn"),

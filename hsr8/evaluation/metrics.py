@@ -1,31 +1,33 @@
-"""Metrics of a run: a listener that compares the true motion with the belief.
+"""Metrics of a run: the true motion compared with the belief, computed from the tables of the run.
 
 ``success`` means: no collision, no fall, every via point passed and, with a goal, the goal reached,
 in a run that ended by ``goal`` or ``completed``. The criteria of a scenario are evaluated
 separately, see `hsr8.evaluation.verdict`.
 """
 
-import time as clock
-from collections.abc import Sequence
+from collections.abc import Mapping
+from dataclasses import dataclass
 from math import degrees, hypot, inf, isfinite, sqrt
 
 import numpy as np
 from numpy.typing import NDArray
 
-from hsr8.evaluation.track_metrics import TrackMetrics
-from hsr8.evaluation.walk_metrics import WalkMetrics
-from hsr8.frame_record import FrameRecord
-from hsr8.record import Listener, TickRecord
-from hsr8.recorder.record_buffer import RecordBuffer
+from hsr8.evaluation.sums import mean, root_mean, total
+from hsr8.evaluation.track_metrics import track_metrics
+from hsr8.evaluation.walk_metrics import walk_metrics
+from hsr8.recorder.table import Table
 from hsr8.world.field.layout import Layout
 from hsr8.world.truth.collision_counter import CollisionCounter
-from hsr8.world.truth.falls import Falls
-from hsr8.world.truth.truth import Truth
+from hsr8.world.truth.falls import RECOVERY_TIME, Falls
+from hsr8.world.truth.truth import Contact
 from navigation.angles import wrap
+from navigation.parameters.navigation import MissionParameters
 
 Array = NDArray[np.float64]
-Sample = tuple[FrameRecord, Truth]  # a camera frame with the truth of that time
+Truth = dict[str, Array]
 
+TABLES = ("ticks", "records", "frames", "seconds")
+"""Tables that the metrics need."""
 # Lengths and speeds are those in a world of scale 1.
 TOLERANCE = 0.10  # added to the radii of via points and goal for the true position [m]
 HEADING_TOLERANCE = 15.0  # of the true heading at the goal [deg]
@@ -35,227 +37,212 @@ STANDING_SPEED = 0.02  # maximum speed of a standing robot [m/s]
 SPEED_WINDOW = 1.0  # interval over which speed is measured, longer than a step [s]
 
 
-class Metrics(Listener):
-    """Listener that computes the results of a run.
+def metrics(
+    tables: Mapping[str, Table],
+    layout: Layout,
+    mission: MissionParameters,
+    *,
+    exit_reason: str,
+    state_hash: str,
+    wall_time: float,
+) -> dict[str, object]:
+    """Return all results of a run by name, with units at the end of the names.
+
+    Unmeasured results are None, for example the localization of a run without a camera frame.
 
     Args:
+        tables: `TABLES` of the run.
         layout: of the run's world.
-        r_via: distance at which a via point counts as passed [m].
-        r_goal: distance at which the goal counts as reached [m].
+        mission: distances at which via points and goal are reached.
+        exit_reason: of the run.
+        state_hash: of the last state.
+        wall_time: of the run [s].
+    """
+    records, frames = tables["records"], tables["frames"]
+    truth = truth_at(frames, records)
+    time = float(records["time"][-1]) if len(records) else 0.0
+    arrival = _arrival(frames, truth, layout, mission)
+    collisions = _collisions(records)
+    moving = sum(c.moving for c in collisions)
+    path, standing = _path(records, layout.scale)
+    falls, tilt = _falls(records)
+    clearance = float(np.min(records["clearance"], initial=inf))
+    has_goal = _has_goal(layout)
+    ended = arrival.goal_reached and exit_reason == "goal" if has_goal else exit_reason in ENDED
+    return {
+        "success": ended and not (falls or collisions or arrival.missed),
+        "collisions": len(collisions),
+        "falls": falls,
+        "via_points_total": len(layout.waypoints) - has_goal,
+        "via_points_passed": arrival.passed - arrival.missed,
+        "goal_reached": arrival.goal_reached,
+        "arrival_error_deg": _arrival_error(records, layout, arrival),
+        "time_to_goal_s": arrival.time,
+        "path_length_m": path,
+        "min_clearance_m": clearance if isfinite(clearance) else None,
+        **_localization(frames, truth),
+        "obstacle_speed_rmse_mps": _obstacle_speed(frames, truth, layout),
+        "sim_time_s": time,
+        "wall_time_s": wall_time,
+        "real_time_factor": time / wall_time if wall_time > 0.0 else None,
+        "state_hash": state_hash,
+        "exit_reason": exit_reason,
+        "collisions_moving": moving,
+        "collisions_static": len(collisions) - moving,
+        "collisions_at_fault": sum(c.closing for c in collisions),
+        "collisions_per_m": len(collisions) / path if path > 0.0 else None,
+        "via_points_missed": arrival.missed,
+        "max_tilt_deg": degrees(tilt),
+        "time_standing_s": standing,
+        **_gaze(frames, time),
+        "lost_fraction": int(np.count_nonzero(frames["lost"])) / len(frames)
+        if len(frames)
+        else None,
+        "filter_faults": int(frames["filter_faults"][-1]) if len(frames) else 0,
+        "camera_frames": len(frames),
+        **track_metrics(frames, truth, layout),
+        **walk_metrics(tables),
+    }
+
+
+ENDED = ("completed", "goal")
+
+
+@dataclass(slots=True)
+class _Arrival:
+    """Via points and goal that the robot believes reached, checked against the truth.
+
+    Attributes:
+        passed: via points passed according to the robot.
+        missed: of these, those that it did not come near.
+        time: when the robot believes that it is at the goal [s]; None if never.
+        goal_reached: whether this is true.
     """
 
-    def __init__(self, layout: Layout, r_via: float, r_goal: float) -> None:
-        self._layout = layout
-        self._points = np.asarray(layout.waypoints, float).reshape(-1, 2)
-        self._has_goal = len(self._points) > 0 and not layout.endless
-        self._r_via = r_via
-        self._r_goal = r_goal
-        self._started = clock.perf_counter()
-        self._wall: float | None = None
-        self._buffer = RecordBuffer()
-        self._collisions = CollisionCounter()
-        self._via = 0
-        self._via_missed = 0
-        self._finish_time: float | None = None
-        self._goal_near = False
-        self._goal_turned = False
-        self._last: Truth | None = None
-        self._tilt = 0.0
-        self._path = 0.0
-        self._standing = 0.0
-        self._anchor: tuple[float, float, float] | None = None
-        self._clearance = inf
-        self._falls = Falls()
-        self._frames = 0
-        self._position_squares = 0.0
-        self._heading_squares = 0.0
-        self._nees = 0.0
-        self._speed_squares = 0.0
-        self._speeds = 0
-        self._lost = 0
-        self._faults = 0
-        self._gaze: tuple[float, float] | None = None
-        self._saccades = 0
-        self._head: tuple[float, float] | None = None
-        self._head_travel = 0.0
-        self._walk = WalkMetrics()
-        self._tracks = TrackMetrics(layout.obstacles, layout.scale)
+    passed: int = 0
+    missed: int = 0
+    time: float | None = None
+    goal_reached: bool = False
 
-    def on_record(self, record: TickRecord) -> None:
-        """Take one record."""
-        if self._buffer.add(record):
-            self._evaluate_buffer()
 
-    def close(self, exit_reason: str) -> None:
-        """Stop the clock."""
-        self._wall = clock.perf_counter() - self._started
+def _has_goal(layout: Layout) -> bool:
+    return len(layout.waypoints) > 0 and not layout.endless
 
-    def result(self, exit_reason: str, state_hash: str) -> dict[str, object]:
-        """Return all results by name, with units at the end of the names.
 
-        Unmeasured results are None, for example the localization of a run without a camera frame.
-        """
-        self._evaluate_buffer()
-        time = self._last.time if self._last is not None else 0.0
-        wall = self._wall if self._wall is not None else clock.perf_counter() - self._started
-        collisions = self._collisions.collisions
-        moving = sum(c.moving for c in collisions)
-        error = self._arrival_error()
-        goal_reached = self._finish_time is not None and self._goal_near and self._goal_turned
-        n = self._frames
-        return {
-            "success": self._success(exit_reason, goal_reached),
-            "collisions": len(collisions),
-            "falls": self._falls.count,
-            "via_points_total": self._via_total(),
-            "via_points_passed": self._via - self._via_missed,
-            "goal_reached": goal_reached,
-            "arrival_error_deg": error,
-            "time_to_goal_s": self._finish_time,
-            "path_length_m": self._path,
-            "min_clearance_m": self._clearance if isfinite(self._clearance) else None,
-            "localization_rmse_m": sqrt(self._position_squares / n) if n else None,
-            "heading_rmse_deg": degrees(sqrt(self._heading_squares / n)) if n else None,
-            "nees_mean": self._nees / n if n else None,
-            "obstacle_speed_rmse_mps": (
-                sqrt(self._speed_squares / self._speeds) if self._speeds else None
-            ),
-            "sim_time_s": time,
-            "wall_time_s": wall,
-            "real_time_factor": time / wall if wall > 0.0 else None,
-            "state_hash": state_hash,
-            "exit_reason": exit_reason,
-            "collisions_moving": moving,
-            "collisions_static": len(collisions) - moving,
-            "collisions_at_fault": sum(c.closing for c in collisions),
-            "collisions_per_m": len(collisions) / self._path if self._path > 0.0 else None,
-            "via_points_missed": self._via_missed,
-            "max_tilt_deg": degrees(self._tilt),
-            "time_standing_s": self._standing,
-            "saccades_per_s": self._saccades / time if time > 0.0 else None,
-            "head_travel_radps": self._head_travel / time if time > 0.0 else None,
-            "lost_fraction": self._lost / n if n else None,
-            "filter_faults": self._faults,
-            "camera_frames": n,
-            **self._tracks.result(),
-            **self._walk.result(),
-        }
+def truth_at(frames: Table, records: Table) -> Truth:
+    """Return the columns of the true motion in the record of each frame."""
+    rows = np.searchsorted(records["time"], frames["time"] - 1e-9)
+    columns = ("time", "robot", "obstacle_positions", "obstacle_velocities")
+    return {name: records[name][rows] for name in columns}
 
-    def _evaluate_buffer(self) -> None:
-        records = self._buffer.take()
-        for record in records:
-            self._add(record)
-        samples = [(record.frame, record.truth) for record in records if record.frame is not None]
-        if samples:
-            self._add_poses(samples)
-            self._add_speeds(samples)
-        for frame, truth in samples:
-            self._add_frame(frame, truth)
 
-    def _add(self, record: TickRecord) -> None:
-        truth = record.truth
-        self._move(truth)
-        self._walk.add(record)
-        self._collisions.add(truth.time, truth.contacts)
-        self._clearance = min(self._clearance, truth.clearance)
-        self._falls.add(truth.time, fallen=truth.fallen)
-        if not self._falls.lasting(truth.time):
-            self._tilt = max(self._tilt, hypot(record.walking.roll, record.walking.pitch))
-        self._last = truth
+def _arrival(frames: Table, truth: Truth, layout: Layout, mission: MissionParameters) -> _Arrival:
+    arrival = _Arrival()
+    points = np.reshape(layout.waypoints, (-1, 2)).tolist()
+    if not points:
+        return arrival
+    tolerance = TOLERANCE * layout.scale
+    columns = (frames["via_points"], frames["done"], frames["time"], truth["robot"])
+    for via_points, done, time, (x, y, heading) in zip(
+        *map(np.ndarray.tolist, columns), strict=True
+    ):
+        while arrival.passed < via_points:
+            px, py = points[arrival.passed % len(points)]
+            arrival.missed += hypot(px - x, py - y) > mission.r_via + tolerance
+            arrival.passed += 1
+        if done and arrival.time is None and _has_goal(layout):
+            px, py = points[-1]
+            wanted = heading if layout.goal_heading is None else layout.goal_heading
+            arrival.time = time
+            arrival.goal_reached = (
+                hypot(px - x, py - y) <= mission.r_goal + tolerance
+                and degrees(abs(wrap(heading - wanted))) <= HEADING_TOLERANCE
+            )
+    return arrival
 
-    def _via_total(self) -> int:
-        """Return the number of via points of the mission, or of one round of a tour."""
-        return len(self._points) - (1 if self._has_goal else 0)
 
-    def _success(self, exit_reason: str, goal_reached: bool) -> bool:
-        if self._falls.count or self._collisions.collisions or self._via_missed:
-            return False
-        if self._has_goal:
-            return goal_reached and exit_reason == "goal"
-        return exit_reason in ("completed", "goal")
+def _arrival_error(records: Table, layout: Layout, arrival: _Arrival) -> float | None:
+    """Return the true heading error at the end [deg]; None if the mission was not finished."""
+    if arrival.time is None or layout.goal_heading is None:
+        return None
+    return degrees(abs(wrap(float(records["robot"][-1, 2]) - layout.goal_heading)))
 
-    def _arrival_error(self) -> float | None:
-        """Return the true heading error at the end [deg]; None if the mission was not finished."""
-        if self._finish_time is None or self._layout.goal_heading is None or self._last is None:
-            return None
-        return degrees(abs(wrap(float(self._last.robot[2]) - self._layout.goal_heading)))
 
-    def _move(self, truth: Truth) -> None:
-        """Update path length and standing time, with a window that averages the sway."""
-        x, y, _ = truth.robot.tolist()
-        if self._anchor is None:
-            self._anchor = (truth.time, x, y)
-            return
-        then, x0, y0 = self._anchor
-        if truth.time - then < SPEED_WINDOW - 1e-9:
-            return
-        moved = hypot(x - x0, y - y0)
-        self._path += moved
-        if moved < STANDING_SPEED * self._layout.scale * (truth.time - then):
-            self._standing += truth.time - then
-        self._anchor = (truth.time, x, y)
+def _collisions(records: Table) -> list[Contact]:
+    """Return the first contact of each collision."""
+    counter, table = CollisionCounter(), records["contacts"]
+    columns = (table[name].tolist() for name in Contact.__dataclass_fields__)
+    contacts = [Contact(*values) for values in zip(*columns, strict=True)]
+    ends = np.cumsum(table.counts)
+    for row in np.flatnonzero(table.counts).tolist():
+        touching = contacts[ends[row] - table.counts[row] : ends[row]]
+        counter.add(float(records["time"][row]), tuple(touching))
+    return counter.collisions
 
-    def _add_poses(self, samples: Sequence[Sample]) -> None:
-        """Compare believed and true poses."""
-        errors = np.array([frame.belief.pose - truth.robot for frame, truth in samples])
-        errors[:, 2] = [wrap(turn) for turn in errors[:, 2].tolist()]
-        covariances = np.array([frame.belief.pose_covariance for frame, _ in samples])
-        whitened = np.linalg.solve(covariances, errors[..., None])[..., 0]
-        for error, white in zip(errors, whitened, strict=True):
-            dx, dy, turn = error.tolist()
-            self._position_squares += dx * dx + dy * dy
-            self._heading_squares += turn**2
-            self._nees += float(error @ white) / 3.0
 
-    def _add_frame(self, frame: FrameRecord, truth: Truth) -> None:
-        belief = frame.belief
-        self._frames += 1
-        self._lost += belief.lost
-        self._faults = belief.filter_faults
-        self._tracks.add(frame, truth)
-        gaze = (frame.gaze.pan, frame.gaze.tilt)
-        if self._gaze is not None:
-            pan, tilt = self._gaze
-            self._saccades += hypot(gaze[0] - pan, gaze[1] - tilt) > SACCADE
-        self._gaze = gaze
-        head = (frame.measured.view.pan, frame.measured.view.tilt)
-        if self._head is not None:
-            self._head_travel += hypot(head[0] - self._head[0], head[1] - self._head[1])
-        self._head = head
-        self._follow_mission(frame, truth)
+def _falls(records: Table) -> tuple[int, float]:
+    """Return the number of falls and the maximum tilt between them [rad]."""
+    falls, time, fallen = Falls(), records["time"], records["fallen"]
+    for begin in time[fallen].tolist():
+        falls.add(begin, fallen=True)
+    since = time - np.maximum.accumulate(np.where(fallen, time, -inf))
+    upright = since >= RECOVERY_TIME
+    roll, pitch = records["roll"][upright].tolist(), records["pitch"][upright].tolist()
+    return falls.count, max(map(hypot, roll, pitch), default=0.0)
 
-    def _add_speeds(self, samples: Sequence[Sample]) -> None:
-        """Compare the velocity of every track with that of the nearest obstacle."""
-        tracks = [track for frame, _ in samples for track in frame.belief.tracks]
-        if not tracks or not self._layout.obstacles:
-            return
-        counts = [len(frame.belief.tracks) for frame, _ in samples]
-        rows = np.repeat(np.arange(len(samples)), counts)
-        obstacles = np.array([truth.obstacle_positions for _, truth in samples])
-        offset = obstacles[rows] - np.array([track.position for track in tracks])[:, None]
-        distance = np.hypot(offset[..., 0], offset[..., 1])
-        nearest = distance.argmin(axis=1)
-        matched = distance.min(axis=1) <= MAX_MATCH_DISTANCE * self._layout.scale
-        true = np.array([truth.obstacle_velocities for _, truth in samples])[rows, nearest]
-        wrong = (np.array([track.velocity for track in tracks]) - true)[matched]
-        ends = np.bincount(rows[matched], minlength=len(samples)).cumsum()
-        for squares in np.split(wrong * wrong, ends[:-1]):
-            self._speed_squares += float(np.sum(squares))
-        self._speeds += len(wrong)
 
-    def _follow_mission(self, frame: FrameRecord, truth: Truth) -> None:
-        """Check the points that the mission believes passed or reached against the truth."""
-        task = frame.task
-        x, y, heading = truth.robot.tolist()
-        while self._via < task.index and len(self._points):
-            px, py = self._points[self._via % len(self._points)].tolist()
-            if hypot(px - x, py - y) > self._r_via + TOLERANCE * self._layout.scale:
-                self._via_missed += 1
-            self._via += 1
-        if self._has_goal and task.done and self._finish_time is None:
-            self._finish_time = frame.time
-            px, py = self._points[-1].tolist()
-            self._goal_near = hypot(px - x, py - y) <= self._r_goal + TOLERANCE * self._layout.scale
-            wanted = self._layout.goal_heading
-            error = 0.0 if wanted is None else degrees(abs(wrap(heading - wanted)))
-            self._goal_turned = error <= HEADING_TOLERANCE
+def _path(records: Table, scale: float) -> tuple[float, float]:
+    """Return path length [m] and standing time [s], with a window that averages the sway."""
+    path = standing = 0.0
+    anchor: tuple[float, float, float] | None = None
+    rows = zip(records["time"].tolist(), records["robot"].tolist(), strict=True)
+    for time, (x, y, _) in rows:
+        if anchor is not None:
+            elapsed = time - anchor[0]
+            if elapsed < SPEED_WINDOW - 1e-9:
+                continue
+            moved = hypot(x - anchor[1], y - anchor[2])
+            path += moved
+            standing += elapsed if moved < STANDING_SPEED * scale * elapsed else 0.0
+        anchor = (time, x, y)
+    return path, standing
+
+
+def _localization(frames: Table, truth: Truth) -> dict[str, object]:
+    """Compare believed and true poses."""
+    errors = frames["pose"] - truth["robot"]
+    errors[:, 2] = [wrap(turn) for turn in errors[:, 2].tolist()]
+    whitened = np.linalg.solve(frames["pose_covariance"], errors[..., None])[..., 0]
+    dx, dy, turns = errors.T
+    heading = root_mean([turn**2 for turn in turns.tolist()])
+    return {
+        "localization_rmse_m": root_mean(dx * dx + dy * dy),
+        "heading_rmse_deg": None if heading is None else degrees(heading),
+        "nees_mean": mean([float(e @ w) / 3.0 for e, w in zip(errors, whitened, strict=True)]),
+    }
+
+
+def _obstacle_speed(frames: Table, truth: Truth, layout: Layout) -> float | None:
+    """Compare the velocity of every track with that of the nearest obstacle."""
+    tracks = frames["tracks"]
+    if not len(tracks) or not layout.obstacles:
+        return None
+    rows = tracks.parents
+    offset = truth["obstacle_positions"][rows] - tracks["position"][:, None]
+    distance = np.hypot(offset[..., 0], offset[..., 1])
+    nearest = distance.argmin(axis=1)
+    matched = distance.min(axis=1) <= MAX_MATCH_DISTANCE * layout.scale
+    wrong = (tracks["velocity"] - truth["obstacle_velocities"][rows, nearest])[matched]
+    ends = np.bincount(rows[matched], minlength=len(frames)).cumsum()
+    squares = [float(np.sum(part)) for part in np.split(wrong * wrong, ends[:-1])]
+    return sqrt(total(squares) / len(wrong)) if len(wrong) else None
+
+
+def _gaze(frames: Table, time: float) -> dict[str, object]:
+    """Return saccades and the travel of the head, per second."""
+    turned = np.hypot(*np.diff(frames["gaze"], axis=0).T)
+    travel = total([hypot(*step) for step in np.diff(frames["capture_head"], axis=0).tolist()])
+    return {
+        "saccades_per_s": int(np.count_nonzero(turned > SACCADE)) / time if time > 0.0 else None,
+        "head_travel_radps": travel / time if time > 0.0 else None,
+    }

@@ -1,13 +1,15 @@
 """A simulation whose results are measured and which writes a run folder."""
 
 from collections.abc import Iterator, Sequence
-from contextlib import contextmanager, nullcontext, suppress
+from contextlib import ExitStack, contextmanager, suppress
 from dataclasses import dataclass, replace
 from pathlib import Path
+from tempfile import TemporaryDirectory
+from time import perf_counter
 from typing import Any
 
 from hsr8.errors import RecordingFailed
-from hsr8.evaluation.metrics import Metrics
+from hsr8.evaluation import metrics
 from hsr8.evaluation.verdict import Criterion, evaluate_criteria
 from hsr8.gl import require_gl
 from hsr8.loop import Simulation
@@ -21,6 +23,7 @@ from hsr8.recorder.run.manifest import Manifest
 from hsr8.recorder.run.run_folder import RunFolder
 from hsr8.recorder.run.tape import TapeWriter
 from hsr8.recorder.run.walking_table import WalkingTableWriter
+from hsr8.recorder.stream import read_tables
 from hsr8.robots.locate import digest
 from hsr8.scenario.loader import dump
 from hsr8.scenario.schema import Scenario
@@ -64,7 +67,9 @@ def renderer_of(scenario: Scenario) -> str:
 
 
 class Recording:
-    """A simulation that is measured and, if it has a folder, recorded.
+    """A simulation that is recorded and measured.
+
+    Without a folder, the tables of the run are temporary.
 
     Args:
         simulation: not yet started.
@@ -72,10 +77,9 @@ class Recording:
     """
 
     def __init__(self, simulation: Simulation, listeners: Sequence[Listener] = ()) -> None:
-        mission = simulation.scenario.navigation.mission
+        self._started = perf_counter()
         self._simulation = simulation
         self._listeners = list(listeners)
-        self._metrics = Metrics(simulation.layout, mission.r_via, mission.r_goal)
         self._folder: RunFolder | None = None
         self._images: LogRates | None = None
 
@@ -151,26 +155,34 @@ class Recording:
             raise
 
     def _run(self) -> Result:
-        simulation = self._simulation
-        simulation.listeners += [self._metrics, *self._listeners]
-        recorder: Recorder | nullcontext[None] = nullcontext()
-        diverged = ""
-        if self._folder is not None:
+        simulation, diverged = self._simulation, ""
+        path = None if self._folder is None else self._folder.path
+        simulation.listeners += self._listeners
+        with ExitStack() as stack:
+            folder = path or Path(stack.enter_context(TemporaryDirectory(prefix="hsr8-")))
             recorder = Recorder(
-                self._folder.path,
+                folder,
                 simulation.humanoid.model.names,
                 scale=simulation.layout.scale,
                 images=self._images,
             )
-            self._folder.rows = lambda: recorder.rows if isinstance(recorder, Recorder) else {}
-        with suppress(KeyboardInterrupt), simulation, recorder as tables:
-            for tick in simulation:
-                if tables is not None:
-                    tables.append(tick)
-                diverged = next((e.text for e in tick.events if e.kind == "diverged"), "")
+            if self._folder is not None:
+                self._folder.rows = lambda: recorder.rows
+            with suppress(KeyboardInterrupt), simulation, recorder:
+                for tick in simulation:
+                    recorder.append(tick)
+                    diverged = next((e.text for e in tick.events if e.kind == "diverged"), "")
+            wall_time = perf_counter() - self._started
+            tables = read_tables(folder, metrics.TABLES)
         outcome = simulation.outcome()
-        results = self._metrics.result(outcome.exit_reason, outcome.state_hash)
-        path = None if self._folder is None else self._folder.path
+        results = metrics.metrics(
+            tables,
+            simulation.layout,
+            simulation.scenario.navigation.mission,
+            exit_reason=outcome.exit_reason,
+            state_hash=outcome.state_hash,
+            wall_time=wall_time,
+        )
         if path is not None:
             run_folder.write_metrics(path, results)
         criteria = evaluate_criteria(simulation.scenario.criteria, results)

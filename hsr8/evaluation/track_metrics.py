@@ -1,18 +1,18 @@
 """Metrics of the tracks of a run: errors, consistency, and time until movers are recognised."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass
-from math import hypot, sqrt
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from hsr8.frame_record import FrameRecord
-from hsr8.world.field.layout import Obstacle
-from hsr8.world.truth.truth import Truth
-from navigation.belief.belief import Motion, Track
+from hsr8.evaluation.sums import mean, root_mean
+from hsr8.recorder.table import Table
+from hsr8.world.field.layout import Layout
+from navigation.belief.belief import Motion
 
 Array = NDArray[np.float64]
+Indices = NDArray[np.intp]
 
 # Lengths are those in a world of scale 1.
 MAX_MATCH_DISTANCE = 0.3  # from a track to its obstacle [m]
@@ -20,138 +20,103 @@ MAX_RANGE = 3.5  # movers farther away are not in view [m]
 SETTLING_TIME = 1.0  # time in view after which the errors of a moving track count [s]
 
 
-class TrackMetrics:
-    """Comparison of the tracks of every camera frame with the true obstacles.
+def track_metrics(frames: Table, truth: dict[str, Array], layout: Layout) -> dict[str, object]:
+    """Compare the tracks of every camera frame with the true obstacles.
 
     Args:
-        obstacles: of the run's world, in the order of the truth.
-        scale: of the world [1].
+        frames: of the run.
+        truth: columns of the records at the frames.
+        layout: of the run's world.
+
+    Returns:
+        Results by name, with units at the end; None if nothing was measured.
     """
-
-    def __init__(self, obstacles: Sequence[Obstacle], scale: float = 1.0) -> None:
-        self._scale = scale
-        self._colors = [o.color for o in obstacles]
-        self._movers = [_Mover() if o.motion is not None else None for o in obstacles]
-        self._static = _Errors()
-        self._moving = _Errors()
-        self._velocity = _Errors()
-        self._before: float | None = None
-
-    def add(self, frame: FrameRecord, truth: Truth) -> None:
-        """Take a frame and the truth of that time."""
-        time = frame.belief.time
-        dt = 0.0 if self._before is None else time - self._before
-        self._before = time
-        tracks = [t for t in frame.belief.tracks if t.particles is None]
-        owned = owners(tracks, self._colors, truth.obstacle_positions, self._scale)
-        for i, track in owned.items():
-            mover = self._movers[i]
-            if mover is not None:
-                self._follow(mover, track, truth, i, dt=dt)
-            elif track.motion is Motion.STATIC:
-                error = track.position - truth.obstacle_positions[i]
-                self._static.add(error, track.covariance[:2, :2])
-
-    def result(self) -> dict[str, object]:
-        """Return the results by name, with units at the end; None if nothing was measured."""
-        return {
-            "static_track_rmse_m": self._static.rms,
-            "static_track_nees_mean": self._static.nees,
-            "mover_track_rmse_m": self._moving.rms,
-            "mover_track_nees_mean": self._moving.nees,
-            "mover_velocity_rmse_mps": self._velocity.rms,
-            "mover_velocity_nees_mean": self._velocity.nees,
-            "movers_recognised_after_s": [
-                m.recognised_after for m in self._movers if m is not None and m.recognised
-            ],
-        }
-
-    def _follow(self, mover: "_Mover", track: Track, truth: Truth, i: int, *, dt: float) -> None:
-        offset = truth.obstacle_positions[i] - truth.robot[:2]
-        if not track.visible or hypot(*offset.tolist()) > MAX_RANGE * self._scale:
-            return
-        if mover.first_seen is None:
-            mover.first_seen = truth.time
-        else:
-            mover.in_view += dt
-        if track.motion is not Motion.MOVING:
-            return
-        if not mover.recognised:
-            mover.recognised = True
-            mover.recognised_after = truth.time - mover.first_seen
-        if mover.in_view > SETTLING_TIME:
-            position_error = track.position - truth.obstacle_positions[i]
-            self._moving.add(position_error, track.covariance[:2, :2])
-            velocity_error = track.velocity - truth.obstacle_velocities[i]
-            self._velocity.add(velocity_error, track.covariance[2:, 2:])
+    tracks = frames["tracks"]
+    tracked = np.flatnonzero(~tracks["lost"])
+    chosen, obstacle = owners(
+        tracks["label"][tracked],
+        tracks["position"][tracked],
+        tracks.parents[tracked],
+        [o.color for o in layout.obstacles],
+        truth["obstacle_positions"],
+        scale=layout.scale,
+    )
+    chosen = tracked[chosen]
+    row, motion = tracks.parents[chosen], tracks["motion"][chosen]
+    position = truth["obstacle_positions"][row, obstacle]
+    away = np.hypot(*(position - truth["robot"][row, :2]).T)
+    visible = tracks["visible"][chosen] & (away <= MAX_RANGE * layout.scale)
+    time = frames["time"]
+    elapsed = np.diff(time, prepend=time[:1])
+    settled = np.zeros(len(chosen), dtype=bool)
+    recognised_after = []
+    movers = [i for i, o in enumerate(layout.obstacles) if o.motion is not None]
+    for i in movers:
+        views = np.flatnonzero(visible & (obstacle == i))
+        recognised = views[motion[views] == Motion.MOVING.value]
+        if not len(recognised):
+            continue
+        first, last = truth["time"][row[[views[0], recognised[0]]]].tolist()
+        recognised_after.append(last - first)
+        in_view = elapsed[row[views]]
+        in_view[0] = 0.0
+        settled[views] = np.cumsum(in_view) > SETTLING_TIME
+    moving = settled & (motion == Motion.MOVING.value)
+    static = ~np.isin(obstacle, movers) & (motion == Motion.STATIC.value)
+    error = tracks["position"][chosen] - position
+    velocity_error = tracks["velocity"][chosen] - truth["obstacle_velocities"][row, obstacle]
+    covariance = tracks["covariance"][chosen]
+    return {
+        **_errors("static_track", "rmse_m", error[static], covariance[static, :2, :2]),
+        **_errors("mover_track", "rmse_m", error[moving], covariance[moving, :2, :2]),
+        **_errors("mover_velocity", "rmse_mps", velocity_error[moving], covariance[moving, 2:, 2:]),
+        "movers_recognised_after_s": recognised_after,
+    }
 
 
-@dataclass(slots=True)
-class _Mover:
-    """View of one mover so far."""
+def _errors(name: str, unit: str, error: Array, covariance: Array) -> dict[str, object]:
+    """Return root mean square and consistency of errors (n, 2) with covariances (n, 2, 2).
 
-    first_seen: float | None = None
-    in_view: float = 0.0
-    recognised: bool = False
-    recognised_after: float = 0.0
-
-
-class _Errors:
-    """Sums of errors in the plane."""
-
-    def __init__(self) -> None:
-        self._count = 0
-        self._squares = 0.0
-        self._normalised = 0.0
-
-    def add(self, error: Array, covariance: Array) -> None:
-        """Add an error (2,) with its covariance (2, 2)."""
-        x, y = error.tolist()
-        (xx, xy), (yx, yy) = covariance.tolist()
-        self._count += 1
-        self._squares += x * x + y * y
-        self._normalised += (yy * x * x - (xy + yx) * x * y + xx * y * y) / (xx * yy - xy * yx) / 2
-
-    @property
-    def rms(self) -> float | None:
-        """Root mean square of the error, None without errors."""
-        return sqrt(self._squares / self._count) if self._count else None
-
-    @property
-    def nees(self) -> float | None:
-        """Normalised estimation error squared per degree of freedom, 1 if consistent."""
-        return self._normalised / self._count if self._count else None
+    The normalised estimation error squared (NEES) is per degree of freedom, 1 if consistent.
+    """
+    x, y = error.T
+    xx, xy, yx, yy = covariance.reshape(-1, 4).T
+    normalised = (yy * x * x - (xy + yx) * x * y + xx * y * y) / (xx * yy - xy * yx) / 2
+    return {f"{name}_{unit}": root_mean(x * x + y * y), f"{name}_nees_mean": mean(normalised)}
 
 
 def owners(
-    tracks: Sequence[Track], colors: Sequence[str], positions: Array, scale: float = 1.0
-) -> dict[int, Track]:
-    """Assign tracks to obstacles of their colour, the nearest pair first.
+    labels: NDArray[Any],
+    positions: Array,
+    rows: Indices,
+    colors: Sequence[str],
+    obstacles: Array,
+    *,
+    scale: float,
+) -> tuple[Indices, Indices]:
+    """Assign the tracks of every frame to obstacles of their colour, the nearest pair first.
 
     Args:
-        tracks: of a belief.
+        labels: of the tracks (t,).
+        positions: of the tracks in W (t, 2) [m].
+        rows: frame of each track (t,).
         colors: of the obstacles (n).
-        positions: of the obstacles in W (n, 2) [m].
+        obstacles: positions in W in every frame (f, n, 2) [m].
         scale: of the world [1].
 
     Returns:
-        Track by index of the obstacle.
+        Numbers of the owning tracks (k,) and of their obstacles (k,).
     """
-    by_color: dict[str, list[tuple[int, float, float]]] = {}
-    for i, (color, (x, y)) in enumerate(zip(colors, positions.tolist(), strict=True)):
-        by_color.setdefault(color, []).append((i, x, y))
-    pairs = []
-    for k, track in enumerate(tracks):
-        believed_x, believed_y = track.position.tolist()
-        for i, x, y in by_color.get(track.label, ()):
-            distance = hypot(x - believed_x, y - believed_y)
-            if distance < MAX_MATCH_DISTANCE * scale:
-                pairs.append((distance, k, i))
-    pairs.sort()
-    owned: dict[int, Track] = {}
+    places = np.reshape(obstacles, (len(obstacles), len(colors), 2))[rows]
+    offset = places - positions[:, None]
+    distance = np.hypot(offset[..., 0], offset[..., 1])
+    same = labels[:, None] == np.array(colors, dtype=object)
+    tracks, near = np.nonzero(same & (distance < MAX_MATCH_DISTANCE * scale))
+    order = np.lexsort((near, tracks, distance[tracks, near], rows[tracks]))
+    owned: dict[tuple[int, int], int] = {}
     taken: set[int] = set()
-    for _, k, i in pairs:
-        if i not in owned and k not in taken:
-            owned[i] = tracks[k]
+    for row, k, i in np.stack((rows[tracks], tracks, near), axis=1)[order].tolist():
+        if k not in taken and (row, i) not in owned:
+            owned[row, i] = k
             taken.add(k)
-    return owned
+    return np.array([*owned.values()], dtype=np.intp), np.array([i for _, i in owned], np.intp)

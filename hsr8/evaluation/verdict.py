@@ -29,7 +29,7 @@ class Criterion:
 
 
 def evaluate_criteria(criteria: Criteria, results: Mapping[str, Any]) -> tuple[Criterion, ...]:
-    """Compare `results`, as returned by `Metrics.result`, with the criteria of a scenario."""
+    """Compare `results`, as returned by `metrics`, with the criteria of a scenario."""
     evaluated = [_at_most("falls", criteria.max_falls, int(results["falls"]))]
     if criteria.max_collisions is not None:
         count = int(results["collisions"])

@@ -1,14 +1,14 @@
-"""Results of walking: velocity tracking, ZMP, limited commands, servos, computing time."""
+"""Metrics of walking: velocity tracking, ZMP, limited commands, servos, computing time."""
 
+from collections.abc import Mapping
 from math import isfinite
 
 import numpy as np
 from numpy.typing import NDArray
 
-from hsr8.record import TickRecord
 from hsr8.recorder.arc import mean_velocity
-from hsr8.walk_counters import WalkCounters
-from hsr8.world.truth.saturation import Saturation, SaturationWatch
+from hsr8.recorder.recorded import BITS
+from hsr8.recorder.table import Table
 from navigation.angles import wrap
 from walking.phase import Phase
 
@@ -17,148 +17,126 @@ Array = NDArray[np.float64]
 WARM_UP = 3.0  # velocities count from the first whole stride after this time [s]
 STRIDE = 2  # footsteps after which the gait repeats
 COMPONENTS = ("vx", "vy", "wz")
-REFERENCES = ("commanded", "applied")
+REFERENCES = {"commanded": "command", "applied": "applied_velocity"}
+DOWN = [phase.value for phase in Phase if phase.down]
+ROUNDING = 1e-9  # of a ZMP on the edge of the sole [m]
 
 
-class StrideMeter:
-    """Mean velocity over whole strides, compared with the commanded and the applied velocity.
+def walk_metrics(tables: Mapping[str, Table]) -> dict[str, object]:
+    """Return the results of walking by name.
+
+    A kinematic body has no servos and its computing time is not representative: results of both are
+    left out.
+    """
+    records, ticks, seconds = tables["records"], tables["ticks"], tables["seconds"]
+    results: dict[str, object] = {
+        "steps": int(records["step_count"][-1]) if len(records) else 0,
+        "pushes": int(np.max(records["pushes"]["number"] + 1, initial=0)),
+    }
+    results |= stride_velocities(records)
+    walking = ~ticks["down"]
+    if walking.any():
+        results |= _counts(ticks["limits"][walking], ticks["zmp_depth"][walking])
+    if len(seconds.present("peak_torque")[0]):
+        results |= _saturation(seconds)
+        if walking.any():
+            results |= _times(ticks["walking_time"][walking])
+    return results
+
+
+def stride_velocities(records: Table) -> dict[str, object]:
+    """Compare mean velocities over whole strides with the commanded and the applied velocity.
 
     The body sways equally at the same phase of every stride, so that sway cancels. Without
-    footsteps, intervals of one second take the place of strides. Sums are weighted by duration.
+    footsteps, intervals of one second take the place of strides. Means are weighted by duration.
 
-    Attributes:
-        time: duration of all strides [s].
-        achieved: sum of the mean velocities in the robot frame (3,) [m, m, rad].
-        errors: sums of the error with respect to each of `REFERENCES` (3,).
-        squares: sums of the squared errors (3,).
+    Returns:
+        Mean velocity, signed and root mean square error; None without a whole stride.
     """
+    down = records["fallen"] | np.isin(records["phase"], DOWN)
+    strides = _strides(records, down)
+    if not strides:
+        return {"mean_velocity": None, "velocity_error": None, "velocity_error_rms": None}
+    poses = records["robot"].copy()
+    poses[~down, 2] = _unwrapped(poses[~down, 2])
+    time = records["time"]
+    elapsed = np.diff(time)[:, None]
+    begins, ends = np.transpose(strides)
+    duration = (time[ends] - time[begins])[:, None]
+    achieved = np.array([mean_velocity(poses[a], poses[b], time[b] - time[a]) for a, b in strides])
+    errors = {}
+    for name, column in REFERENCES.items():
+        velocity = records[column]
+        moved = [np.cumsum(elapsed[a:b] * velocity[a:b], axis=0)[-1] for a, b in strides]
+        errors[name] = achieved - moved / duration
 
-    def __init__(self) -> None:
-        self.time = 0.0
-        self.achieved = np.zeros(3)
-        self.errors = {name: np.zeros(3) for name in REFERENCES}
-        self.squares = {name: np.zeros(3) for name in REFERENCES}
-        self._begin: tuple[float, Array] | None = None
-        self._steps = 0
-        self._yaw = 0.0
-        self._last: tuple[float, Array, Array] | None = None
-        self._commanded, self._applied = np.zeros(3), np.zeros(3)
+    def weighted(values: Array) -> Array:
+        mean: Array = np.cumsum(duration * values, axis=0)[-1] / np.cumsum(duration)[-1]
+        return mean
 
-    def add(self, record: TickRecord) -> None:
-        """Take one record."""
-        time, steps = record.time, record.walking.step_count
-        x, y, yaw = record.truth.robot.tolist()
-        self._yaw += wrap(yaw - self._yaw)
-        pose = np.array([x, y, self._yaw])
-        if self._last is not None:
-            elapsed = time - self._last[0]
-            self._commanded += elapsed * self._last[1]
-            self._applied += elapsed * self._last[2]
-        self._last = (time, np.array(record.command.velocity), record.walking.applied_velocity)
-        if time < WARM_UP:
-            self._steps = steps
-            return
-        if self._begin is None:
-            if steps != self._steps or record.walking.phase is Phase.STANDING:
-                self._start(time, pose, steps)
-            return
-        standing = record.walking.phase is Phase.STANDING and time - self._begin[0] >= 1.0
-        if steps - self._steps >= STRIDE or (standing and steps == self._steps):
-            self._finish(time, pose)
-            self._start(time, pose, steps)
-
-    def interrupt(self) -> None:
-        """Discard the current stride, because the robot is down."""
-        self._begin = self._last = None
-
-    def _start(self, time: float, pose: Array, steps: int) -> None:
-        self._begin, self._steps = (time, pose), steps
-        self._commanded, self._applied = np.zeros(3), np.zeros(3)
-
-    def _finish(self, time: float, pose: Array) -> None:
-        assert self._begin is not None
-        begin, start = self._begin
-        duration = time - begin
-        achieved = mean_velocity(start, pose, duration)
-        self.time += duration
-        self.achieved += duration * achieved
-        for name, integral in zip(REFERENCES, (self._commanded, self._applied), strict=True):
-            error = achieved - integral / duration
-            self.errors[name] += duration * error
-            self.squares[name] += duration * error**2
+    return {
+        "mean_velocity": _named(weighted(achieved)),
+        "velocity_error": {k: _named(weighted(error)) for k, error in errors.items()},
+        "velocity_error_rms": {
+            k: _named(np.sqrt(weighted(error**2))) for k, error in errors.items()
+        },
+    }
 
 
-class WalkMetrics:
-    """Results of walking, computed from the records of a run."""
-
-    def __init__(self) -> None:
-        self._meter = StrideMeter()
-        self._steps = 0
-        self._counters: WalkCounters | None = None
-        self._saturation: SaturationWatch | None = None
-        self._pushes = 0
-
-    def add(self, record: TickRecord) -> None:
-        """Take one record."""
-        if record.truth.fallen or record.walking.phase.down:
-            self._meter.interrupt()
+def _strides(records: Table, down: NDArray[np.bool_]) -> list[tuple[int, int]]:
+    """Return first and last row of every whole stride on the feet."""
+    time, steps = records["time"].tolist(), records["step_count"].tolist()
+    standing = (records["phase"] == Phase.STANDING.value).tolist()
+    strides: list[tuple[int, int]] = []
+    begin: int | None = None
+    before = 0
+    for row, fallen in enumerate(down.tolist()):
+        if fallen:
+            begin = None
+        elif time[row] < WARM_UP:
+            before = steps[row]
+        elif begin is None:
+            if steps[row] != before or standing[row]:
+                begin, before = row, steps[row]
         else:
-            self._meter.add(record)
-        self._steps = record.walking.step_count
-        self._counters = record.counters
-        self._saturation = record.truth.saturation
-        for push in record.truth.pushes:
-            self._pushes = max(self._pushes, push.number + 1)
+            still = standing[row] and time[row] - time[begin] >= 1.0 and steps[row] == before
+            if still or steps[row] - before >= STRIDE:
+                strides.append((begin, row))
+                begin, before = row, steps[row]
+    return strides
 
-    def result(self) -> dict[str, object]:
-        """Return all results by name.
 
-        A kinematic body has no servos and its computing time is not representative: results of
-        both are left out.
-        """
-        results: dict[str, object] = {"steps": self._steps, "pushes": self._pushes}
-        results |= self._velocities()
-        counters = self._counters if self._counters and self._counters.ticks else None
-        if counters is not None:
-            results |= _counts(counters)
-        if self._saturation is not None:
-            results |= _saturation(self._saturation.so_far())
-            if counters is not None:
-                results |= _times(counters)
-        return results
-
-    def _velocities(self) -> dict[str, object]:
-        meter = self._meter
-        if not meter.time:
-            return {"mean_velocity": None, "velocity_error": None, "velocity_error_rms": None}
-        time = meter.time
-        return {
-            "mean_velocity": _named(meter.achieved / time),
-            "velocity_error": {k: _named(e / time) for k, e in meter.errors.items()},
-            "velocity_error_rms": {k: _named(np.sqrt(e / time)) for k, e in meter.squares.items()},
-        }
+def _unwrapped(angles: Array) -> list[float]:
+    """Return angles (n,) [rad] without jumps."""
+    angle, unwrapped = 0.0, []
+    for wrapped in angles.tolist():
+        angle += wrap(wrapped - angle)
+        unwrapped.append(angle)
+    return unwrapped
 
 
 def _named(velocity: Array) -> dict[str, float]:
     return dict(zip(COMPONENTS, velocity.tolist(), strict=True))
 
 
-def _counts(counters: WalkCounters) -> dict[str, object]:
-    ticks, depth = counters.ticks, counters.min_zmp_depth
+def _counts(limits: NDArray[np.int64], zmp_depth: Array) -> dict[str, object]:
+    n, depth = len(limits), float(np.fmin.reduce(zmp_depth))
+    counts = {limit: int(np.count_nonzero(limits & bit)) for limit, bit in BITS.items()}
     return {
-        "walk_ticks": ticks,
-        "zmp_outside_sole_ticks": counters.zmp_outside,
+        "walk_ticks": n,
+        "zmp_outside_sole_ticks": int(np.count_nonzero(zmp_depth < -ROUNDING)),
         "zmp_min_margin_m": depth if isfinite(depth) else None,
-        "limited_fraction": counters.limited / ticks,
+        "limited_fraction": int(np.count_nonzero(limits)) / n,
         "limited_by": {
-            limit.value.replace(" ", "_"): count / ticks
-            for limit, count in counters.by_limit.most_common()
+            limit.value.replace(" ", "_"): count / n
+            for limit, count in sorted(counts.items(), key=lambda item: -item[1])
+            if count
         },
     }
 
 
-def _times(counters: WalkCounters) -> dict[str, object]:
-    times = 1000.0 * np.array(counters.wall_times)
+def _times(seconds: Array) -> dict[str, object]:
+    times = 1000.0 * seconds
     return {
         "walk_tick_mean_ms": float(times.mean()),
         "walk_tick_p999_ms": float(np.quantile(times, 0.999)),
@@ -166,18 +144,19 @@ def _times(counters: WalkCounters) -> dict[str, object]:
     }
 
 
-def _saturation(saturation: Saturation) -> dict[str, object]:
-    strongest = int(np.argmax(saturation.peak_torque))
-    fastest = int(np.argmax(saturation.peak_speed))
+def _saturation(seconds: Table) -> dict[str, object]:
+    names = seconds.names("peak_torque")
+    torque, speed = seconds["peak_torque"][-1], seconds["peak_speed"][-1]
+    strongest, fastest = int(np.argmax(torque)), int(np.argmax(speed))
     return {
-        "torque_saturated_ticks": saturation.torque_any,
-        "torque_saturated_by": _by_joint(saturation.names, saturation.torque_ticks),
-        "joint_stop_ticks": saturation.stop_any,
-        "joint_stop_by": _by_joint(saturation.names, saturation.stop_ticks),
-        "peak_torque_ratio": float(saturation.peak_torque[strongest]),
-        "peak_torque_joint": saturation.names[strongest],
-        "peak_joint_speed_radps": float(saturation.peak_speed[fastest]),
-        "peak_speed_joint": saturation.names[fastest],
+        "torque_saturated_ticks": int(seconds["torque_saturated"][-1]),
+        "torque_saturated_by": _by_joint(names, seconds["torque_saturated_by"][-1]),
+        "joint_stop_ticks": int(seconds["at_stop"][-1]),
+        "joint_stop_by": _by_joint(names, seconds["at_stop_by"][-1]),
+        "peak_torque_ratio": float(torque[strongest]),
+        "peak_torque_joint": names[strongest],
+        "peak_joint_speed_radps": float(speed[fastest]),
+        "peak_speed_joint": names[fastest],
     }
 
 

@@ -141,7 +141,6 @@ class Trial:
                 break
         table, n = np.array(rows), len(self._joints)
         table[:, 2] = np.unwrap(table[:, 2])
-        assert truth.saturation is not None
         return Walked(
             falls=falls,
             poses=table[:, :3],
@@ -151,7 +150,7 @@ class Trial:
             angles=table[:, 7 + n :],
             camera=np.array(camera),
             steps=state.step_count,
-            saturation=truth.saturation.so_far(),
+            saturation=body.saturation(),
             parameters=self.parameters,
         )
 

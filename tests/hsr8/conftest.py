@@ -11,9 +11,12 @@ import pytest
 from hsr8.decisions import Decision, DecisionContext
 from hsr8.frame_record import FrameRecord
 from hsr8.record import TickRecord
+from hsr8.recorder.columns import batch_of, schema_of, sizes_of
+from hsr8.recorder.recorded import FrameRows, record_row
+from hsr8.recorder.rows import TABLES
 from hsr8.recorder.stream import CHECKSUMS
+from hsr8.recorder.table import Table
 from hsr8.robots.loaded import load_robot
-from hsr8.walk_counters import WalkCounters
 from hsr8.world.field.layout import Beacon, Layout, Obstacle
 from hsr8.world.field.motion import Shuttle
 from hsr8.world.model.assembly import Optics, assemble
@@ -24,6 +27,7 @@ from navigation.decision import GazeDecision, MotionDecision, Task, VirtualObsta
 from navigation.observation import CameraView, Frame
 from navigation.parameters.belief import LocalMapParameters
 from vision.detection import Detection
+from walking.body.joints import JOINT_NAMES
 from walking.body.odometry import Odometry
 from walking.command import HeadTarget, VelocityCommand
 from walking.foothold import Foothold
@@ -214,7 +218,6 @@ def _record(layout, time, pose=(0.0, 0.0, 0.0), *, contacts=(), fallen=False, fr
             fallen=fallen,
             balance=_balance(x, y, yaw),
         ),
-        counters=WalkCounters(),
         command=VelocityCommand(0.2, 0.0, 0.0),
         head=HeadTarget(),
         frame=frame,
@@ -268,3 +271,26 @@ def rewrite():
         checksums.write_text("".join([*others, line]))
 
     return changed
+
+
+def _table(name, rows):
+    if not rows:
+        return Table(name, schema_of(TABLES[name], {}, {}).empty_table())
+    schema = schema_of(TABLES[name], sizes_of(rows), {"joints": JOINT_NAMES})
+    return Table(name, pa.Table.from_batches([batch_of(rows, schema)]))
+
+
+@pytest.fixture(scope="session")
+def tables_of():
+    """Tables of a run, from records, rows of ``seconds`` and columns of ``ticks``."""
+
+    def tables(records=(), seconds=(), **ticks):
+        records, frames = list(records), FrameRows(1.0)
+        return {
+            "records": _table("records", [record_row(record) for record in records]),
+            "frames": _table("frames", [frames.row(r.frame) for r in records if r.frame]),
+            "seconds": _table("seconds", list(seconds)),
+            "ticks": Table("ticks", pa.table(ticks)) if ticks else _table("ticks", []),
+        }
+
+    return tables

@@ -3,19 +3,13 @@
 import numpy as np
 import pytest
 
-from hsr8.evaluation.metrics import Metrics
-from hsr8.loop import Simulation
-from hsr8.scenario.loader import load_scenario
+from hsr8 import api
 from walking.command import CommandState, VelocityCommand
 
 
 def measured(*overrides, body="full"):
-    scenario = load_scenario("walk", ["camera.source=analytic", f"robot.body={body}", *overrides])
-    simulation = Simulation(scenario, 0)
-    metrics = Metrics(simulation.layout, 0.15, 0.05)
-    simulation.listeners.append(metrics)
-    outcome = simulation.run()
-    return metrics.result(outcome.exit_reason, outcome.state_hash)
+    settings = ["camera.source=analytic", f"robot.body={body}", *overrides]
+    return api.run("walk", seed=0, settings=settings).metrics
 
 
 def test_the_velocity_asked_for_is_walked_and_measured():

@@ -165,7 +165,6 @@ class PhysicsBody:
             zmp=pressure,
             fallen=z < self._fallen_height or up_component(quaternion) < FALLEN_TILT,
             pushes=self._pusher.take(),
-            saturation=self._saturation,
         )
 
     def saturation(self) -> Saturation:

@@ -6,7 +6,6 @@ from math import degrees, hypot
 import numpy as np
 from numpy.typing import NDArray
 
-from hsr8.world.truth.saturation import SaturationWatch
 from walking.value import value
 
 Array = NDArray[np.float64]
@@ -85,7 +84,6 @@ class Truth:
         zmp: centre of pressure under both feet in W (2,) [m], NaN when airborne.
         fallen: whether the robot has fallen.
         pushes: active since the previous record.
-        saturation: of the servos, updated every tick; None of a body without dynamics.
     """
 
     time: float
@@ -100,4 +98,3 @@ class Truth:
     zmp: Array
     fallen: bool
     pushes: tuple[ActivePush, ...] = ()
-    saturation: SaturationWatch | None = None

@@ -5,8 +5,9 @@ import pytest
 from rich.console import Console
 
 from hsr8.cli import report
-from hsr8.evaluation.metrics import Metrics
+from hsr8.evaluation.metrics import metrics
 from hsr8.evaluation.verdict import Criterion
+from navigation.parameters.navigation import MissionParameters
 
 
 def shown(path, *, results, criteria=()):
@@ -23,11 +24,9 @@ def shown(path, *, results, criteria=()):
 
 
 @pytest.fixture
-def results(layout, walk):
-    metrics = Metrics(layout, 0.15, 0.05)
-    for record in walk(6.0):
-        metrics.on_record(record)
-    return metrics.result("timeout", "hash")
+def results(layout, walk, tables_of):
+    tables, mission = tables_of(walk(6.0)), MissionParameters()
+    return metrics(tables, layout, mission, exit_reason="timeout", state_hash="hash", wall_time=3.0)
 
 
 def test_results_criteria_and_next_commands_are_shown(results, tmp_path):

@@ -4,7 +4,8 @@ from math import pi, radians
 import numpy as np
 import pytest
 
-from hsr8.evaluation.metrics import Metrics
+from hsr8.evaluation.metrics import metrics
+from navigation.parameters.navigation import MissionParameters
 
 PROMISED = {
     "success",
@@ -30,26 +31,31 @@ PROMISED = {
 
 
 @pytest.fixture
-def metrics(layout):
-    return Metrics(layout, r_via=0.15, r_goal=0.05)
+def measure(layout, tables_of):
+    """Results of records, with a via point radius of 15 cm and a goal radius of 5 cm."""
+
+    def measured(records, reason="timeout", world=layout):
+        return metrics(
+            tables_of(records),
+            world,
+            MissionParameters(r_via=0.15, r_goal=0.05),
+            exit_reason=reason,
+            state_hash="hash",
+            wall_time=5.0,
+        )
+
+    return measured
 
 
-def _feed(metrics, records, reason="timeout"):
-    for record in records:
-        metrics.on_record(record)
-    metrics.close(reason)
-    return metrics.result(reason, "hash")
-
-
-def test_all_keys_are_present_also_without_records(metrics):
-    results = metrics.result("interrupted", "")
+def test_all_keys_are_present_also_without_records(measure):
+    results = measure([], "interrupted")
     assert set(results) >= PROMISED
     assert results["success"] is False
     assert results["localization_rmse_m"] is None
 
 
-def test_a_straight_walk(metrics, walk):
-    results = _feed(metrics, walk(10.0))
+def test_a_straight_walk(measure, walk):
+    results = measure(walk(10.0))
     assert results["path_length_m"] == pytest.approx(2.0)
     assert results["sim_time_s"] == pytest.approx(10.0)
     assert results["localization_rmse_m"] == pytest.approx(0.0)
@@ -57,20 +63,21 @@ def test_a_straight_walk(metrics, walk):
     assert results["min_clearance_m"] == 0.5
     assert results["time_standing_s"] == 0.0
     assert results["state_hash"] == "hash"
+    assert results["real_time_factor"] == pytest.approx(2.0)
     assert results["max_tilt_deg"] == pytest.approx(np.degrees(np.hypot(0.01, 0.02)))
 
 
-def test_sway_does_not_add_to_the_path(metrics, fake):
+def test_sway_does_not_add_to_the_path(measure, fake):
     """Swaying by 2 cm at the pace of the gait, on the spot, the path stays short."""
     records = (
         fake.record(0.02 * k, (0.0, 0.02 * np.sin(2 * pi * k / 50), 0.0)) for k in range(501)
     )
-    results = _feed(metrics, records)
+    results = measure(records)
     assert results["path_length_m"] < 0.01
     assert results["time_standing_s"] == pytest.approx(10.0)
 
 
-def test_localization_errors_are_root_mean_squares(metrics, fake):
+def test_localization_errors_are_root_mean_squares(measure, fake):
     """Two frames: 3 cm off along x and 10 deg, then 4 cm along y across the wrap at 180 deg."""
     poses = ((0.0, 0.0, 0.0), (0.0, 0.0, pi - 0.01))
     believed = ((0.03, 0.0, radians(10.0)), (0.0, 0.04, -pi + 0.01))
@@ -79,7 +86,7 @@ def test_localization_errors_are_root_mean_squares(metrics, fake):
         fake.record(0.06 * i, pose, frame=fake.frame(0.06 * i, belief, pose_covariance=covariance))
         for i, (pose, belief) in enumerate(zip(poses, believed, strict=True))
     ]
-    results = _feed(metrics, records)
+    results = measure(records)
     assert results["localization_rmse_m"] == pytest.approx(np.sqrt((0.03**2 + 0.04**2) / 2))
     heading = np.sqrt((radians(10.0) ** 2 + 0.02**2) / 2)
     assert results["heading_rmse_deg"] == pytest.approx(np.degrees(heading))
@@ -87,28 +94,28 @@ def test_localization_errors_are_root_mean_squares(metrics, fake):
     assert results["nees_mean"] == pytest.approx(nees)
 
 
-def test_tracks_are_compared_with_the_nearest_obstacle_if_any(metrics, fake):
+def test_tracks_are_compared_with_the_nearest_obstacle_if_any(measure, fake):
     wrong = fake.track(2, 0.0, velocity=(0.03, 0.1))
     ghost = fake.track(0, 0.0, error=(-0.7, 1.0), velocity=(9.0, 9.0))
     frame = fake.frame(0.0, tracks=(wrong, ghost))
-    results = _feed(metrics, [fake.record(0.0, frame=frame)])
+    results = measure([fake.record(0.0, frame=frame)])
     assert results["obstacle_speed_rmse_mps"] == pytest.approx(0.03)
 
 
-def test_collisions_by_kind(metrics, fake):
+def test_collisions_by_kind(measure, fake):
     touched = {10: (0,), 11: (0, 2), 12: (0,), 60: (2,)}
     records = (fake.record(0.02 * k, contacts=touched.get(k, ())) for k in range(100))
-    results = _feed(metrics, records)
+    results = measure(records)
     assert results["collisions"] == 3
     assert results["collisions_moving"] == 2
     assert results["collisions_static"] == 1
     assert results["collisions_at_fault"] == 1
 
 
-def test_lying_is_one_fall_and_its_tilt_does_not_count(metrics, fake):
+def test_lying_is_one_fall_and_its_tilt_does_not_count(measure, fake):
     lying = fake.record(0.02, fallen=True)
     lying = replace(lying, walking=replace(lying.walking, roll=1.5))
-    results = _feed(metrics, [fake.record(0.0), lying, replace(lying, time=0.04)], "fall")
+    results = measure([fake.record(0.0), lying, replace(lying, time=0.04)], "fall")
     assert results["falls"] == 1
     assert results["success"] is False
     assert results["max_tilt_deg"] < 2.0
@@ -125,8 +132,8 @@ def _arrival(fake, via_at, goal_at, **more):
     ]
 
 
-def test_a_perfect_course_is_a_success(metrics, fake):
-    results = _feed(metrics, _arrival(fake, (0.9, 0.0, 0.0), (1.5, 1.02, 1.1)), "goal")
+def test_a_perfect_course_is_a_success(measure, fake):
+    results = measure(_arrival(fake, (0.9, 0.0, 0.0), (1.5, 1.02, 1.1)), "goal")
     assert results["via_points_total"] == 1
     assert results["via_points_passed"] == 1
     assert results["goal_reached"] is True
@@ -135,56 +142,55 @@ def test_a_perfect_course_is_a_success(metrics, fake):
     assert results["success"] is True
 
 
-def test_a_false_belief_does_not_count(metrics, fake):
+def test_a_false_belief_does_not_count(measure, fake):
     """The robot believes that it passed and arrived, but it is 40 cm away."""
-    results = _feed(metrics, _arrival(fake, (1.0, 0.4, 0.0), (1.5, 1.4, 1.0)), "goal")
+    results = measure(_arrival(fake, (1.0, 0.4, 0.0), (1.5, 1.4, 1.0)), "goal")
     assert results["via_points_passed"] == 0
     assert results["via_points_missed"] == 1
     assert results["goal_reached"] is False
     assert results["success"] is False
 
 
-def test_a_wrong_heading_is_not_an_arrival(metrics, fake):
-    results = _feed(metrics, _arrival(fake, (1.0, 0.0, 0.0), (1.5, 1.0, 1.4)), "goal")
+def test_a_wrong_heading_is_not_an_arrival(measure, fake):
+    results = measure(_arrival(fake, (1.0, 0.0, 0.0), (1.5, 1.0, 1.4)), "goal")
     assert results["goal_reached"] is False
 
 
-def test_a_collision_prevents_success(metrics, fake):
+def test_a_collision_prevents_success(measure, fake):
     records = _arrival(fake, (1.0, 0.0, 0.0), (1.5, 1.0, 1.0), contacts=(0,))
-    results = _feed(metrics, records, "goal")
+    results = measure(records, "goal")
     assert results["goal_reached"] is True
     assert results["success"] is False
 
 
-def test_an_endless_tour_counts_rounds_and_succeeds_at_its_end(layout, fake):
-    metrics = Metrics(replace(layout, endless=True), 0.15, 0.05)
+def test_an_endless_tour_counts_rounds_and_succeeds_at_its_end(measure, layout, fake):
     places = ((1.0, 0.0, 0.0), (1.5, 1.0, 0.0), (1.0, 0.0, 0.0))
     records = [
         fake.record(1.0 * i, p, frame=fake.frame(1.0 * i, p, index=i + 1))
         for i, p in enumerate(places)
     ]
-    results = _feed(metrics, records, "completed")
+    results = measure(records, "completed", replace(layout, endless=True))
     assert results["via_points_total"] == 2
     assert results["via_points_passed"] == 3
     assert results["goal_reached"] is False
     assert results["success"] is True
 
 
-def test_saccades_are_large_changes_of_the_commanded_gaze(metrics, fake):
+def test_saccades_are_large_changes_of_the_commanded_gaze(measure, fake):
     records = []
     for k, pan in enumerate((0.0, 0.05, 0.6, 0.6, -0.3)):
         frame = fake.frame(0.06 * k)
         gaze = replace(frame.gaze, pan=pan)
         frame = replace(frame, decision=replace(frame.decision, gaze=gaze))
         records.append(fake.record(0.06 * k, frame=frame))
-    assert _feed(metrics, records)["saccades_per_s"] == pytest.approx(2 / 0.24)
+    assert measure(records)["saccades_per_s"] == pytest.approx(2 / 0.24)
 
 
-def test_the_head_travels_as_far_as_the_camera_turned(metrics, fake):
+def test_the_head_travels_as_far_as_the_camera_turned(measure, fake):
     records = []
     for k, (pan, tilt) in enumerate(((0.0, 0.0), (0.3, -0.4), (0.3, -0.4), (0.0, -0.4))):
         frame = fake.frame(0.06 * k)
         view = replace(frame.measured.view, pan=pan, tilt=tilt)
         frame = replace(frame, measured=replace(frame.measured, view=view))
         records.append(fake.record(0.06 * k, frame=frame))
-    assert _feed(metrics, records)["head_travel_radps"] == pytest.approx((0.5 + 0.3) / 0.18)
+    assert measure(records)["head_travel_radps"] == pytest.approx((0.5 + 0.3) / 0.18)

@@ -1,15 +1,13 @@
 from dataclasses import replace
 from math import cos, pi, sin
-from types import SimpleNamespace
 
 import numpy as np
 import pytest
 
-from hsr8.evaluation.walk_metrics import WalkMetrics
-from hsr8.walk_counters import WalkCounters
-from hsr8.world.truth.saturation import Saturation
+from hsr8.evaluation.walk_metrics import walk_metrics
+from hsr8.recorder.recorded import limit_bits
+from hsr8.recorder.rows import SecondRow
 from hsr8.world.truth.truth import ActivePush
-from walking.body.joints import JOINT_NAMES
 from walking.command import VelocityCommand
 from walking.command_limits import Limit
 from walking.phase import Phase
@@ -30,7 +28,6 @@ def integrated(start, velocity, time):
 
 def records(fake, velocity, duration, *, applied=None, steps=True):
     """An arc walked at `velocity`, the body swaying by 2 cm with the gait, over the wrap of yaw."""
-    counters = WalkCounters()
     for k in range(round(duration * 50) + 1):
         time = 0.02 * k
         x, y, yaw = integrated(np.array([0.0, 0.0, 3.0]), velocity, max(time, 1e-9)).tolist()
@@ -43,20 +40,16 @@ def records(fake, velocity, duration, *, applied=None, steps=True):
             phase=Phase.DOUBLE_SUPPORT if steps else Phase.STANDING,
             applied_velocity=np.array(velocity if applied is None else applied),
         )
-        yield replace(
-            record, walking=walking, counters=counters, command=VelocityCommand(*velocity)
-        )
+        yield replace(record, walking=walking, command=VelocityCommand(*velocity))
 
 
-def results_of(stream):
-    metrics = WalkMetrics()
-    for record in stream:
-        metrics.add(record)
-    return metrics.result()
+@pytest.fixture
+def results_of(tables_of):
+    return lambda *tables, **ticks: walk_metrics(tables_of(*tables, **ticks))
 
 
 @pytest.mark.parametrize("velocity", [(0.3, 0.0, 0.0), (0.1, 0.05, 0.6), (-0.1, 0.0, -0.8)])
-def test_the_sway_of_the_gait_is_not_velocity(fake, velocity):
+def test_the_sway_of_the_gait_is_not_velocity(fake, results_of, velocity):
     results = results_of(records(fake, velocity, 8.0))
     assert list(results["mean_velocity"].values()) == pytest.approx(velocity, abs=0.004)
     assert list(results["velocity_error"]["commanded"].values()) == pytest.approx(
@@ -65,13 +58,13 @@ def test_the_sway_of_the_gait_is_not_velocity(fake, velocity):
     assert results["steps"] == 23
 
 
-def test_errors_are_signed_and_from_the_commanded_and_the_applied_velocity(fake):
+def test_errors_are_signed_and_from_the_commanded_and_the_applied_velocity(fake, results_of):
     stream = records(fake, (0.2, 0.0, 0.0), 8.0, applied=(0.15, 0.0, 0.1))
     error = results_of(stream)["velocity_error"]["applied"]
     assert list(error.values()) == pytest.approx([0.05, 0.0, -0.1], abs=0.003)
 
 
-def test_the_first_seconds_do_not_count(fake):
+def test_the_first_seconds_do_not_count(fake, results_of):
     def late(stream):
         for record in stream:
             yield replace(record, command=VelocityCommand(9.0 if record.time < 2.98 else 0.2))
@@ -80,7 +73,7 @@ def test_the_first_seconds_do_not_count(fake):
     assert error["vx"] == pytest.approx(0.0, abs=0.003)
 
 
-def test_a_fall_is_not_walking(fake):
+def test_a_fall_is_not_walking(fake, results_of):
     def thrown(stream):
         for record in stream:
             down = 4.0 <= record.time < 5.0
@@ -93,38 +86,49 @@ def test_a_fall_is_not_walking(fake):
     assert list(results["mean_velocity"].values()) == pytest.approx((0.2, 0.0, 0.0), abs=0.004)
 
 
-def test_a_standing_robot_has_no_velocity(fake):
+def test_a_standing_robot_has_no_velocity(fake, results_of):
     results = results_of(records(fake, (0.0, 0.0, 0.0), 6.0, steps=False))
     assert results["mean_velocity"]["wz"] == pytest.approx(0.0, abs=1e-9)
     assert results["steps"] == 0
 
 
-def test_a_short_run_has_no_velocity(fake):
+def test_a_short_run_has_no_velocity(fake, results_of):
     assert results_of(records(fake, (0.2, 0.0, 0.0), 2.0))["mean_velocity"] is None
 
 
-def test_limits_are_fractions_of_the_ticks(fake):
-    counters = WalkCounters()
-    for limits in ((), (Limit.ACCELERATION,), (Limit.ACCELERATION, Limit.ZMP_REGION), ()):
-        counters.add(SimpleNamespace(limits=limits, zmp_depth=0.01), 0.002)
-    results = results_of([replace(fake.record(0.0), counters=counters)])
+def ticks(*limits, depth=0.01):
+    """Columns of ticks of the walking engine, 2 ms each, and of one on the floor."""
+    n = len(limits)
+    return {
+        "limits": [*map(limit_bits, limits), limit_bits((Limit.SPEED,))],
+        "zmp_depth": [depth] * n + [-1.0],
+        "down": [False] * n + [True],
+        "walking_time": [0.002] * n + [1.0],
+    }
+
+
+def test_limits_are_fractions_of_the_ticks_on_the_feet(fake, results_of):
+    acceleration, region = Limit.ACCELERATION, Limit.ZMP_REGION
+    limits = ((), (acceleration,), (region, acceleration), ())
+    results = results_of([fake.record(0.0)], **ticks(*limits))
     assert results["limited_fraction"] == 0.5
     assert results["limited_by"] == {"acceleration": 0.5, "zmp_region": 0.25}
     assert results["zmp_outside_sole_ticks"] == 0
+    assert results["zmp_min_margin_m"] == 0.01
     assert "walk_tick_mean_ms" not in results
+    assert results_of(**ticks((), (), depth=-0.001))["zmp_outside_sole_ticks"] == 2
+    assert "walk_ticks" not in results_of(**ticks())
 
 
-def test_servos_and_times_need_a_body_with_dynamics(fake):
-    counters = WalkCounters()
-    counters.add(SimpleNamespace(limits=(), zmp_depth=0.01), 0.002)
-    ticks, peak = np.zeros(26, dtype=np.int64), np.zeros(26)
-    ticks[3], peak[3] = 7, 1.0
-    none = np.zeros(26, dtype=np.int64)
-    saturation = Saturation(JOINT_NAMES, 7, ticks, 0, none, peak, 5.0 * peak)
+def test_servos_and_times_need_a_body_with_dynamics(fake, results_of):
+    none, saturated, peak = np.zeros(26, np.int64), np.zeros(26, np.int64), np.zeros(26)
+    saturated[3], peak[3] = 7, 1.0
     push = ActivePush(4, 1.0, 0.05, "torso_link", 0.0, np.zeros(3), np.array([3.0, 4.0, 0.0]))
-    watch = SimpleNamespace(so_far=lambda: saturation)
-    record = fake.record(0.0, saturation=watch, pushes=(push,))
-    results = results_of([replace(record, counters=counters)])
+    seconds = [
+        SecondRow(0, 0.0, b"", b"", 0, none, 0, none, none * 0.0, none * 0.0),
+        SecondRow(9, 1.0, b"", b"", 7, saturated, 0, none, peak, 5.0 * peak),
+    ]
+    results = results_of([fake.record(0.0, pushes=(push,))], seconds, **ticks((), ()))
     assert results["torque_saturated_by"] == {"l_knee": 7}
     assert results["joint_stop_by"] == {}
     assert (results["peak_torque_joint"], results["peak_joint_speed_radps"]) == ("l_knee", 5.0)
