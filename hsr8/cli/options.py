@@ -92,6 +92,8 @@ class Run:
     """minimal: poses and events; standard (default): also images, beliefs; full: all frames."""
     view: View = None
     """Show the log during the run: in a window or in a browser."""
+    bag: Flag = False
+    """Also write the run as a rosbag2 folder, see `hsr8 export`."""
     json: Json = False
     quiet: Quiet = False
 
@@ -255,8 +257,15 @@ class Plot:
 
 @dataclass(frozen=True)
 class Export:
-    """Export a robot in the format of other tools. Existing files are not overwritten."""
+    """Export runs or a robot in the formats of other tools.
 
+    Existing files and folders are not overwritten.
+    """
+
+    runs: Positional[Annotated[tuple[Path, ...], arg(metavar="RUN", help_behavior_hint="")]] = ()
+    """Run folder, or a parent folder for its newest run."""
+    bag: Annotated[File, arg(metavar="DIR")] = None
+    """New rosbag2 folder of the run (MCAP); needs hsr8[ros]."""
     urdf: File = None
     """URDF file of the robot, with its meshes in a folder next to it."""
     robot: Text = None

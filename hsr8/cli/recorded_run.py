@@ -13,14 +13,17 @@ from hsr8.cli.progress import Progress
 from hsr8.cli.termination import like_ctrl_c, on_signals
 from hsr8.evaluation.recording import Recording, Result, renderer_of
 from hsr8.evaluation.verdict import exit_code
+from hsr8.export.bag import require_rosbags, write_bag
 from hsr8.loop import Simulation
 from hsr8.recorder.files import atomic
 from hsr8.recorder.log_level import LogLevel
 from hsr8.recorder.run.manifest import Manifest
 from hsr8.recorder.run.run_folder import RunFolder
+from hsr8.recorder.run.run_reader import open_run
 from hsr8.render.live_view import LiveView, live_view
 from hsr8.scenario.schema import Scenario
 
+BAG = "bag"  # folder in that of the run
 SIGNALS = (signal.SIGINT, signal.SIGTERM)
 
 
@@ -38,6 +41,8 @@ def start(options: Run, scenario: Scenario, log: LogLevel | None, command: Seque
         UsageError: the output folder is invalid.
         RenderingUnavailable: the camera needs OpenGL and there is none.
     """
+    if options.bag:
+        require_rosbags()
     manifest = Manifest.now(scenario.name, scenario.seed, command, renderer_of(scenario))
     simulation = Simulation(scenario, scenario.seed)
     recording = Recording(simulation, () if options.quiet else (Progress(scenario.duration),))
@@ -52,6 +57,8 @@ def start(options: Run, scenario: Scenario, log: LogLevel | None, command: Seque
         with crash_report(path), on_signals(SIGNALS, interrupt):
             recording.into(path, manifest, log=log, live=view.address if view else "")
             result = recording.run()
+            if options.bag:
+                write_bag(open_run(path), path / BAG)
         code = _report(options, result, manifest)
         if view is not None and result.exit_reason != "interrupted":
             end = "Ctrl-C" if view.page else "closing the window"

@@ -17,8 +17,8 @@ HINGE, SLIDE, FREE = (
     int(mujoco.mjtJoint.mjJNT_SLIDE),
     int(mujoco.mjtJoint.mjJNT_FREE),
 )
-CAMERA = "camera_optical_frame"
-SITES = {CAMERA_SITE: CAMERA, IMU: "imu_frame", FEET[0]: "l_sole_frame", FEET[1]: "r_sole_frame"}
+CAMERA, INERTIAL = "camera_optical_frame", "imu_sensor_frame"
+SITES = {CAMERA_SITE: CAMERA, IMU: INERTIAL, FEET[0]: "l_sole_frame", FEET[1]: "r_sole_frame"}
 """Frames of the normal form, by site; the camera has x right, y down and z forward."""
 IDENTITY = np.array([1.0, 0.0, 0.0, 0.0])
 
@@ -63,12 +63,10 @@ def links_of(model: mujoco.MjModel) -> list[Link]:
         UsageError: a joint has a type that URDF lacks.
     """
     links: list[Link] = []
-    names = {model.body(body).name for body in range(model.nbody)}
     for body in range(1, model.nbody):
         links += _links_of_body(model, body)
     for site in range(model.nsite):
         if (name := SITES.get(model.site(site).name)) is not None:
-            name = name if name not in names else f"hsr8_{name}"
             parent = model.body(int(model.site_bodyid[site])).name
             links.append(_fixed(name, parent, model.site_pos[site], model.site_quat[site]))
     return links

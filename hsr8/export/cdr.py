@@ -1,0 +1,117 @@
+"""ROS 2 messages in CDR: serialized one by one, or by the thousand from a template."""
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+Array = NDArray[np.float64]
+Stamps = NDArray[np.int64]
+Contents = dict[str, Any]
+"""Fields of a message by name; those left out are zero or empty."""
+
+FIRST_MARKER = 0x5EED_F00D_0000_0001  # as bytes of a number
+STAMP_MARKER = 0x5A5A_1234 * 10**9 + 0x1C3C_5678  # [ns]
+BASE, NAME, ARRAY, SEQUENCE = 1, 2, 3, 4  # values of rosbags.interfaces.Nodetype
+
+
+@dataclass(frozen=True)
+class Messages:
+    """Serializer of messages.
+
+    Args:
+        store: definitions of the message types, a `rosbags.typesys.store.Typestore`.
+    """
+
+    store: Any
+
+    def one(self, kind: str, contents: Contents) -> bytes:
+        """Return a message.
+
+        Args:
+            kind: type, such as ``nav_msgs/msg/Odometry``.
+            contents: its fields.
+        """
+        return bytes(self.store.serialize_cdr(self._message(kind, contents), kind))
+
+    def many(
+        self,
+        kind: str,
+        stamps: Stamps,
+        values: Array,
+        contents: Callable[[Contents, list[float]], Contents],
+    ) -> list[bytes]:
+        """Return messages that differ in their stamps and in some 64-bit numbers only.
+
+        Args:
+            kind: type.
+            stamps: (n,) [ns].
+            values: numbers of each message (n, k).
+            contents: function that returns the fields for a stamp and k numbers.
+        """
+        width = values.shape[1]
+        markers = (FIRST_MARKER + np.arange(width)).view(np.float64)
+        marked = self.one(kind, contents(stamp(STAMP_MARKER), markers.tolist()))
+        rows = np.tile(np.frombuffer(marked, np.uint8), (len(stamps), 1))
+        numbers = np.ascontiguousarray(values, np.float64).view(np.uint8)
+        for k in range(width):
+            for start in _occurrences(marked, markers[k].tobytes()):
+                rows[:, start : start + 8] = numbers[:, 8 * k : 8 * k + 8]
+        for start in _occurrences(marked, _stamp_bytes(np.array([STAMP_MARKER])).tobytes()):
+            rows[:, start : start + 8] = _stamp_bytes(stamps)
+        return [row.tobytes() for row in rows]
+
+    def _message(self, kind: str, contents: Contents) -> Any:
+        _, fields = self.store.fielddefs[kind]
+        if unknown := contents.keys() - {name for name, _ in fields}:
+            raise KeyError(f"{kind} lacks {unknown}")
+        parts = {name: self._field(node, spec, contents.get(name)) for name, (node, spec) in fields}
+        return self.store.types[kind](**parts)
+
+    def _field(self, node: Any, spec: Any, value: Any) -> Any:
+        """Return the value of a field, zero or empty without a `value`."""
+        if node == NAME:
+            return self._message(spec, value or {})
+        if node == BASE:
+            return value if value is not None else "" if spec[0] == "string" else 0
+        (inner, element), length = spec
+        if inner == NAME:
+            return [self._message(element, item) for item in value or ()]
+        if element[0] == "string":
+            return list(value or ())
+        number = np.dtype(element[0])
+        if isinstance(value, bytes):
+            return np.frombuffer(value, number)
+        return np.array(value if value is not None else np.zeros(length), number)
+
+
+def stamp(nanoseconds: int) -> Contents:
+    """Return the fields of a time."""
+    sec, nanosec = divmod(nanoseconds, 10**9)
+    return {"sec": sec, "nanosec": nanosec}
+
+
+def nanoseconds(times: Any) -> Stamps:
+    """Return times (n,) [s] in nanoseconds."""
+    return np.round(1e9 * np.asarray(times, np.float64)).astype(np.int64)
+
+
+def header(time: Contents, frame: str) -> Mapping[str, Any]:
+    """Return the fields of a header."""
+    return {"stamp": time, "frame_id": frame}
+
+
+def _stamp_bytes(stamps: Stamps) -> NDArray[np.uint8]:
+    """Return times as in messages: seconds and nanoseconds, 32 bits each (n, 8)."""
+    parts = np.stack([stamps // 10**9, stamps % 10**9], axis=1).astype("<u4")
+    return parts.view(np.uint8)
+
+
+def _occurrences(content: bytes, part: bytes) -> list[int]:
+    starts, start = [], content.find(part)
+    while start >= 0:
+        starts.append(start)
+        start = content.find(part, start + 1)
+    return starts

@@ -1,0 +1,127 @@
+"""Frames of a run as the robot believes them: map, odom, base_footprint and its links."""
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.spatial.transform import Rotation
+
+from hsr8.export.links import CAMERA, Link, about, inverse, links_of, model_of, product, rotated
+from hsr8.recorder.run.run_reader import Run
+from hsr8.robots.loaded import LoadedRobot
+
+Array = NDArray[np.float64]
+
+MAP, ODOM, FOOTPRINT = "map", "odom", "base_footprint"
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Transforms:
+    """Poses of frames in their parents.
+
+    Attributes:
+        frames: names of parent and child of each transform.
+        positions: (n, transforms, 3) [m].
+        orientations: quaternions w-x-y-z (n, transforms, 4) [1].
+    """
+
+    frames: tuple[tuple[str, str], ...]
+    positions: Array
+    orientations: Array
+
+
+def fixed_transforms(robot: LoadedRobot, measured: tuple[str, ...]) -> Transforms:
+    """Return the transforms of the links that no measured joint moves (1, transforms, ...)."""
+    links = [link for link in links_of(model_of(robot)) if link.parent]
+    return _of_links([link for link in links if link.joint not in measured], robot, {}, 1)
+
+
+def moving_transforms(run: Run, robot: LoadedRobot) -> Transforms:
+    """Return the transforms at the time of every record.
+
+    The frame map is W, base_footprint R. The base is where the camera pose of the robot puts it.
+    """
+    records, frames = run.records, run.frames
+    count = len(records)
+    ticks = run.ticks.at(records["time"]) if len(run.ticks) else np.zeros(0, np.intp)
+    names = run.ticks.names("joint_position")
+    columns = run.ticks["joint_position"][ticks].T if len(run.ticks) else np.zeros((0, count))
+    angles = dict(zip(names, columns, strict=False))
+    links = links_of(model_of(robot))
+    moved = _of_links([k for k in links if k.parent and k.joint in angles], robot, angles, count)
+    odometry = records["odometry"]
+    correction = np.zeros((count, 3))
+    if len(frames):
+        correction = _difference(frames["pose"], frames["odometry"])[frames.at(records["time"])]
+    base = _base(links, robot, angles, records["camera_position"], records["camera_rotation"])
+    ahead = [_planar(correction), _planar(odometry), base]
+    root = next(link.name for link in links if not link.parent)
+    return Transforms(
+        ((MAP, ODOM), (ODOM, FOOTPRINT), (FOOTPRINT, root), *moved.frames),
+        np.concatenate([np.stack([p for p, _ in ahead], axis=1), moved.positions], axis=1),
+        np.concatenate([np.stack([q for _, q in ahead], axis=1), moved.orientations], axis=1),
+    )
+
+
+def _of_links(
+    links: list[Link], robot: LoadedRobot, angles: dict[str, Array], count: int
+) -> Transforms:
+    poses = [_pose(link, robot, angles, count) for link in links]
+    return Transforms(
+        tuple((link.parent, link.name) for link in links),
+        np.array([position for position, _ in poses]).reshape(-1, count, 3).swapaxes(0, 1),
+        np.array([turn for _, turn in poses]).reshape(-1, count, 4).swapaxes(0, 1),
+    )
+
+
+def _pose(
+    link: Link, robot: LoadedRobot, angles: dict[str, Array], count: int
+) -> tuple[Array, Array]:
+    """Return position (n, 3) [m] and orientation (n, 4) of a link in its parent."""
+    held = np.full(count, robot.held.get(link.joint, 0.0))
+    angle = angles.get(link.joint, held)
+    position, turn = link.position, link.orientation
+    if link.kind == "prismatic":
+        position = position + rotated(turn, angle[:, None] * link.axis)
+    elif link.kind != "fixed":
+        turn = product(turn, about(link.axis, angle))
+    return np.broadcast_to(position, (count, 3)), np.broadcast_to(turn, (count, 4))
+
+
+def _base(
+    links: list[Link],
+    robot: LoadedRobot,
+    angles: dict[str, Array],
+    camera_position: Array,
+    camera_rotation: Array,
+) -> tuple[Array, Array]:
+    """Return the pose of the base in R from that of the camera in R."""
+    count = len(camera_position)
+    by_name = {link.name: link for link in links}
+    position, turn = np.zeros((count, 3)), np.tile([1.0, 0.0, 0.0, 0.0], (count, 1))
+    link = by_name[CAMERA]
+    while link.parent:
+        offset, step = _pose(link, robot, angles, count)
+        position, turn = offset + rotated(step, position), product(step, turn)
+        link = by_name[link.parent]
+    camera = Rotation.from_matrix(camera_rotation).as_quat(scalar_first=True) if count else turn
+    orientation = product(camera, inverse(turn))
+    return camera_position - rotated(orientation, position), orientation
+
+
+def _difference(pose: Array, odometry: Array) -> Array:
+    """Return the pose of odom in the map (n, 3) from those of R in both."""
+    yaw = pose[:, 2] - odometry[:, 2]
+    c, s = np.cos(yaw), np.sin(yaw)
+    x, y = odometry[:, 0], odometry[:, 1]
+    return np.stack([pose[:, 0] - c * x + s * y, pose[:, 1] - s * x - c * y, yaw], axis=1)
+
+
+def _planar(pose: Array) -> tuple[Array, Array]:
+    """Return position and orientation of a pose x, y, heading (n, 3)."""
+    return np.pad(pose[:, :2], ((0, 0), (0, 1))), yaw_quaternions(pose[:, 2])
+
+
+def yaw_quaternions(yaw: Array) -> Array:
+    """Return the quaternions w-x-y-z of headings (n,) [rad] (n, 4)."""
+    return about(np.array([0.0, 0.0, 1.0]), yaw)

@@ -1,0 +1,15 @@
+"""A short run that all exports share."""
+
+import pytest
+
+from hsr8.cli.main import entry
+from hsr8.recorder.run.run_reader import open_run
+
+
+@pytest.fixture(scope="package")
+def run(tmp_path_factory):
+    """Two seconds of `quick` without images."""
+    out = tmp_path_factory.mktemp("runs")
+    options = ["--duration", "2", "--camera", "analytic", "--no-log", "--quiet"]
+    entry(["run", "quick", "--out", str(out), *options])
+    return open_run(out)
