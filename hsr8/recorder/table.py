@@ -86,6 +86,10 @@ class Table(Mapping[str, Any]):
         """Return the rows from `first`, up to but not including `last`."""
         return Table(self.name, self.arrow.slice(first, max(0, last - first)))
 
+    def take(self, rows: NDArray[np.intp]) -> "Table":
+        """Return the rows with these indices."""
+        return Table(self.name, self.arrow.take(pa.array(rows)))
+
     def at(self, times: Any) -> NDArray[np.intp]:
         """Return the index of the last row not after each of the times (m,) [s], at least 0."""
         rows: NDArray[np.intp] = np.searchsorted(self["time"], np.asarray(times) + 1e-9, "right")
