@@ -28,6 +28,7 @@ Truth = dict[str, Array]
 
 TABLES = ("ticks", "records", "frames", "seconds")
 """Tables that the metrics need."""
+ENDED = ("completed", "goal")  # exit reasons of a success without a goal
 # Lengths and speeds are those in a world of scale 1.
 TOLERANCE = 0.10  # added to the radii of via points and goal for the true position [m]
 HEADING_TOLERANCE = 15.0  # of the true heading at the goal [deg]
@@ -95,17 +96,12 @@ def metrics(
         "max_tilt_deg": degrees(tilt),
         "time_standing_s": standing,
         **_gaze(frames, time),
-        "lost_fraction": int(np.count_nonzero(frames["lost"])) / len(frames)
-        if len(frames)
-        else None,
+        "lost_fraction": mean(frames["lost"]),
         "filter_faults": int(frames["filter_faults"][-1]) if len(frames) else 0,
         "camera_frames": len(frames),
         **track_metrics(frames, truth, layout),
         **walk_metrics(tables),
     }
-
-
-ENDED = ("completed", "goal")
 
 
 @dataclass(slots=True)
