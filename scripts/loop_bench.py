@@ -155,8 +155,8 @@ class Bench:
         stages = [
             (type(simulation), "step", REST),
             (type(simulation._body), "sense", "sense"),
-            (type(parts["_walking"]), "step", "walking tick"),
-            (type(parts["_walking"]), "state", "walking state"),
+            (type(parts["walking"]), "step", "walking tick"),
+            (type(parts["walking"]), "state", "walking state"),
             (type(simulation._body), "apply", "physics"),
             (type(simulation._body), "truth", "truth"),
             (RenderedCamera, "capture", "draw"),
