@@ -9,6 +9,7 @@ from hsr8.cli.options import Export
 from hsr8.cli.output_file import require_file_name, writing
 from hsr8.errors import UsageError
 from hsr8.export.bag import write_bag
+from hsr8.export.csv_tables import write_csv
 from hsr8.export.urdf import urdf_of
 from hsr8.recorder.files import atomic
 from hsr8.recorder.run.run_reader import Run, open_run
@@ -24,10 +25,10 @@ def main(options: Export) -> int:
         UsageError: an option is invalid, a target exists, or a run cannot be read.
         ModelError: the robot is unknown or invalid.
     """
-    given = {"--urdf": options.urdf, "--bag": options.bag}
+    given = {"--urdf": options.urdf, "--bag": options.bag, "--csv": options.csv}
     targets = {option: path for option, path in given.items() if path is not None}
     if not targets:
-        raise UsageError("export: nothing to export; expected --bag or --urdf")
+        raise UsageError("export: nothing to export; expected --bag, --csv or --urdf")
     for option, path in targets.items():
         _require_new(option, path)
     runs = [open_run(path) for path in options.runs]
@@ -37,6 +38,10 @@ def main(options: Export) -> int:
         run = _only(runs, "--bag")
         with _folder("--bag", options.bag):
             write_bag(run, options.bag)
+    if options.csv is not None:
+        run = _only(runs, "--csv")
+        with _folder("--csv", options.csv):
+            write_csv(run, options.csv)
     if options.json:
         print(atomic.dumps({option.removeprefix("--"): str(p) for option, p in targets.items()}))
     else:

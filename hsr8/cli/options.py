@@ -266,6 +266,8 @@ class Export:
     """Run folder, or a parent folder for its newest run."""
     bag: Annotated[File, arg(metavar="DIR")] = None
     """New rosbag2 folder of the run (MCAP); needs hsr8[ros]."""
+    csv: Annotated[File, arg(metavar="DIR")] = None
+    """New folder of CSV files, one per table, with units in columns.csv."""
     urdf: File = None
     """URDF file of the robot, with its meshes in a folder next to it."""
     robot: Text = None

@@ -1,6 +1,7 @@
 """Bag of a run: an independent reader finds the tables in it, and the frames are consistent."""
 
 import shutil
+import sys
 from collections import defaultdict
 
 import numpy as np
@@ -170,3 +171,11 @@ def test_a_folder_that_exists_is_kept(run, bag, tmp_path, capsys):
     assert entry(["export", str(run.path), "--bag", str(target)]) == 2
     assert "exists" in capsys.readouterr().err
     assert before == {file: file.read_bytes() for file in target.rglob("*") if file.is_file()}
+
+
+def test_without_rosbags_the_extra_is_named(run, tmp_path, monkeypatch, capsys):
+    monkeypatch.setitem(sys.modules, "rosbags", None)
+    assert entry(["export", str(run.path), "--bag", str(tmp_path / "bag")]) == 2
+    assert "install hsr8[ros]" in capsys.readouterr().err
+    assert entry(["run", "quick", "--bag", "--out", str(tmp_path), "--quiet"]) == 2
+    assert not [*tmp_path.iterdir()]
