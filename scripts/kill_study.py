@@ -4,109 +4,110 @@ python scripts/kill_study.py --kills 50 --out docs/results/kill.md
 """
 
 import argparse
+import mmap
 import random
+import struct
 import subprocess
 import sys
 import tempfile
 import time as clock
-import warnings
 from pathlib import Path
 
 from hsr8.evaluation.sweep.definition import Definition
-from hsr8.recorder.run import run_folder
+from hsr8.recorder.rows import TABLES
 from hsr8.recorder.run.run_reader import Run, open_run
-from hsr8.recorder.run.tape import read_tape
 from hsr8.scenario.loader import dump, load_scenario
 from walking.parameters import CONTROL_PERIOD
 
 from study_page import command_line
 
 LIGHT = ("--body", "kinematic", "--camera", "analytic")
-FILES = ("log", "motion", "walking", "tape")
+SHOWN = ("ticks", "records", "frames")
+TICK = struct.Struct("<q")
+# Runs the command line and stores the number of recorded ticks in a file that outlives the kill.
+RUN = """
+import mmap, struct, sys
+from hsr8.cli.main import entry
+from hsr8.recorder.recorder import Recorder
+
+with open(sys.argv[1], "r+b") as file:
+    ticks = mmap.mmap(file.fileno(), 8)
+append = Recorder.append
+def counted(recorder, tick):
+    ticks[:] = struct.pack("<q", tick.number + 1)
+    append(recorder, tick)
+Recorder.append = counted
+entry(sys.argv[2:])
+"""
 
 
-def killed(out: Path, words: list[str], delay: float) -> Run:
-    """Kill a run `delay` seconds of wall time after its first record."""
-    process = subprocess.Popen([sys.executable, "-m", "hsr8", "run", "quick", *words])
-    while process.poll() is None and not any(out.glob(f"*/*/{run_folder.TRAJECTORY}")):
-        clock.sleep(0.01)
-    clock.sleep(delay)
-    process.kill()
-    process.wait()
-    return open_run(out)
+def killed(folder: Path, words: list[str], delay: float) -> tuple[Run, float]:
+    """Kill a run `delay` seconds of wall time after its first tick.
+
+    Returns:
+        The run and the simulated time of the kill [s].
+    """
+    counter = folder / "ticks"
+    counter.write_bytes(bytes(TICK.size))
+    with counter.open("r+b") as file, mmap.mmap(file.fileno(), TICK.size) as ticks:
+        process = subprocess.Popen([sys.executable, "-c", RUN, str(counter), *words])
+        while process.poll() is None and not any(ticks[:]):
+            clock.sleep(0.01)
+        clock.sleep(delay)
+        if process.poll() is not None:
+            raise SystemExit("the run ended before the kill")
+        process.kill()
+        process.wait()
+        (count,) = TICK.unpack(ticks[:])
+    return open_run(folder), count * CONTROL_PERIOD
 
 
-def ends(run: Run) -> dict[str, float]:
-    """Return the last simulated time in every file [s].
+def losses(run: Run, end: float) -> dict[str, float]:
+    """Return the time from the last row of every table to the `end` of the run [s].
 
     Raises:
-        Exception: a file is not readable.
+        UsageError: a table is not readable.
     """
-    run.frame_summaries(), run.event_lines()
-    readers = (_log_end, _motion_end, _walking_end, _tape_end)
-    return dict(zip(FILES, (reader(run) for reader in readers), strict=True))
-
-
-def _motion_end(run: Run) -> float:
-    return float(run.trajectory().time[-1])
-
-
-def _walking_end(run: Run) -> float:
-    return float(run.walking().time[-1])
-
-
-def _tape_end(run: Run) -> float:
-    """Return the end of the last complete second of the tape [s]."""
-    block = read_tape(run.path / run_folder.TAPE, whole=False)[-1]
-    return (block.tick + len(block.setpoints)) * CONTROL_PERIOD
-
-
-def _log_end(run: Run) -> float:
-    from rerun.chunk import RrdReader  # noqa: PLC0415  takes seconds
-
-    last = 0.0
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore")  # a killed run has no footer
-        for chunk in RrdReader(str(run.path / run_folder.LOG)).stream():
-            batch = chunk.to_record_batch()
-            if "sim_time" in batch.schema.names and batch.num_rows:
-                last = max(
-                    last, *(t / 1e9 for t in batch.column("sim_time").cast("int64").to_pylist())
-                )
-    return last
+    lost = {}
+    for name in TABLES:
+        time = getattr(run, name)["time"].tolist()
+        period = time[-1] - time[-2] if len(time) > 1 else 0.0
+        lost[name] = max(0.0, end - (time[-1] + period if time else 0.0))
+    return lost
 
 
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--kills", type=int, default=50)
     parser.add_argument("--full", type=int, default=5, help="number of runs in full physics")
-    parser.add_argument("--duration", type=float, default=30.0, help="simulated time of a run [s]")
+    parser.add_argument("--longest", type=float, default=3.0, help="wall time to a kill [s]")
     parser.add_argument("--seed", type=int, default=1000, help="of the first run")
     parser.add_argument("--out", type=Path, required=True, help="Markdown file to write")
     options = parser.parse_args()
-    draw, rows, readable = random.Random(options.seed), [], 0
+    draw, rows, readable, most = random.Random(options.seed), [], 0, 0.0
     for k in range(options.kills):
         seed, full = options.seed + k, k < options.full
         with tempfile.TemporaryDirectory() as name:
-            words = ["--seed", str(seed), "--duration", str(options.duration), "--quiet"]
-            words += [*(() if full else LIGHT), "--out", name]
-            run = killed(Path(name), words, draw.uniform(0.0, 3.0))
+            words = ["run", "course", "--seed", str(seed), "--quiet", "--out", name]
+            words += () if full else LIGHT
+            run, end = killed(Path(name), words, draw.uniform(0.0, options.longest))
             try:
-                last = ends(run)
+                lost = losses(run, end)
                 readable += 1
-                cells = [f"{max(last.values()):.2f}", "yes"]
-                cells += [f"{max(last.values()) - end:.2f}" for end in last.values()]
+                most = max([most, *(lost[table] for table in SHOWN)])
+                cells = ["yes", *(f"{lost[table]:.2f}" for table in SHOWN)]
             except Exception as error:  # reported in the table
-                cells = ["", f"NO: {error}", *FILES]
+                cells = [f"NO: {error}", *("" for _ in SHOWN)]
         body = "full, rendered" if full else "kinematic, analytic"
-        rows.append(f"| {seed} | {body} | {' | '.join(cells)} |")
+        rows.append(f"| {seed} | {body} | {end:.2f} | {' | '.join(cells)} |")
         print(rows[-1], flush=True)
-    versions = Definition.now("quick", (), dump(load_scenario("quick"))).made_with()
-    head = f"| seed | body, camera | killed at [s] | readable | {' | '.join(FILES)} |"
+    versions = Definition.now("course", (), dump(load_scenario("course"))).made_with()
+    head = f"| seed | body, camera | killed at [s] | readable | {' | '.join(SHOWN)} |"
     lines = ["# Runs killed at random times", "", f"    {command_line()}", "", f"{versions}.", ""]
-    lines += ["`quick` with log, killed by SIGKILL at a random time. The last columns are the time"]
-    lines += ["from the last row of a file to the last row of all files [s].", ""]
-    lines += [f"{readable} of {len(rows)} folders readable.", "", head, "|---" * 8 + "|", *rows, ""]
+    lines += ["`course` with log, killed by SIGKILL at a random time. The last columns are the"]
+    lines += ["simulated time from the end of a table to the kill [s].", ""]
+    lines += [f"**{readable} of {len(rows)} folders readable, at most {most:.2f} s lost.**", ""]
+    lines += [head, "|---" * (4 + len(SHOWN)) + "|", *rows, ""]
     options.out.parent.mkdir(parents=True, exist_ok=True)
     options.out.write_text("\n".join(lines))
 

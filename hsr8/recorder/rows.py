@@ -69,7 +69,7 @@ class RecordRow:
         qpos: true generalised position of the robot, MuJoCo order (nq,) [m, rad].
         robot: true pose (3,) [m, m, rad].
         obstacle_positions: axes of all obstacles in W, layout order (obstacles, 2) [m].
-        obstacle_velocities: (obstacles, 2) [m/s].
+        obstacle_velocities: of the axes in W (obstacles, 2) [m/s].
         clearance: true distance of the robot to the nearest obstacle or beacon [m].
         joint_torque: true torque (joints,) [N m].
         foot_load: true normal force under the left and right foot (2,) [N].
@@ -154,9 +154,9 @@ class TrackRow:
         id: number, unique in a run.
         label: colour class.
         position: in W (2,) [m].
-        velocity: (2,) [m/s].
+        velocity: in W (2,) [m/s].
         covariance: of x, y, vx, vy (4, 4) [m, m/s].
-        radius: [m].
+        radius: of its cylinder [m].
         radius_sigma: standard deviation of `radius` [m].
         motion: static, moving or unknown.
         hits: number of detections.
@@ -225,7 +225,7 @@ class FrameRow:
         yaw_sigma: standard deviation of the camera's yaw [rad].
         step_count: completed steps at `time`.
         pose: believed pose at `time` (3,) [m, m, rad].
-        pose_covariance: (3, 3) [m, rad].
+        pose_covariance: of `pose` (3, 3) [m, rad].
         lost: whether localization reports being lost.
         filter_faults: re-initializations of the pose filter so far.
         seen_beacons: names of the beacons in the frame.

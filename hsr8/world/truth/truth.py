@@ -38,7 +38,7 @@ class ActivePush:
 
     Attributes:
         number: of the push in its run.
-        begin: [s].
+        begin: start of the push [s].
         duration: total [s].
         body: name of the pushed body.
         direction: from the heading of the robot at the start, counter-clockwise [rad].
