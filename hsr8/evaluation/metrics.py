@@ -26,8 +26,23 @@ from navigation.parameters.navigation import MissionParameters
 Array = NDArray[np.float64]
 Truth = dict[str, Array]
 
-TABLES = ("ticks", "records", "frames", "seconds")
-"""Tables that the metrics need."""
+COLUMNS = {
+    "ticks": ("limits", "zmp_depth", "down", "walking_time"),
+    "records": (
+        *("time", "robot", "obstacle_positions", "obstacle_velocities", "clearance", "contacts"),
+        *("pushes", "fallen", "roll", "pitch"),
+        *("phase", "step_count", "command", "applied_velocity"),
+    ),
+    "frames": (
+        *("time", "pose", "pose_covariance", "lost", "filter_faults", "tracks"),
+        *("via_points", "done", "gaze", "capture_head"),
+    ),
+    "seconds": (
+        *("torque_saturated", "torque_saturated_by", "at_stop", "at_stop_by"),
+        *("peak_torque", "peak_speed"),
+    ),
+}
+"""Columns that the metrics need, by table."""
 ENDED = ("completed", "goal")  # exit reasons of a success without a goal
 # Lengths and speeds are those in a world of scale 1.
 TOLERANCE = 0.10  # added to the radii of via points and goal for the true position [m]
@@ -52,7 +67,7 @@ def metrics(
     Unmeasured results are None, for example the localization of a run without a camera frame.
 
     Args:
-        tables: `TABLES` of the run.
+        tables: of the run, with at least `COLUMNS`.
         layout: of the run's world.
         mission: distances at which via points and goal are reached.
         exit_reason: of the run.

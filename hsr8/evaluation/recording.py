@@ -23,7 +23,7 @@ from hsr8.recorder.run.manifest import Manifest
 from hsr8.recorder.run.run_folder import RunFolder
 from hsr8.recorder.run.tape import TapeWriter
 from hsr8.recorder.run.walking_table import WalkingTableWriter
-from hsr8.recorder.stream import read_tables
+from hsr8.recorder.selection import Selection
 from hsr8.robots.locate import digest
 from hsr8.scenario.loader import dump
 from hsr8.scenario.schema import Scenario
@@ -158,6 +158,7 @@ class Recording:
         simulation, diverged = self._simulation, ""
         path = None if self._folder is None else self._folder.path
         simulation.listeners += self._listeners
+        selection = Selection(metrics.COLUMNS)
         with ExitStack() as stack:
             folder = path or Path(stack.enter_context(TemporaryDirectory(prefix="hsr8-")))
             recorder = Recorder(
@@ -165,6 +166,7 @@ class Recording:
                 simulation.humanoid.model.names,
                 scale=simulation.layout.scale,
                 images=self._images,
+                listeners=[selection],
             )
             if self._folder is not None:
                 self._folder.rows = lambda: recorder.rows
@@ -173,10 +175,9 @@ class Recording:
                     recorder.append(tick)
                     diverged = next((e.text for e in tick.events if e.kind == "diverged"), "")
             wall_time = perf_counter() - self._started
-            tables = read_tables(folder, metrics.TABLES)
         outcome = simulation.outcome()
         results = metrics.metrics(
-            tables,
+            selection.tables(),
             simulation.layout,
             simulation.scenario.navigation.mission,
             exit_reason=outcome.exit_reason,

@@ -8,7 +8,7 @@ cut off at any byte loses its last batch only.
 
 import io
 import zlib
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -17,7 +17,6 @@ import pyarrow as pa
 from hsr8.errors import UsageError
 from hsr8.recorder.columns import batch_of, schema_of, sizes_of
 from hsr8.recorder.files.writing import GrowingFile, writing
-from hsr8.recorder.rows import TABLES
 from hsr8.recorder.table import Table
 
 SUFFIX = ".arrows"
@@ -124,17 +123,6 @@ class _CheckedFile(io.RawIOBase):
             raise
         self._size += len(part)
         return self._size, zlib.crc32(part)
-
-
-def read_tables(folder: Path, names: Iterable[str]) -> dict[str, Table]:
-    """Read tables of a run by name, also of one that was interrupted.
-
-    Raises:
-        UsageError: a file cannot be read, or it is damaged.
-    """
-    return {
-        name: read_table(folder / f"{name}{SUFFIX}", TABLES[name], whole=False) for name in names
-    }
 
 
 def read_table(path: Path, rows: type, *, whole: bool) -> Table:
