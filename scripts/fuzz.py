@@ -21,7 +21,9 @@ from hsr8.cli.main import entry
 from hsr8.errors import ScenarioError, SimulationDiverged, UsageError
 from hsr8.evaluation.sweep import folder as sweep_folder
 from hsr8.loop import Simulation
+from hsr8.recorder.rows import TABLES
 from hsr8.recorder.run import run_folder
+from hsr8.recorder.stream import CHECKSUMS, SUFFIX
 from hsr8.robots import models
 from hsr8.scenario.loader import BUILT_IN, built_in_names, load_scenario, loads
 from vision.color import COLOR_CLASSES, ColorTable
@@ -58,12 +60,8 @@ FILES = (
     run_folder.SCENARIO,
     run_folder.MANIFEST,
     run_folder.METRICS,
-    run_folder.EVENTS,
-    run_folder.TRAJECTORY,
-    run_folder.WALKING,
-    run_folder.MEASUREMENTS,
-    run_folder.TAPE,
-    run_folder.FRAMES,
+    CHECKSUMS,
+    *(f"{name}{SUFFIX}" for name in TABLES),
 )
 
 

@@ -7,8 +7,6 @@ from pathlib import Path
 from typing import Any
 
 from hsr8.recorder.run.frame_summary import FrameSummary
-from hsr8.recorder.run.measurements import read_measurements
-from hsr8.recorder.run.run_folder import MEASUREMENTS
 from hsr8.recorder.run.run_reader import Run, open_run
 from hsr8.recorder.run.trajectory import Trajectory, rows_at
 from hsr8.recorder.run.walking_table import WalkingTable
@@ -81,7 +79,6 @@ def tour(path: Path) -> Tour:
     """Read a run folder; the row is named by its profile."""
     run: Run = open_run(path)
     scenario = load_scenario(str(run.scenario_file), [])
-    measured = next(iter(read_measurements(run.path / MEASUREMENTS, whole=False)))
     return Tour(
         f"profile {scenario.navigation.profile}",
         scenario,
@@ -89,7 +86,7 @@ def tour(path: Path) -> Tour:
         run.frame_summaries(),
         run.trajectory(),
         run.walking(),
-        float(measured.frame.view.position[2]),
+        float(run.frames["capture_position"][0, 2]),
         run.event_lines(),
     )
 

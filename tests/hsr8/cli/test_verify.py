@@ -4,8 +4,10 @@ import shutil
 import pytest
 
 from hsr8.cli.main import entry
+from hsr8.errors import SimulationDiverged
 from hsr8.recorder.run.run_reader import open_run
 from hsr8.robots.locate import find_description
+from hsr8.world.body.kinematic import KinematicBody
 
 RUN = ["run", "quick", "--body", "kinematic", "--camera", "analytic", "--duration", "2"]
 
@@ -176,3 +178,30 @@ def test_a_robot_file_is_found_from_every_folder(tmp_path, monkeypatch, capsys):
     capsys.readouterr()
     assert entry(["verify", "../runs/quick"]) == 1
     assert "robot mine was " in capsys.readouterr().out
+
+
+def test_a_diverged_run_diverges_again_at_the_same_tick(tmp_path, monkeypatch, rewrite, capsys):
+    apply = KinematicBody.apply
+
+    def diverging(self, targets):
+        if self.time > 1.3:
+            raise SimulationDiverged("the physics diverged")
+        apply(self, targets)
+
+    monkeypatch.setattr(KinematicBody, "apply", diverging)
+    assert entry([*RUN, "--no-log", "--quiet", "--out", str(tmp_path)]) == 3
+    run = open_run(tmp_path)
+    assert entry(["verify", str(run.path), "--json"]) == 0
+    assert stages(capsys)["physics"]["count"] == len(run.ticks)
+    rewrite(run.path, "seconds", "world", len(run.seconds) - 1, flipped)
+    assert entry(["verify", str(run.path)]) == 1
+
+
+def test_physics_that_diverges_only_in_the_replay_is_different(run, monkeypatch, capsys):
+    def diverging(self, targets):
+        raise SimulationDiverged("the physics diverged")
+
+    monkeypatch.setattr(KinematicBody, "apply", diverging)
+    assert entry(["verify", str(run), "--json"]) == 1
+    first = stages(capsys)["physics"]
+    assert (first["index"], first["channel"]) == (0, "the physics diverged")
