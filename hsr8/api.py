@@ -36,7 +36,7 @@ def run(
         scenario: name of a built-in scenario, TOML file, or loaded scenario.
         seed: seed of the world and of all noise; default: that of the scenario.
         settings: override those of the scenario, as ``key=value`` or by dotted key.
-        out: parent folder of the run folder; by default nothing is written.
+        out: parent folder of the run folder; by default no files are kept.
         log: also write the Rerun log; True, False, ``"minimal"``, ``"standard"`` or ``"full"``.
         planner: replaces the planner of the scenario.
         gaze: replaces the gaze controller of the scenario.
