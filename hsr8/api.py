@@ -10,7 +10,6 @@ from hsr8.errors import UsageError
 from hsr8.evaluation.recording import Recording, Result, renderer_of
 from hsr8.loop import Simulation
 from hsr8.plugin_walker import CustomWalker
-from hsr8.record import Listener
 from hsr8.recorder.log_level import LogLevel
 from hsr8.recorder.run.manifest import CALL, Manifest
 from hsr8.recorder.run.run_folder import SCENARIO, RunFolder
@@ -28,7 +27,6 @@ def run(
     planner: MotionPlanner | None = None,
     gaze: GazeController | None = None,
     walker: CustomWalker | None = None,
-    listeners: Sequence[Listener] = (),
 ) -> Result:
     """Run a scenario.
 
@@ -41,7 +39,6 @@ def run(
         planner: replaces the planner of the scenario.
         gaze: replaces the gaze controller of the scenario.
         walker: replaces the walking engine of the scenario.
-        listeners: receive every record.
 
     Raises:
         ScenarioError: the scenario or a setting is invalid, or its world cannot be drawn.
@@ -58,7 +55,7 @@ def run(
         raise TypeError("settings: need the name or file of a scenario, got a loaded scenario")
     loaded = loaded if seed is None else loaded.with_seed(seed)
     simulation = Simulation(loaded, loaded.seed, planner=planner, gaze=gaze, walker=walker)
-    recording = Recording(simulation, listeners)
+    recording = Recording(simulation)
     if out is not None:
         renderer = renderer_of(loaded)
         path = RunFolder.create(Path(out), loaded.name, loaded.seed)

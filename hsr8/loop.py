@@ -1,15 +1,14 @@
 """Closed loop of world and robot, one control tick at a time."""
 
 import hashlib
-from collections.abc import Iterator, Sequence
-from contextlib import ExitStack, suppress
+from collections.abc import Iterator
+from contextlib import suppress
 from dataclasses import dataclass
 from time import perf_counter
 from typing import Self, SupportsIndex
 
 import cv2
 import numpy as np
-from numpy.typing import NDArray
 
 from hsr8.body_builder import build_body, build_model
 from hsr8.decisions import GazeController, MotionPlanner
@@ -17,8 +16,7 @@ from hsr8.errors import ScenarioError, SimulationDiverged
 from hsr8.event_watch import EventWatch
 from hsr8.frame_record import FrameRecord
 from hsr8.plugin_walker import CustomWalker
-from hsr8.record import Event, Listener, Second, Tick, TickRecord
-from hsr8.recorder.run.tape import TapeWriter
+from hsr8.record import Event, Second, Tick, TickRecord
 from hsr8.robot import Robot, SensorFrame
 from hsr8.robot_builder import build_robot, head_camera
 from hsr8.robots.loaded import load_robot
@@ -70,7 +68,6 @@ class Simulation:
     Args:
         scenario: what to run.
         seed: draws the world and all noise.
-        listeners: receive every record; they never change the run.
         planner: replaces the motion planner of the scenario.
         gaze: replaces the gaze planner of the scenario.
         walker: replaces the walking engine of the scenario.
@@ -78,8 +75,6 @@ class Simulation:
     Attributes:
         scenario: what to run.
         seed: draws the world and all noise.
-        listeners: receive every record; extensible before the run.
-        tape: records setpoints and hashes, if set.
         humanoid: the robot and its model.
         layout: the drawn world.
         model: MuJoCo model of world and robot.
@@ -98,7 +93,6 @@ class Simulation:
         self,
         scenario: Scenario,
         seed: SupportsIndex,
-        listeners: Sequence[Listener] = (),
         *,
         planner: MotionPlanner | None = None,
         gaze: GazeController | None = None,
@@ -106,8 +100,6 @@ class Simulation:
     ) -> None:
         self.scenario = scenario
         self.seed = scenario.with_seed(seed).seed
-        self.listeners = list(listeners)
-        self.tape: TapeWriter | None = None
         self.humanoid = load_robot(scenario.robot.model)
         self.layout = draw_layout(scenario, self.seed)
         self.model = build_model(scenario, self.layout)
@@ -178,28 +170,23 @@ class Simulation:
                 self._rendered = RenderedCamera(
                     self.model, self.scenario.camera, self._camera_rng, self._camera_faults
                 )
-        except BaseException as error:  # listeners must be closed
+        except BaseException as error:  # sets the exit reason
             self.__exit__(type(error), error, None)
             raise
         self._open = True
         return self
 
     def __exit__(self, kind: type[BaseException] | None, *_: object) -> None:
-        """Close camera, tape and listeners, also if one of them fails."""
+        """Close the camera."""
         self._open = False
         if self.exit_reason is None:
             stopped = kind is None or issubclass(kind, KeyboardInterrupt)
             self.exit_reason = "interrupted" if stopped else "error"
-        with ExitStack() as cleanup:
-            if self._rendered is not None:
-                cleanup.callback(self._rendered.close)
-            if self.tape is not None:
-                cleanup.callback(self.tape.close)
-            for listener in reversed(self.listeners):
-                cleanup.callback(listener.close, self.exit_reason)
+        if self._rendered is not None:
+            self._rendered.close()
 
     def run(self) -> RunOutcome:
-        """Run to the end and close the listeners."""
+        """Run to the end."""
         with suppress(KeyboardInterrupt), self:
             for _ in self:
                 pass
@@ -252,8 +239,6 @@ class Simulation:
     def _mark(self) -> Second:
         """Return the hashes of the state."""
         world, belief = self._body.state_bytes(), self._belief_bytes()
-        if self.tape is not None:
-            self.tape.mark(self.tick, world, belief)
         state = hashlib.blake2b(world, digest_size=HASH)
         digest = state.digest()
         state.update(belief)
@@ -273,14 +258,11 @@ class Simulation:
         if not reason:
             targets = self._servo_faults.apply_fault(targets, number)
             setpoint = self._body.setpoints(targets).copy()
-            reason, diverged = self._apply(targets, setpoint)
+            reason, diverged = self._apply(targets)
             events += diverged
         if reason:
             self.exit_reason = reason
             seconds.append(self._mark())
-        for event in events:
-            for listener in self.listeners:
-                listener.on_event(*event)
         return Tick(
             number=number,
             time=sensed.time,
@@ -313,8 +295,6 @@ class Simulation:
             head=self._robot.head,
             frame=frame,
         )
-        for listener in self.listeners:
-            listener.on_record(record)
         return record, events
 
     def _reason(self, number: int) -> str:
@@ -323,12 +303,8 @@ class Simulation:
             return "interrupted"
         return self._end[1] if self._end is not None and number >= self._end[0] else ""
 
-    def _apply(
-        self, targets: JointTargets, setpoint: NDArray[np.float64]
-    ) -> tuple[str, list[Event]]:
+    def _apply(self, targets: JointTargets) -> tuple[str, list[Event]]:
         """Advance the world; return the reason to end afterwards, empty for none, and events."""
-        if self.tape is not None:
-            self.tape.add(setpoint)
         try:
             self._body.apply(targets)
         except SimulationDiverged as error:

@@ -1,6 +1,6 @@
-"""Ticks and records that the loop publishes, and the interface of listeners."""
+"""Ticks and records that the loop returns."""
 
-from typing import NamedTuple, Protocol
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -25,7 +25,7 @@ class Event(NamedTuple):
 
 @value
 class TickRecord:
-    """State of the run, published once per record period (20 ms by default).
+    """State of the run, returned once per record period (20 ms by default).
 
     Attributes:
         tick: number of the control tick.
@@ -48,7 +48,7 @@ class TickRecord:
 
 @value
 class Second:
-    """State of the run, published once per second and at the end.
+    """State of the run, returned once per second and at the end.
 
     Attributes:
         tick: number of the next control tick.
@@ -94,19 +94,3 @@ class Tick:
     record: TickRecord | None
     seconds: tuple[Second, ...]
     events: tuple[Event, ...]
-
-
-class Listener(Protocol):
-    """Observer of a run; it never changes the run. Methods do nothing by default."""
-
-    def on_record(self, record: TickRecord) -> None:
-        """Receive one record."""
-        return
-
-    def on_event(self, time: float, kind: str, text: str) -> None:
-        """Receive one event, for example ``via_point``, ``collision``, ``fall``."""
-        return
-
-    def close(self, exit_reason: str) -> None:
-        """End the observation; called once, also after an error."""
-        return

@@ -16,7 +16,7 @@ from time import process_time
 from typing import Annotated
 
 from hsr8.loop import Simulation
-from hsr8.record import Listener, TickRecord
+from hsr8.record import TickRecord
 from hsr8.robot_builder import build_estimator
 from hsr8.scenario.loader import load_scenario
 from hsr8.scenario.schema import Scenario
@@ -31,8 +31,8 @@ from tyro.conf import Positional, UseAppendAction
 
 
 @dataclass
-class Watcher(Listener):
-    """Listener that keeps what reached the belief, with the truth at each capture."""
+class Watcher:
+    """Keeps what reached the belief, with the truth at each capture."""
 
     moments: list[Moment] = field(default_factory=list)
     _truth: dict[int, tuple[np.ndarray, np.ndarray, np.ndarray]] = field(default_factory=dict)
@@ -53,7 +53,10 @@ class Watcher(Listener):
 def watch(scenario: Scenario, seed: int) -> list[Moment]:
     """Run a scenario; return its frames with the truth."""
     watcher = Watcher()
-    Simulation(scenario, seed, [watcher]).run()
+    with Simulation(scenario, seed) as simulation:
+        for tick in simulation:
+            if tick.record is not None:
+                watcher.on_record(tick.record)
     return watcher.moments
 
 

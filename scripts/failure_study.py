@@ -16,7 +16,7 @@ from pathlib import Path
 from hsr8.evaluation.proportion import Proportion
 from hsr8.frame_record import FrameRecord
 from hsr8.loop import Simulation
-from hsr8.record import Listener, TickRecord
+from hsr8.record import TickRecord
 from hsr8.recorder.run.frame_summary import from_line, to_line
 from hsr8.render.png import write_png
 from hsr8.render.top_down import TopDown
@@ -67,8 +67,8 @@ class Failure:
     text: str
 
 
-class Watch(Listener):
-    """Listener that records the last seconds and stops the run at its first contact or fall."""
+class Watch:
+    """Records the last seconds and stops the run at its first contact or fall."""
 
     def __init__(self, simulation: Simulation) -> None:
         self._simulation = simulation
@@ -176,8 +176,10 @@ def run(scenario: str, settings: list[str], seed: int, image: Path) -> Failure |
     """One run; its failure, and the world at that moment as `image`."""
     simulation = Simulation(load_scenario(scenario, settings, seed), seed)
     watch = Watch(simulation)
-    simulation.listeners.append(watch)
-    simulation.run()
+    with simulation:
+        for tick in simulation:
+            if tick.record is not None:
+                watch.on_record(tick.record)
     if watch.end is None:
         return None
     kind, text = cause_of(watch, watch.end)

@@ -21,10 +21,9 @@ from functools import cache
 from math import hypot
 from pathlib import Path
 
-from hsr8.errors import SimulationDiverged
 from hsr8.evaluation.proportion import Proportion
 from hsr8.loop import Simulation
-from hsr8.record import Listener, TickRecord
+from hsr8.record import Event, TickRecord
 from hsr8.scenario.loader import load_scenario
 from hsr8.scenario.robot import Robot
 
@@ -98,8 +97,8 @@ LADDERS = {
 }
 
 
-class Watch(Listener):
-    """Listener that counts what went wrong."""
+class Watch:
+    """Counts of what went wrong."""
 
     def __init__(self) -> None:
         self.events: Counter[str] = Counter()
@@ -118,19 +117,21 @@ class Watch(Listener):
             self.error = max(self.error, error)
             self.lost += belief.lost
 
-    def on_event(self, time: float, kind: str, text: str) -> None:
+    def on_event(self, event: Event) -> None:
         """Count it."""
-        self.events[kind] += 1
+        self.events[event.kind] += 1
 
 
 def run(settings: list[str], seed: int) -> tuple[str, Watch]:
     """Exit reason and observed events."""
     watch = Watch()
-    simulation = Simulation(load_scenario("quick", settings), seed, [watch])
-    try:
-        return simulation.run().exit_reason, watch
-    except SimulationDiverged:
-        return "diverged", watch
+    with Simulation(load_scenario("quick", settings), seed) as simulation:
+        for tick in simulation:
+            if tick.record is not None:
+                watch.on_record(tick.record)
+            for event in tick.events:
+                watch.on_event(event)
+    return simulation.outcome().exit_reason, watch
 
 
 def settings_of(name: str, size: float, seed: int) -> list[str]:

@@ -10,18 +10,18 @@ import hsr8  # noqa: F401  before MuJoCo: it chooses the OpenGL to draw with
 
 # isort: split
 import tempfile
+from contextlib import closing
 from pathlib import Path
 
+from hsr8.evaluation.recording import Recording
 from hsr8.gl import require_gl
 from hsr8.loop import Simulation
-from hsr8.record import Listener, TickRecord
+from hsr8.record import Tick
 from hsr8.recorder.log.rerun_log import RerunLog
-from hsr8.recorder.run import run_folder
+from hsr8.recorder.recorder import Recorder
 from hsr8.recorder.run.manifest import Manifest
 from hsr8.recorder.run.run_folder import RunFolder
-from hsr8.recorder.run.walking_table import WalkingTableWriter
 from hsr8.robots.normal_form import HEAD_CAMERA
-from hsr8.scenario.loader import dump
 from hsr8.scenario.schema import Scenario
 from hsr8.world.body.physics import place_robot
 from hsr8.world.camera.image_noise import ImageNoise
@@ -38,8 +38,8 @@ REST, PARALLEL, WHOLE = "the rest of the loop", "parallel threads", "whole loop"
 SECOND = 1.0  # the floor has its turn after so much simulated time [s]
 
 
-class Floor(Listener):
-    """Listener that steps and renders the bare model for as long as the loop has run."""
+class Floor:
+    """Steps and renders the bare model for as long as the loop has run."""
 
     def __init__(self, simulation: Simulation) -> None:
         model = simulation.model
@@ -52,8 +52,11 @@ class Floor(Listener):
         self._images = 0
         self._from = 0.0
 
-    def on_record(self, record: TickRecord) -> None:
+    def on_tick(self, tick: Tick) -> None:
         """Take the turn when it is due."""
+        record = tick.record
+        if record is None:
+            return
         self._images += self._rendered and record.frame is not None
         if record.time - self._from < SECOND - 1e-9:
             return
@@ -72,7 +75,7 @@ class Floor(Listener):
         self._renderer.update_scene(self._data, camera=HEAD_CAMERA)
         self._renderer.render()
 
-    def close(self, exit_reason: str) -> None:
+    def close(self) -> None:
         """Free the OpenGL context."""
         self._renderer.close()
 
@@ -91,23 +94,13 @@ class Bench:
         with tempfile.TemporaryDirectory() as out, Stopwatch() as watch:
             path = RunFolder.create(Path(out), scenario.name, seed)
             manifest = Manifest.now(scenario.name, seed, ("bench",), require_gl())
-            layout, humanoid, camera = simulation.layout, simulation.humanoid, scenario.camera
-            simulation.listeners += [
-                floor,
-                RunFolder(path, manifest, dump(scenario), len(layout.movers)),
-                WalkingTableWriter(path / run_folder.WALKING, humanoid.model),
-                RerunLog(
-                    path / run_folder.LOG,
-                    (simulation.model, humanoid, layout),
-                    (camera.width, camera.height),
-                    "bench",
-                    gaze=scenario.navigation.gaze,
-                ),
-            ]
+            recording = Recording(simulation)
+            recording.into(path, manifest)
             self.watch = watch
             self._watch(simulation)
-            outcome = simulation.run()
-        self.simulated = outcome.time
+            with closing(floor):
+                result = recording.run(floor.on_tick)
+        self.simulated = result.metrics["sim_time_s"]
         self.floor = watch.total(*FLOOR) + watch.beside(*FLOOR)
         stages = [stage for stage in watch.times if stage not in FLOOR]
         self.beside = watch.beside(*stages)
@@ -167,10 +160,9 @@ class Bench:
             (type(parts["_mission"]), "update", "mission"),
             (type(parts["_planner"]), "plan", "planner"),
             (type(parts["_gaze"]), "choose", "gaze"),
-            (RunFolder, "on_record", "run folder"),
-            (WalkingTableWriter, "on_record", "walking table"),
+            (Recorder, "append", "tables"),
             (RerunLog, "on_record", "Rerun log"),
-            (Floor, "on_record", "floor: its own turn"),
+            (Floor, "on_tick", "floor: its own turn"),
             (Floor, "physics", FLOOR[0]),
             (Floor, "image", FLOOR[1]),
         ]

@@ -4,7 +4,7 @@ from dataclasses import dataclass, field
 
 from hsr8.frame_record import FrameRecord
 from hsr8.loop import Simulation
-from hsr8.record import Listener, TickRecord
+from hsr8.record import TickRecord
 from hsr8.scenario.loader import load_scenario
 from hsr8.scenario.schema import Scenario
 
@@ -15,8 +15,8 @@ Array = NDArray[np.float64]
 
 
 @dataclass
-class RecordedRun(Listener):
-    """Listener that keeps what the figures show.
+class RecordedRun:
+    """Motion and camera frames of a run, as the figures need them.
 
     Attributes:
         time: of every record [s].
@@ -34,7 +34,7 @@ class RecordedRun(Listener):
     contact: list[bool] = field(default_factory=list)
     frames: list[FrameRecord] = field(default_factory=list)
 
-    def on_record(self, record: TickRecord) -> None:
+    def keep(self, record: TickRecord) -> None:
         """Keep a record."""
         truth = record.truth
         self.time.append(record.time)
@@ -60,8 +60,9 @@ def run(name: str, settings: tuple[str, ...], seed: int, duration: float) -> Rec
         duration: simulated time [s].
     """
     scenario = load_scenario(name, [*settings, f"duration={duration}"])
-    simulation = Simulation(scenario, seed)
-    kept = RecordedRun(len(simulation.layout.movers), scenario)
-    simulation.listeners.append(kept)
-    simulation.run()
+    with Simulation(scenario, seed) as simulation:
+        kept = RecordedRun(len(simulation.layout.movers), scenario)
+        for tick in simulation:
+            if tick.record is not None:
+                kept.keep(tick.record)
     return kept

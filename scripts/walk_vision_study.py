@@ -10,12 +10,13 @@ camera pose that the robot believed in with the true one.
 import argparse
 import os
 import time
+from contextlib import closing
 from math import atan2, hypot
 
 os.environ.setdefault("MUJOCO_GL", "egl")
 
 from hsr8.loop import Simulation
-from hsr8.record import Listener, TickRecord
+from hsr8.record import TickRecord
 from hsr8.robots.normal_form import HEAD_CAMERA
 from hsr8.scenario.loader import load_scenario
 from vision.camera import PinholeCamera
@@ -27,7 +28,7 @@ from vision_score import Study
 from vision_truth import Array, Target, sights
 
 
-class Referee(Listener):
+class Referee:
     """Listens to a run and compares every frame with the truth.
 
     Args:
@@ -105,7 +106,7 @@ class Referee(Listener):
             visible.append(Target(kind, label, forward, left, radius, height, geoms))
         return visible
 
-    def close(self, exit_reason: str) -> None:
+    def close(self) -> None:
         """Free the renderer."""
         self.renderer.close()
 
@@ -151,9 +152,11 @@ def main() -> None:
         scenario = load_scenario(args.scenario, [f"duration={args.duration}", *args.set])
         simulation = Simulation(scenario, seed)
         referee = Referee(simulation, study, args.verbose)
-        simulation.listeners.append(referee)
         timed(simulation, study)
-        simulation.run()
+        with simulation, closing(referee):
+            for tick in simulation:
+                if tick.record is not None:
+                    referee.on_record(tick.record)
         errors += referee.pose_errors
     e = np.array(errors)
     rms, mean = np.sqrt(np.mean(e**2, axis=0)), e.mean(axis=0)

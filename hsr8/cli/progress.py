@@ -2,20 +2,20 @@
 
 import sys
 import time as clock
-from typing import TextIO
+from typing import Self, TextIO
 
 from rich.console import Console
 from rich.live import Live
 from rich.text import Text
 
-from hsr8.record import TickRecord
+from hsr8.record import Event, Tick, TickRecord
 
 REFRESH = 0.1  # wall time between two updates of the live line [s]
 PLAIN_PERIOD = 10.0  # simulated time between two lines without a terminal [s]
 
 
 class Progress:
-    """Listener that shows the progress of a run.
+    """Progress of a run.
 
     A terminal gets one live line, any other stream a plain line every 10 simulated seconds.
 
@@ -37,8 +37,23 @@ class Progress:
         self._next_line = PLAIN_PERIOD
         self._situation = "starting"
 
-    def on_record(self, record: TickRecord) -> None:
-        """Show the record, if a new line is due."""
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        """Remove the live line."""
+        if self._live is not None:
+            self._live.stop()
+            self._live = None
+
+    def show(self, tick: Tick) -> None:
+        """Count collisions and show the record, if a new line is due."""
+        for event in tick.events:
+            self._count(event)
+        if tick.record is not None:
+            self._show(tick.record)
+
+    def _show(self, record: TickRecord) -> None:
         if record.frame is not None:
             self._via_points = record.frame.task.index
             self._situation = "lost" if record.frame.belief.lost else record.frame.motion.situation
@@ -47,24 +62,18 @@ class Progress:
                 self._next_line += PLAIN_PERIOD
                 print(self.line(record), file=self._stream, flush=True)
             return
-        self._live.start()  # hides the cursor: only once `close` is sure to be called
+        self._live.start()  # hides the cursor: only once the end of the context is sure
         now = clock.perf_counter()
         if now - self._shown_at >= REFRESH:
             self._shown_at = now
             self._live.update(Text(self.line(record), style="cyan"), refresh=True)
 
-    def on_event(self, time: float, kind: str, text: str) -> None:
-        """Count collisions; on a terminal print each collision and fall."""
-        if kind in ("collision", "fall"):
-            self._collisions += kind == "collision"
+    def _count(self, event: Event) -> None:
+        """Count a collision; on a terminal print each collision and fall."""
+        if event.kind in ("collision", "fall"):
+            self._collisions += event.kind == "collision"
             if self._live is not None:
-                self._live.console.print(f"[yellow]{time:7.1f} s  {text}[/]")
-
-    def close(self, exit_reason: str) -> None:
-        """Remove the live line."""
-        if self._live is not None:
-            self._live.stop()
-            self._live = None
+                self._live.console.print(f"[yellow]{event.time:7.1f} s  {event.text}[/]")
 
     def line(self, record: TickRecord) -> str:
         """Return the line for `record`."""

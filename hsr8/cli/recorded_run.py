@@ -45,7 +45,7 @@ def start(options: Run, scenario: Scenario, log: LogLevel | None, command: Seque
         require_rosbags()
     manifest = Manifest.now(scenario.name, scenario.seed, command, renderer_of(scenario))
     simulation = Simulation(scenario, scenario.seed)
-    recording = Recording(simulation, () if options.quiet else (Progress(scenario.duration),))
+    recording = Recording(simulation)
 
     def interrupt(number: int, frame: FrameType | None) -> None:
         """End the run after the current tick; a second signal ends it at once."""
@@ -56,7 +56,11 @@ def start(options: Run, scenario: Scenario, log: LogLevel | None, command: Seque
         path = RunFolder.create(options.out, scenario.name, scenario.seed)
         with crash_report(path), on_signals(SIGNALS, interrupt):
             recording.into(path, manifest, log=log, live=view.address if view else "")
-            result = recording.run()
+            if options.quiet:
+                result = recording.run()
+            else:
+                with Progress(scenario.duration) as progress:
+                    result = recording.run(progress.show)
             if options.bag:
                 write_bag(open_run(path), path / BAG)
         code = _report(options, result, manifest)

@@ -1,12 +1,12 @@
 """A simulation whose results are measured and which writes a run folder."""
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator
 from contextlib import ExitStack, contextmanager, suppress
 from dataclasses import dataclass, replace
 from pathlib import Path
 from tempfile import TemporaryDirectory
 from time import perf_counter
-from typing import Any
+from typing import Any, Protocol
 
 from hsr8.errors import RecordingFailed
 from hsr8.evaluation import metrics
@@ -14,14 +14,13 @@ from hsr8.evaluation.verdict import Criterion, evaluate_criteria
 from hsr8.gl import require_gl
 from hsr8.loop import Simulation
 from hsr8.plugin_file import digests
-from hsr8.record import Listener
+from hsr8.record import Tick, TickRecord
 from hsr8.recorder.files.writing import FAILED
 from hsr8.recorder.log_level import RATES, LogLevel, LogRates
 from hsr8.recorder.recorder import Recorder
 from hsr8.recorder.run import run_folder
 from hsr8.recorder.run.manifest import Manifest
 from hsr8.recorder.run.run_folder import RunFolder
-from hsr8.recorder.run.tape import TapeWriter
 from hsr8.recorder.run.walking_table import WalkingTableWriter
 from hsr8.recorder.selection import Selection
 from hsr8.robots.locate import digest
@@ -66,6 +65,19 @@ def renderer_of(scenario: Scenario) -> str:
     return require_gl() if scenario.camera.source == "rendered" else scenario.camera.source
 
 
+class Writer(Protocol):
+    """Writer of records and events."""
+
+    def on_record(self, record: TickRecord) -> None:
+        """Write one record."""
+
+    def on_event(self, time: float, kind: str, text: str) -> None:
+        """Write one event."""
+
+    def close(self, exit_reason: str) -> None:
+        """Write the remaining records; called once, also after an error."""
+
+
 class Recording:
     """A simulation that is recorded and measured.
 
@@ -73,13 +85,12 @@ class Recording:
 
     Args:
         simulation: not yet started.
-        listeners: receive every record after the writers of the run folder.
     """
 
-    def __init__(self, simulation: Simulation, listeners: Sequence[Listener] = ()) -> None:
+    def __init__(self, simulation: Simulation) -> None:
         self._started = perf_counter()
         self._simulation = simulation
-        self._listeners = list(listeners)
+        self._writers: list[Writer] = []
         self._folder: RunFolder | None = None
         self._images: LogRates | None = None
 
@@ -108,19 +119,13 @@ class Recording:
         self._folder = RunFolder(path, manifest, dump(scenario), len(simulation.layout.movers))
         self._images = None if log is None else RATES[log]
         with self._failure_noted():
-            simulation.tape = TapeWriter(
-                path / run_folder.TAPE, len(simulation.humanoid.model.names)
-            )
             walking = path / run_folder.WALKING
-            writers: list[Listener] = [
-                self._folder,
-                WalkingTableWriter(walking, simulation.humanoid.model),
-            ]
+            self._writers = [self._folder, WalkingTableWriter(walking, simulation.humanoid.model)]
             if log is not None:
                 # Imported late: runs without a log start a third of a second earlier.
                 from hsr8.recorder.log.rerun_log import RerunLog  # noqa: PLC0415
 
-                writers.append(
+                self._writers.append(
                     RerunLog(
                         path / run_folder.LOG,
                         (simulation.model, simulation.humanoid, simulation.layout),
@@ -132,16 +137,18 @@ class Recording:
                         duration=scenario.duration,
                     )
                 )
-            self._listeners = writers + self._listeners
 
-    def run(self) -> Result:
+    def run(self, on_tick: Callable[[Tick], None] | None = None) -> Result:
         """Run to the end and write the results.
+
+        Args:
+            on_tick: receives every control tick.
 
         Raises:
             RecordingFailed: the records cannot be written.
         """
         with self._failure_noted():
-            return self._run()
+            return self._run(on_tick)
 
     @contextmanager
     def _failure_noted(self) -> Iterator[None]:
@@ -154,10 +161,9 @@ class Recording:
                     self._folder.note(FAILED)
             raise
 
-    def _run(self) -> Result:
+    def _run(self, on_tick: Callable[[Tick], None] | None) -> Result:
         simulation, diverged = self._simulation, ""
         path = None if self._folder is None else self._folder.path
-        simulation.listeners += self._listeners
         selection = Selection(metrics.COLUMNS)
         with ExitStack() as stack:
             folder = path or Path(stack.enter_context(TemporaryDirectory(prefix="hsr8-")))
@@ -170,9 +176,16 @@ class Recording:
             )
             if self._folder is not None:
                 self._folder.rows = lambda: recorder.rows
-            with suppress(KeyboardInterrupt), simulation, recorder:
+            with suppress(KeyboardInterrupt), ExitStack() as open_:
+                for writer in self._writers:
+                    open_.callback(self._close, writer)
+                open_.enter_context(simulation)
+                open_.enter_context(recorder)
                 for tick in simulation:
                     recorder.append(tick)
+                    self._write(tick)
+                    if on_tick is not None:
+                        on_tick(tick)
                     diverged = next((e.text for e in tick.events if e.kind == "diverged"), "")
             wall_time = perf_counter() - self._started
         outcome = simulation.outcome()
@@ -188,3 +201,13 @@ class Recording:
             run_folder.write_metrics(path, results)
         criteria = evaluate_criteria(simulation.scenario.criteria, results)
         return Result(results, criteria, path, diverged)
+
+    def _write(self, tick: Tick) -> None:
+        for writer in self._writers:
+            if tick.record is not None:
+                writer.on_record(tick.record)
+            for event in tick.events:
+                writer.on_event(*event)
+
+    def _close(self, writer: Writer) -> None:
+        writer.close(self._simulation.exit_reason or "error")

@@ -4,7 +4,6 @@ import pytest
 from hsr8.decisions import GazeController, MotionPlanner
 from hsr8.errors import RenderingUnavailable
 from hsr8.loop import Simulation
-from hsr8.record import Listener
 from hsr8.scenario.loader import load_scenario
 from navigation.decision import GazeDecision, MotionDecision
 
@@ -29,13 +28,6 @@ class Stare:
         return GazeDecision(pan=0.7, tilt=-0.2)
 
 
-class Closes(Listener):
-    """Records the exit reason."""
-
-    def close(self, exit_reason):
-        self.reason = exit_reason
-
-
 def test_tick_by_tick_is_the_same_run():
     at_once = Simulation(quick(), 4).run()
     with Simulation(quick(), 4) as simulation:
@@ -48,27 +40,23 @@ def test_tick_by_tick_is_the_same_run():
     assert all(np.isfinite(tick.setpoint).all() for tick in ticks)
 
 
-def test_a_run_left_early_closes_its_listeners():
-    listener = Closes()
-    with Simulation(quick(), 4, [listener]) as simulation:
+def test_a_run_left_early_has_an_exit_reason(monkeypatch):
+    with Simulation(quick(), 4) as simulation:
         simulation.step()
-    assert listener.reason == simulation.exit_reason == "interrupted"
-    listener = Closes()
-    with pytest.raises(ZeroDivisionError), Simulation(quick(), 4, [listener]):
+    assert simulation.exit_reason == "interrupted"
+    simulation = Simulation(quick(), 4)
+    with pytest.raises(ZeroDivisionError), simulation:
         raise ZeroDivisionError
-    assert listener.reason == "error"
+    assert simulation.exit_reason == "error"
 
-
-def test_a_run_that_cannot_start_closes_its_listeners(monkeypatch):
     def none(*_):
         raise RenderingUnavailable("no OpenGL")
 
     monkeypatch.setattr("hsr8.loop.RenderedCamera", none)
-    listener = Closes()
-    simulation = Simulation(load_scenario("quick"), 4, [listener])
+    simulation = Simulation(load_scenario("quick"), 4)
     with pytest.raises(RenderingUnavailable):
         simulation.run()
-    assert listener.reason == "error"
+    assert simulation.exit_reason == "error"
 
 
 def test_steps_outside_a_run_are_an_error():

@@ -13,21 +13,11 @@ sys.path.insert(0, str(Path(__file__).parents[2] / "scripts"))
 
 
 class Recorded:
-    """A listener that keeps everything."""
+    """Records and events of a run."""
 
-    def __init__(self):
-        self.records = []
-        self.events = []
-        self.reason = None
-
-    def on_record(self, record):
-        self.records.append(record)
-
-    def on_event(self, time, kind, text):
-        self.events.append((time, kind, text))
-
-    def close(self, exit_reason):
-        self.reason = exit_reason
+    def __init__(self, ticks):
+        self.records = [tick.record for tick in ticks if tick.record is not None]
+        self.events = [event for tick in ticks for event in tick.events]
 
     @property
     def frames(self):
@@ -42,8 +32,8 @@ def simulate():
         settings = [f'robot.body="{body}"', f'camera.source="{camera}"', *overrides]
         if duration is not None:
             settings.append(f"duration={duration}")
-        recorded = Recorded()
-        simulation = Simulation(load_scenario(name, settings), seed, [recorded])
-        return simulation.run(), recorded, simulation
+        with Simulation(load_scenario(name, settings), seed) as simulation:
+            recorded = Recorded(list(simulation))
+        return simulation.outcome(), recorded, simulation
 
     return run

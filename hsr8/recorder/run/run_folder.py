@@ -6,8 +6,6 @@
     events.jsonl     events, one per line
     trajectory.bin   motion of robot and movers
     walking.bin      walking: ZMP, feet, torques, velocities
-    measurements.bin exact inputs of belief and decisions
-    tape.bin         setpoints of every tick, a hash of the world every second
     frames.jsonl     belief and decisions, one camera frame per line
     log.rrd          log for the Rerun viewer
     video.mp4        after ``hsr8 render``
@@ -34,7 +32,6 @@ from hsr8.recorder.files.writing import NO_ROOM, GrowingFile, failure, writing
 from hsr8.recorder.record_buffer import RecordBuffer
 from hsr8.recorder.run import frame_summary
 from hsr8.recorder.run.manifest import Manifest
-from hsr8.recorder.run.measurements import MeasurementWriter
 from hsr8.recorder.run.trajectory import TrajectoryWriter
 
 Array = NDArray[np.float64]
@@ -45,8 +42,6 @@ METRICS = "metrics.json"
 EVENTS = "events.jsonl"
 TRAJECTORY = "trajectory.bin"
 WALKING = "walking.bin"
-MEASUREMENTS = "measurements.bin"
-TAPE = "tape.bin"
 FRAMES = "frames.jsonl"
 LOG = "log.rrd"
 VIDEO = "video.mp4"
@@ -54,7 +49,7 @@ CRASH = "crash.txt"
 
 
 class RunFolder:
-    """Listener that writes the folder of one run.
+    """Writer of the folder of one run.
 
     Args:
         path: new folder, see `create`.
@@ -78,7 +73,6 @@ class RunFolder:
             atomic.write_text(path / SCENARIO, scenario)
         self._events = GrowingFile(path / EVENTS)
         self.rows: Callable[[], Mapping[str, int]] = dict
-        self._measurements = MeasurementWriter(path / MEASUREMENTS)
         self._frames = GrowingFile(path / FRAMES)
 
     @staticmethod
@@ -116,7 +110,7 @@ class RunFolder:
             if not (self.path / MANIFEST).exists():  # open files outlive their folder
                 raise FileNotFoundError(errno.ENOENT, "the folder was removed")
         self._write_buffer()
-        for writer in (self._trajectory, self._measurements, self._frames):
+        for writer in (self._trajectory, self._frames):
             writer.flush()
 
     def on_event(self, time: float, kind: str, text: str) -> None:
@@ -129,7 +123,7 @@ class RunFolder:
         """Write the remaining records and the exit reason; close every file."""
         with ExitStack() as stack:
             stack.callback(self.note, exit_reason)
-            for file in (self._events, self._measurements, self._frames, self._trajectory):
+            for file in (self._events, self._frames, self._trajectory):
                 if file is not None:
                     stack.callback(file.close)
             stack.callback(self._write_buffer)
@@ -150,8 +144,6 @@ class RunFolder:
                 [truth.obstacle_positions[first:] for truth in truths],
             )
         frames = [(record.frame, record.truth) for record in records if record.frame is not None]
-        for frame, _ in frames:
-            self._measurements.add(frame)
         for frame, truth in frames:
             gaze_map = frame.gaze.gaze_map
             new = gaze_map is not self._gaze_map

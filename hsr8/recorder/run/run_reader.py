@@ -18,8 +18,6 @@ from hsr8.recorder.rows import TABLES
 from hsr8.recorder.run import run_folder
 from hsr8.recorder.run.frame_summary import FrameSummary, from_line
 from hsr8.recorder.run.manifest import FORMAT, RUNNING
-from hsr8.recorder.run.measurements import Measurement, read_measurements
-from hsr8.recorder.run.tape import Block, read_tape
 from hsr8.recorder.run.trajectory import Trajectory, read_trajectory
 from hsr8.recorder.run.walking_table import WalkingTable, read_walking_table
 from hsr8.recorder.stream import SUFFIX, read_table
@@ -197,20 +195,6 @@ class Run:
     def event_lines(self) -> tuple[dict[str, Any], ...]:
         """Return the events, each with ``time``, ``kind`` and ``text``; errors as `trajectory`."""
         return tuple(self._lines(run_folder.EVENTS, _event))
-
-    def tape(self) -> list[Block]:
-        """Return the setpoints of every tick; errors as `trajectory`."""
-        file = self.path / run_folder.TAPE
-        tape = read_tape(file, whole=self.ended)
-        if self.ended and not (tape and len(tape[-1].setpoints) == 0):
-            raise UsageError(f"{file}: cut off, the end of the run is missing")
-        return tape
-
-    def measurements(self) -> list[Measurement]:
-        """Return the exact inputs of belief and decisions; errors as `trajectory`."""
-        measurements = read_measurements(self.path / run_folder.MEASUREMENTS, whole=self.ended)
-        self._require(run_folder.MEASUREMENTS, len(measurements), "camera_frames", "frames")
-        return measurements
 
     def _lines(self, name: str, parse: Callable[[str], T]) -> Iterator[T]:
         file = self.path / name

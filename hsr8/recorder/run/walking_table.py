@@ -18,7 +18,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from hsr8.errors import UsageError
-from hsr8.record import Listener, TickRecord
+from hsr8.record import TickRecord
 from hsr8.recorder.files.binary import head, read_rows
 from hsr8.recorder.files.writing import GrowingFile
 from hsr8.recorder.record_buffer import RecordBuffer
@@ -110,8 +110,8 @@ class WalkingTable:
         return {limit: rows for limit, rows in active.items() if rows.any()}
 
 
-class WalkingTableWriter(Listener):
-    """Listener that writes the walking table of a run.
+class WalkingTableWriter:
+    """Writer of the walking table of a run.
 
     Args:
         path: file to create.
@@ -139,6 +139,9 @@ class WalkingTableWriter(Listener):
         if self._buffer.add(record):
             self._write_buffer()
             self._file.flush()
+
+    def on_event(self, time: float, kind: str, text: str) -> None:
+        """Ignore events."""
 
     def close(self, exit_reason: str) -> None:
         """Write the remaining rows and close the file."""
