@@ -42,7 +42,7 @@ def show(
     console.print(tables.facts({key: results.get(key) for key in SHOWN}, title))
     if results:
         met = exit_code(str(results.get("exit_reason")), criteria) == 0
-        verdicts = {"success": results["success"], "criteria_met": met}
+        verdicts = {"success": results.get("success"), "criteria_met": met}
         for name, verdict in verdicts.items():
             text = f"{name:<14}{'yes' if verdict else 'no'} ({VERDICTS[name]})"
             console.print(text, highlight=False, soft_wrap=True, markup=False)
