@@ -10,6 +10,7 @@ from hsr8.cli.output_file import require_file_name, writing
 from hsr8.errors import UsageError
 from hsr8.export.bag import write_bag
 from hsr8.export.csv_tables import write_csv
+from hsr8.export.lerobot import write_lerobot
 from hsr8.export.urdf import urdf_of
 from hsr8.recorder.files import atomic
 from hsr8.recorder.run.run_reader import Run, open_run
@@ -25,10 +26,15 @@ def main(options: Export) -> int:
         UsageError: an option is invalid, a target exists, or a run cannot be read.
         ModelError: the robot is unknown or invalid.
     """
-    given = {"--urdf": options.urdf, "--bag": options.bag, "--csv": options.csv}
+    given = {
+        "--urdf": options.urdf,
+        "--bag": options.bag,
+        "--csv": options.csv,
+        "--lerobot": options.lerobot,
+    }
     targets = {option: path for option, path in given.items() if path is not None}
     if not targets:
-        raise UsageError("export: nothing to export; expected --bag, --csv or --urdf")
+        raise UsageError("export: nothing to export; expected --bag, --csv, --lerobot or --urdf")
     for option, path in targets.items():
         _require_new(option, path)
     runs = [open_run(path) for path in options.runs]
@@ -42,6 +48,11 @@ def main(options: Export) -> int:
         run = _only(runs, "--csv")
         with _folder("--csv", options.csv):
             write_csv(run, options.csv)
+    if options.lerobot is not None:
+        if not runs:
+            raise UsageError("--lerobot: got 0 runs; expected at least one")
+        with _folder("--lerobot", options.lerobot):
+            write_lerobot(runs, options.lerobot)
     if options.json:
         print(atomic.dumps({option.removeprefix("--"): str(p) for option, p in targets.items()}))
     else:

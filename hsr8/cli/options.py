@@ -268,6 +268,8 @@ class Export:
     """New rosbag2 folder of the run (MCAP); needs hsr8[ros]."""
     csv: Annotated[File, arg(metavar="DIR")] = None
     """New folder of CSV files, one per table, with units in columns.csv."""
+    lerobot: Annotated[File, arg(metavar="DIR")] = None
+    """New LeRobotDataset v3.0 with one episode per RUN."""
     urdf: File = None
     """URDF file of the robot, with its meshes in a folder next to it."""
     robot: Text = None

@@ -124,6 +124,7 @@ LINES = [
     ("plot RUN", "walking.bin"),
     ("export", "export: nothing to export; expected --bag"),
     ("export --bag bag", "--bag: got 0 runs; expected one"),
+    ("export --lerobot dataset", "--lerobot: got 0 runs; expected at least one"),
     ("export RUN RUN --csv tables", "--csv: got 2 runs; expected one"),
     ("export RUN --csv empty", "--csv empty: exists; expected a new name"),
     ("export nowhere --csv tables", "nowhere: no such run folder"),

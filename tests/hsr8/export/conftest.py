@@ -13,3 +13,12 @@ def run(tmp_path_factory):
     options = ["--duration", "2", "--camera", "analytic", "--no-log", "--quiet"]
     entry(["run", "quick", "--out", str(out), *options])
     return open_run(out)
+
+
+@pytest.fixture(scope="package")
+def illustrated(tmp_path_factory):
+    """Half a second of `quick` with images, with its bag."""
+    out = tmp_path_factory.mktemp("runs")
+    options = ["--duration", "0.5", "--set", "camera.latency_ms=40", "--bag", "--quiet"]
+    entry(["run", "quick", "--out", str(out), *options])
+    return open_run(out)

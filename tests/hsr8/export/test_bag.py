@@ -10,7 +10,6 @@ from scipy.spatial.transform import Rotation
 
 from hsr8.cli.main import entry
 from hsr8.export.bag import write_bag
-from hsr8.recorder.run.run_reader import open_run
 from hsr8.robots.loaded import load_robot
 
 pytest.importorskip("rosbags")
@@ -150,11 +149,8 @@ def test_messages_of_a_template_are_those_of_the_serializer():
 
 
 @pytest.mark.gl
-def test_images_are_stamped_when_they_were_taken(tmp_path, capsys):
-    options = ["--duration", "0.5", "--set", "camera.latency_ms=40", "--bag", "--quiet"]
-    entry(["run", "quick", "--out", str(tmp_path), *options])
-    run = open_run(tmp_path)
-    messages, _ = read(run.path / "bag")
+def test_images_are_stamped_when_they_were_taken(illustrated):
+    run, (messages, _) = illustrated, read(illustrated.path / "bag")
     images = messages["/camera/image/compressed"]
     assert len(images) == len(messages["/camera/camera_info"]) == len(run.images) > 0
     for k, (arrival, image) in enumerate(images):
