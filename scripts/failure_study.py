@@ -17,8 +17,8 @@ from hsr8.evaluation.proportion import Proportion
 from hsr8.frame_record import FrameRecord
 from hsr8.loop import Simulation
 from hsr8.record import TickRecord
-from hsr8.recorder.run.frame_summary import from_line, to_line
 from hsr8.render.png import write_png
+from hsr8.render.shown_frame import shown_frame
 from hsr8.render.top_down import TopDown
 from hsr8.scenario.loader import load_scenario
 from hsr8.world.truth.truth import Contact, Truth
@@ -186,7 +186,7 @@ def run(scenario: str, settings: list[str], seed: int, image: Path) -> Failure |
     if watch.frame is not None and watch.frame_truth is not None:
         view = TopDown(simulation.layout, IMAGE_SIZE)
         movers = watch.end.obstacle_positions[len(simulation.layout.static) :]
-        summary = from_line(to_line(watch.frame, watch.frame_truth))
+        summary = shown_frame(watch.frame, watch.frame_truth.robot)
         write_png(image, view.draw(summary, movers, np.array(watch.trail)[-1000::5]))
     return Failure(scenario, seed, kind, watch.end.time, text)
 

@@ -4,13 +4,13 @@ from dataclasses import dataclass
 from itertools import pairwise
 from math import atan2, cos, hypot, sin
 from pathlib import Path
-from typing import Any
 
-from hsr8.recorder.run.frame_summary import FrameSummary
 from hsr8.recorder.run.run_reader import Run, open_run
-from hsr8.recorder.run.trajectory import Trajectory, rows_at
-from hsr8.recorder.run.walking_table import WalkingTable
+from hsr8.render.motion import Motion as TrueMotion
+from hsr8.render.motion import motion_of, rows_at
+from hsr8.render.shown_frame import ShownFrame, shown_frames
 from hsr8.render.walk_panels import INK, LEFT, RIGHT, contacts, outline
+from hsr8.render.walking_table import WalkingTable, walking_of
 from hsr8.scenario.loader import load_scenario
 from hsr8.scenario.schema import Scenario
 from hsr8.world.field.generator import draw_layout
@@ -62,36 +62,37 @@ class Tour:
         motion: of robot and movers.
         walked: how it walked.
         height: of the camera [m].
-        events: kinds and times.
+        collisions: times of all collisions (n,) [s].
     """
 
     name: str
     scenario: Scenario
     layout: Layout
-    frames: tuple[FrameSummary, ...]
-    motion: Trajectory
+    frames: tuple[ShownFrame, ...]
+    motion: TrueMotion
     walked: WalkingTable
     height: float
-    events: tuple[dict[str, Any], ...]
+    collisions: Array
 
 
 def tour(path: Path) -> Tour:
     """Read a run folder; the row is named by its profile."""
     run: Run = open_run(path)
     scenario = load_scenario(str(run.scenario_file), [])
+    layout = draw_layout(scenario, run.seed)
     return Tour(
         f"profile {scenario.navigation.profile}",
         scenario,
-        draw_layout(scenario, run.seed),
-        run.frame_summaries(),
-        run.trajectory(),
-        run.walking(),
+        layout,
+        shown_frames(run),
+        motion_of(run, len(layout.movers)),
+        walking_of(run),
         float(run.frames["capture_position"][0, 2]),
-        run.event_lines(),
+        run.events["time"][run.events["kind"] == "collision"],
     )
 
 
-def moments(shown: Tour) -> list[FrameSummary]:
+def moments(shown: Tour) -> list[ShownFrame]:
     """One frame of each stretch of the run, if possible with a large virtual obstacle at hand."""
     edges = np.linspace(0.0, shown.frames[-1].time, COLUMNS + 1)
     return [
@@ -100,13 +101,13 @@ def moments(shown: Tour) -> list[FrameSummary]:
     ]
 
 
-def _interest(frame: FrameSummary, start: float, stop: float) -> tuple[float, float]:
+def _interest(frame: ShownFrame, start: float, stop: float) -> tuple[float, float]:
     x, y, _ = frame.pose
     near = [r for vx, vy, r in frame.virtual_obstacles if hypot(vx - x, vy - y) < NEAR]
     return round(max(near, default=0.0), 2), -abs(frame.time - 0.5 * (start + stop))
 
 
-def shapes(shown: Tour, frame: FrameSummary) -> list[tuple[tuple[float, float], float]]:
+def shapes(shown: Tour, frame: ShownFrame) -> list[tuple[tuple[float, float], float]]:
     """Centre and S_oe of the obstacles as believed."""
     tracks = [
         Track(
@@ -160,7 +161,7 @@ def draw(tours: list[Tour]) -> Figure:
     return made
 
 
-def _snapshot(axes: Axes, shown: Tour, frame: FrameSummary) -> None:
+def _snapshot(axes: Axes, shown: Tour, frame: ShownFrame) -> None:
     row = int(rows_at(shown.motion.time, [frame.time])[0])
     fov = frame.fov, shown.scenario.camera.vertical_fov
     visible = placed(window(*frame.gaze, fov, shown.height), frame.truth)
@@ -192,7 +193,7 @@ def _snapshot(axes: Axes, shown: Tour, frame: FrameSummary) -> None:
     half = 0.5 * np.array(shown.layout.field_size)
     square(axes, (-half[0], half[0]), (-half[1], half[1]))
     axes.grid(False)
-    hits = sum(e["kind"] == "collision" and e["time"] <= frame.time for e in shown.events)
+    hits = np.sum(shown.collisions <= frame.time)
     axes.set_title(f"{frame.time:.1f} s, {frame.passed} via points, {hits} contacts", fontsize=8)
 
 
@@ -205,7 +206,7 @@ def _footprints(axes: Axes, shown: Tour, time: float) -> None:
         )
 
 
-def _way_points(axes: Axes, shown: Tour, frame: FrameSummary) -> None:
+def _way_points(axes: Axes, shown: Tour, frame: ShownFrame) -> None:
     points = np.reshape(shown.layout.waypoints, (-1, 2))
     here, ahead = points[frame.passed % len(points)], points[(frame.passed + 1) % len(points)]
     turn = atan2(*(ahead - here)[::-1].tolist())

@@ -23,7 +23,12 @@ def main(options: Info) -> int:
     """
     run = open_run(options.run)
     manifest, results, criteria = run.manifest, run.metrics(), _criteria(run)
-    events = run.event_lines()
+    table = run.events
+    columns = (table["time"].tolist(), table["kind"], table["text"])
+    events = [
+        {"time": time, "kind": kind, "text": text}
+        for time, kind, text in zip(*columns, strict=True)
+    ]
     files = {f.name: f.stat().st_size for f in sorted(run.path.iterdir()) if f.is_file()}
     if options.json:
         met = exit_code(str(manifest.get("exit_reason")), criteria) == 0

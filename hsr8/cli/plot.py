@@ -16,7 +16,9 @@ def main(options: Plot) -> int:
         UsageError: there is no such run or no record of its walking, or an option is invalid.
     """
     run = open_run(options.run)
-    table = run.walking()
+    from hsr8.render.walking_table import walking_of  # noqa: PLC0415  loads the robot
+
+    table = walking_of(run)
     end = float(table.time[-1]) if len(table) else 0.0
     start = options.start
     stop = end if options.stop is None else min(options.stop, end)

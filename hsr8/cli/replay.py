@@ -51,7 +51,7 @@ def main(options: Replay) -> int:
 
 def _time(options: Replay, run: Run) -> float:
     """Return the simulated time of the screenshot [s]: by default the middle of the run."""
-    time = run.trajectory().time
+    time = run.records["time"]
     if options.time is None:
         return float(time[len(time) // 2]) if len(time) else 0.0
     end = float(time[-1]) if len(time) else 0.0

@@ -52,8 +52,6 @@ def show(
     lines = [f"run folder  {path}", f"video       hsr8 render {word}"]
     if (path / run_folder.LOG).exists():
         lines.insert(1, f"log         hsr8 replay {word}")
-    if (path / run_folder.WALKING).exists():
-        lines.append(f"plots       hsr8 plot {word}")
-    lines.append(f"again       {command}")
+    lines += [f"plots       hsr8 plot {word}", f"again       {command}"]
     for line in lines:
         console.print(line, highlight=False, soft_wrap=True, markup=False)

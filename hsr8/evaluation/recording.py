@@ -21,7 +21,6 @@ from hsr8.recorder.recorder import Recorder
 from hsr8.recorder.run import run_folder
 from hsr8.recorder.run.manifest import Manifest
 from hsr8.recorder.run.run_folder import RunFolder
-from hsr8.recorder.run.walking_table import WalkingTableWriter
 from hsr8.recorder.selection import Selection
 from hsr8.robots.locate import digest
 from hsr8.scenario.loader import dump
@@ -116,11 +115,9 @@ class Recording:
         simulation, scenario = self._simulation, self._simulation.scenario
         libraries = manifest.libraries | digests(scenario.plugin) | digest(scenario.robot.model)
         manifest = replace(manifest, libraries=libraries, log=log or "")
-        self._folder = RunFolder(path, manifest, dump(scenario), len(simulation.layout.movers))
+        self._folder = RunFolder(path, manifest, dump(scenario))
         self._images = None if log is None else RATES[log]
         with self._failure_noted():
-            walking = path / run_folder.WALKING
-            self._writers = [self._folder, WalkingTableWriter(walking, simulation.humanoid.model)]
             if log is not None:
                 # Imported late: runs without a log start a third of a second earlier.
                 from hsr8.recorder.log.rerun_log import RerunLog  # noqa: PLC0415
@@ -158,7 +155,7 @@ class Recording:
         except RecordingFailed:
             if self._folder is not None:
                 with suppress(RecordingFailed):
-                    self._folder.note(FAILED)
+                    self._folder.note(FAILED, {})
             raise
 
     def _run(self, on_tick: Callable[[Tick], None] | None) -> Result:
@@ -174,9 +171,8 @@ class Recording:
                 images=self._images,
                 listeners=[selection],
             )
-            if self._folder is not None:
-                self._folder.rows = lambda: recorder.rows
             with suppress(KeyboardInterrupt), ExitStack() as open_:
+                open_.callback(self._note, recorder)
                 for writer in self._writers:
                     open_.callback(self._close, writer)
                 open_.enter_context(simulation)
@@ -211,3 +207,7 @@ class Recording:
 
     def _close(self, writer: Writer) -> None:
         writer.close(self._simulation.exit_reason or "error")
+
+    def _note(self, recorder: Recorder) -> None:
+        if self._folder is not None:
+            self._folder.note(self._simulation.exit_reason or "error", recorder.rows)

@@ -100,7 +100,7 @@ class FrameRows:
         scale: of the world [1].
     """
 
-    def __init__(self, scale: float) -> None:
+    def __init__(self, scale: float = 1.0) -> None:
         self._scale = scale
         self._gaze_map: Array | None = None
         self._motion: MotionDecision | None = None

@@ -1,6 +1,6 @@
 """Tables of a run: NumPy arrays by column, with units."""
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from typing import Any
 
 import numpy as np
@@ -8,7 +8,7 @@ import pyarrow as pa
 from numpy.typing import NDArray
 
 from hsr8.errors import UsageError
-from hsr8.recorder.columns import shape_of
+from hsr8.recorder.columns import batch_of, schema_of, shape_of, sizes_of
 from hsr8.suggestion import suggestion
 
 
@@ -31,6 +31,12 @@ class Table(Mapping[str, Any]):
         self.name = name
         self.arrow = arrow
         self._columns: dict[str, Any] = {}
+
+    @staticmethod
+    def from_rows(name: str, rows: Sequence[Any]) -> "Table":
+        """Return rows, at least one, as a table."""
+        batch = batch_of(rows, schema_of(type(rows[0]), sizes_of(rows), {}))
+        return Table(name, pa.Table.from_batches([batch]))
 
     def __len__(self) -> int:
         """Return the number of rows."""

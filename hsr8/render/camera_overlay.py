@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from hsr8.recorder import palette
-from hsr8.recorder.run.frame_summary import Box, FrameSummary
+from hsr8.render.shown_frame import Box, ShownFrame
 from hsr8.render.text import Color, Image, draw_text, font_size, text_width
 
 Array = NDArray[np.float64]
@@ -40,7 +40,7 @@ class CameraOverlay:
         )
         self._letters = font_size(size[1] / 26)
 
-    def draw(self, image: Image, frame: FrameSummary) -> None:
+    def draw(self, image: Image, frame: ShownFrame) -> None:
         """Draw the detections and the gaze of a frame over `image` (height, width, 3)."""
         near_first = sorted(frame.boxes, key=lambda blob: blob.distance)
         for blob in reversed(near_first):

@@ -6,9 +6,9 @@ from math import hypot
 import numpy as np
 from numpy.typing import NDArray
 
-from hsr8.recorder.run.frame_summary import FrameSummary
 from hsr8.render.camera_overlay import CameraOverlay
 from hsr8.render.gaze_panel import GazePanel
+from hsr8.render.shown_frame import ShownFrame
 from hsr8.render.text import Image, draw_text, font_size, text_width
 from hsr8.render.timeline import Timeline
 from hsr8.render.top_down import TopDown
@@ -41,7 +41,7 @@ class DashboardFrame:
     """
 
     time: float
-    frame: FrameSummary
+    frame: ShownFrame
     movers: Array
     trail: Array
     collisions: int

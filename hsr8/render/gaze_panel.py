@@ -6,7 +6,7 @@ import cv2
 import numpy as np
 
 from hsr8.recorder import palette
-from hsr8.recorder.run.frame_summary import FrameSummary
+from hsr8.render.shown_frame import ShownFrame
 from hsr8.render.text import Image, draw_text, font_size
 
 PANEL, GROOVE = (28, 30, 34), (70, 74, 82)
@@ -37,7 +37,7 @@ class GazePanel:
         heat = cv2.applyColorMap(ramp, cv2.COLORMAP_INFERNO)[:, 0, ::-1]
         self._heat = np.ascontiguousarray(heat)
 
-    def draw(self, image: Image, corner: tuple[int, int], frame: FrameSummary) -> None:
+    def draw(self, image: Image, corner: tuple[int, int], frame: ShownFrame) -> None:
         """Draw into `image` (height, width, 3) with the upper left corner at `corner`."""
         left, top = corner
         width, height = self.size
@@ -51,11 +51,11 @@ class GazePanel:
         self._draw_map(panel, frame)
         self._draw_evaluations(panel, frame)
 
-    def _draw_map(self, panel: Image, frame: FrameSummary) -> None:
+    def _draw_map(self, panel: Image, frame: ShownFrame) -> None:
         part = panel[self._top : self._top + self._map[1], self._pad : self._pad + self._map[0]]
         part[:] = self._heat[0]
         if frame.gaze_map is not None:
-            shades = cv2.resize(frame.gaze_map.image(), self._map, interpolation=cv2.INTER_NEAREST)
+            shades = cv2.resize(frame.gaze_map, self._map, interpolation=cv2.INTER_NEAREST)
             part[:] = self._heat[shades]
         current = self._pixel(frame.gaze)
         radius = max(2, self._map[1] // 14)
@@ -64,7 +64,7 @@ class GazePanel:
         cv2.circle(panel, chosen, radius + 2, palette.BELIEF, 2, cv2.LINE_AA)
         cv2.circle(panel, current, radius - 1, INK, -1, cv2.LINE_AA)
 
-    def _draw_evaluations(self, panel: Image, frame: FrameSummary) -> None:
+    def _draw_evaluations(self, panel: Image, frame: ShownFrame) -> None:
         """Draw a bar per evaluation below the map."""
         pad = self._pad
         row = self._top + self._map[1] + pad + self._letters

@@ -5,8 +5,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from hsr8.recorder.run.trajectory import Trajectory
-from hsr8.recorder.run.walking_table import WalkingTable
+from hsr8.render.motion import Motion
+from hsr8.render.walking_table import WalkingTable
 
 Array = NDArray[np.float64]
 Arrow = tuple[Array, Array]
@@ -36,13 +36,13 @@ class PushArrow:
 
 
 def push_arrows(
-    table: WalkingTable, trajectory: Trajectory, size: float = 1.0, weight: float = 1.0
+    table: WalkingTable, motion: Motion, size: float = 1.0, weight: float = 1.0
 ) -> tuple[PushArrow, ...]:
     """Return the arrows of all pushes of a run.
 
     Args:
         table: of the run.
-        trajectory: of the run.
+        motion: of the run.
         size: height of the robot relative to the default robot [1].
         weight: of the robot relative to the default robot [1].
     """
@@ -58,7 +58,7 @@ def push_arrows(
             PushArrow(
                 begin=float(table["push_begin"][row]),
                 impulse=float(table["push_impulse"][row]),
-                tip=point - GAP * size / newtons * force - trajectory.qpos[row, :3],
+                tip=point - GAP * size / newtons * force - motion.qpos[row, :3],
                 vector=length / newtons * force,
             )
         )

@@ -9,16 +9,17 @@ import numpy as np
 from numpy.typing import NDArray
 
 from hsr8.errors import UsageError
-from hsr8.recorder.run.frame_summary import FrameSummary
 from hsr8.recorder.run.run_reader import Run
-from hsr8.recorder.run.trajectory import rows_at
 from hsr8.render.camera_overlay import CameraOverlay
 from hsr8.render.dashboard import Dashboard, DashboardFrame
 from hsr8.render.follow import FollowCamera
+from hsr8.render.motion import motion_of, rows_at
 from hsr8.render.push_arrows import SHOWN, Arrow, PushArrow, arrows_at, push_arrows
 from hsr8.render.scene_renderer import Image, SceneRenderer
+from hsr8.render.shown_frame import ShownFrame, shown_frames
 from hsr8.render.timeline import Timeline
 from hsr8.render.top_down import TRAIL
+from hsr8.render.walking_table import walking_of
 from hsr8.robots.loaded import load_robot
 from hsr8.robots.normal_form import HEAD_CAMERA
 from hsr8.robots.scale import DEFAULT_STATURE
@@ -53,18 +54,19 @@ class RunImages:
         self._layout = draw_layout(self._scenario, run.seed)
         self._robot = load_robot(self._scenario.robot.model)
         self._times, self._size, self._speed, self._fine = times, size, speed, fine
-        self._trajectory = run.trajectory()
-        self._rows = rows_at(self._trajectory.time, times)
-        self._frames = run.frame_summaries()
+        self._motion = motion_of(run, len(self._layout.movers))
+        self._obstacles = run.records["obstacle_positions"].shape[1]
+        self._rows = rows_at(self._motion.time, times)
+        self._frames = shown_frames(run)
         self._frame_times = [frame.time for frame in self._frames]
-        self._events = run.event_lines()
-        self._collisions = [e["time"] for e in self._events if e["kind"] == "collision"]
+        self._events = [*zip(run.events["time"].tolist(), run.events["kind"], strict=True)]
+        self._collisions = [time for time, kind in self._events if kind == "collision"]
         self._pushes: tuple[PushArrow, ...] = ()
         size_ratio = self._robot.stature / DEFAULT_STATURE
-        if any(event["kind"] == "push" for event in self._events):
+        if any(kind == "push" for _, kind in self._events):
             weight = self._robot.model.measures().weight / HSR_VIII.weight
-            self._pushes = push_arrows(run.walking(), self._trajectory, size_ratio, weight)
-        self._follow = FollowCamera(self._trajectory.qpos[self._rows], fps, speed, size_ratio)
+            self._pushes = push_arrows(walking_of(run), self._motion, size_ratio, weight)
+        self._follow = FollowCamera(self._motion.qpos[self._rows], fps, speed, size_ratio)
         camera = self._scenario.camera
         self._optics = Optics(
             camera.width, camera.height, camera.vertical_fov, self._scenario.world.brightness
@@ -109,23 +111,23 @@ class RunImages:
             fine=self._fine,
         )
         self._stack.enter_context(closing(renderer))
-        recorded = (self._trajectory.qpos.shape[1], self._trajectory.movers.shape[1])
-        if recorded != (renderer.model.nq, len(self._layout.movers)):
-            raise UsageError("the trajectory does not match the scenario file of this run")
+        recorded = (self._motion.qpos.shape[1], self._obstacles)
+        if recorded != (renderer.model.nq, len(self._layout.obstacles)):
+            raise UsageError("the recorded motion does not match the scenario file of this run")
         return renderer
 
     def _place(self, renderer: SceneRenderer, row: int) -> SceneRenderer:
-        """Put robot and movers where they are in a row of the trajectory."""
-        renderer.set_state(self._trajectory.qpos[row], self._trajectory.movers[row])
+        """Put robot and movers where they are in a row of the motion."""
+        renderer.set_state(self._motion.qpos[row], self._motion.movers[row])
         return renderer
 
     def _draw_scene(self, renderer: SceneRenderer, index: int) -> Image:
         placed = self._place(renderer, int(self._rows[index]))
         return placed.draw(self._follow.at(index), self._arrows(index))
 
-    def _draw_camera(self, renderer: SceneRenderer, frame: FrameSummary) -> Image:
+    def _draw_camera(self, renderer: SceneRenderer, frame: ShownFrame) -> Image:
         """Draw the image of the head camera at the capture of a frame."""
-        (row,) = rows_at(self._trajectory.time, [frame.captured]).tolist()
+        (row,) = rows_at(self._motion.time, [frame.captured]).tolist()
         return self._place(renderer, row).draw(HEAD_CAMERA)
 
     def _head(self) -> Draw:
@@ -168,7 +170,7 @@ class RunImages:
 
         return draw
 
-    def _dashboard_frame(self, index: int, frame: FrameSummary) -> DashboardFrame:
+    def _dashboard_frame(self, index: int, frame: ShownFrame) -> DashboardFrame:
         time, row = float(self._times[index]), int(self._rows[index])
         pushed = [p for p in self._pushes if 0.0 <= time - p.begin < SHOWN * self._speed]
         state = "lost" if frame.lost else frame.situation.replace("_", " ")
@@ -177,14 +179,14 @@ class RunImages:
         return DashboardFrame(
             time=time,
             frame=frame,
-            movers=self._trajectory.movers[row],
+            movers=self._motion.movers[row],
             trail=self._trail(row),
             collisions=bisect_right(self._collisions, time),
             state=state,
         )
 
     def _arrows(self, index: int) -> list[Arrow]:
-        base = self._trajectory.qpos[int(self._rows[index]), :3]
+        base = self._motion.qpos[int(self._rows[index]), :3]
         return arrows_at(self._pushes, float(self._times[index]), base, self._speed)
 
     def _frame(self, index: int) -> int:
@@ -193,8 +195,8 @@ class RunImages:
 
     def _trail(self, row: int) -> Array:
         """Return the path up to a row, averaged over gait cycles to remove the sway (n, 2) [m]."""
-        first = int(np.searchsorted(self._trajectory.time, self._trajectory.time[row] - TRAIL))
-        path = self._trajectory.qpos[first : row + 1, :2]
+        first = int(np.searchsorted(self._motion.time, self._motion.time[row] - TRAIL))
+        path = self._motion.qpos[first : row + 1, :2]
         whole = len(path) // CYCLE * CYCLE
         trail: Array = path[:whole].reshape(-1, CYCLE, 2).mean(axis=1)
         return trail

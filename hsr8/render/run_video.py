@@ -76,7 +76,7 @@ def render_run(run: Run, options: VideoOptions, out: Path, progress: Progress) -
         UsageError: the run has no motion in the given time, or the camera is unknown.
         RenderingUnavailable: there is no OpenGL.
     """
-    times, speed = instants(run.trajectory().time, options)
+    times, speed = instants(run.records["time"], options)
     kind = out.suffix.lower()
     if kind == ".png":
         times, speed = times[:1], 1.0

@@ -1,7 +1,6 @@
 """Timeline under the dashboard: progress of the video and marks of events."""
 
-from collections.abc import Mapping, Sequence
-from typing import Any
+from collections.abc import Sequence
 
 from hsr8.render.text import Image
 
@@ -25,17 +24,17 @@ class Timeline:
     """Timeline of one video.
 
     Args:
-        events: of the run, each with ``time`` and ``kind``.
+        events: time [s] and kind of each.
         start, stop: simulated time of the first and the last image [s].
     """
 
-    def __init__(self, events: Sequence[Mapping[str, Any]], start: float, stop: float) -> None:
+    def __init__(self, events: Sequence[tuple[float, str]], start: float, stop: float) -> None:
         self._start, self._length = start, max(stop - start, 1e-9)
         self._marks: list[tuple[float, Color]] = []
         for kind, color in MARKS.items():
-            for event in events:
-                if event["kind"] == kind and start <= event["time"] <= stop:
-                    self._marks.append((event["time"], color))
+            for time, of_kind in events:
+                if of_kind == kind and start <= time <= stop:
+                    self._marks.append((time, color))
 
     def draw(self, image: Image, time: float) -> None:
         """Draw the state at `time` [s] over the lowest rows of `image` (height, width, 3)."""

@@ -8,8 +8,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from hsr8.recorder import ellipse, palette
-from hsr8.recorder.run.frame_summary import FrameSummary, TrackSummary
 from hsr8.render.canvas import Canvas
+from hsr8.render.shown_frame import ShownFrame, ShownTrack
 from hsr8.render.text import Image, draw_text, font_size
 from hsr8.world.field.layout import Layout
 
@@ -59,7 +59,7 @@ class TopDown:
             self._ground.disc(obstacle.position, obstacle.radius, SHADE)
             self._ground.ring(obstacle.position, obstacle.radius, INK, self._width)
 
-    def draw(self, frame: FrameSummary, movers: Array, trail: Array) -> Image:
+    def draw(self, frame: ShownFrame, movers: Array, trail: Array) -> Image:
         """Return the map at one camera frame.
 
         Args:
@@ -100,7 +100,7 @@ class TopDown:
             corner = (u + self._letters // 2, v - self._letters // 2)
             draw_text(canvas.image, corner, str(number + 1), NUMBER, self._letters, strong=True)
 
-    def _draw_track(self, canvas: Canvas, track: TrackSummary) -> None:
+    def _draw_track(self, canvas: Canvas, track: ShownTrack) -> None:
         strong = palette.of_label(track.label)
         pale = tuple((channel + 2 * 246) // 3 for channel in strong)
         canvas.disc(track.position, track.radius, strong if track.visible else pale)
@@ -127,7 +127,7 @@ def _robot(pose: Sequence[float], scale: float) -> list[tuple[float, float]]:
     return [(x + c * u - s * v, y + s * u + c * v) for u, v in ROBOT]
 
 
-def _view(frame: FrameSummary, scale: float) -> Array:
+def _view(frame: ShownFrame, scale: float) -> Array:
     """Return the outline of the field of view in W [m]."""
     x, y, yaw = frame.pose
     half = min(0.5 * frame.fov, pi)

@@ -14,8 +14,8 @@ from matplotlib.figure import Figure, FigureBase
 from matplotlib.patches import Patch
 
 from hsr8.errors import UsageError
-from hsr8.recorder.run.walking_table import WalkingTable
 from hsr8.render import walk_panels as panels
+from hsr8.render.walking_table import WalkingTable
 
 What = Literal["walking", "zmp", "footsteps", "velocity", "torques", "tilt"]
 SUFFIXES = (".png", ".svg", ".pdf")

@@ -10,7 +10,7 @@ from matplotlib.patches import Patch
 from numpy.typing import NDArray
 
 from hsr8.recorder.arc import mean_velocity
-from hsr8.recorder.run.walking_table import PHASES, WalkingTable
+from hsr8.render.walking_table import PHASES, WalkingTable
 from walking.phase import Phase
 
 Array = NDArray[np.float64]

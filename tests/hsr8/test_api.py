@@ -79,7 +79,7 @@ def test_ctrl_c_ends_the_loop_around_a_run_and_leaves_its_folder(tmp_path):
         hsr8.run("quick", settings=STAND_INS, out=tmp_path, planner=Stops(), log=False)
     run = open_run(tmp_path)
     assert run.manifest["exit_reason"] == run.metrics()["exit_reason"] == "interrupted"
-    assert 0.3 < run.trajectory().time[-1] < 1.0
+    assert 0.3 < run.records["time"][-1] < 1.0
 
 
 def test_the_log_follows_its_level(tmp_path):

@@ -21,11 +21,11 @@ from hsr8.recorder.log.channel import TIMELINE, Channel
 from hsr8.recorder.log.geometry import Scene, sole_outline
 from hsr8.recorder.log.plan_layer import PlanLayer
 from hsr8.recorder.log.plot_layer import PlotLayer
+from hsr8.recorder.log.record_frame import OdometryToWorld
 from hsr8.recorder.log.robot_layer import RobotLayer, followed_entity
 from hsr8.recorder.log.walk_layer import WalkLayer
 from hsr8.recorder.log_level import RATES, LogLevel
 from hsr8.recorder.record_buffer import PERIOD, RecordBuffer
-from hsr8.recorder.run.walking_table import OdometryToWorld
 from hsr8.recorder.throttle import Throttle
 from hsr8.robots.loaded import LoadedRobot
 from hsr8.robots.scale import DEFAULT_ROBOT, DEFAULT_STATURE

@@ -13,7 +13,7 @@ from hsr8.recorder.arc import mean_velocity
 from hsr8.recorder.log.block_stream import BlockStream
 from hsr8.recorder.log.channel import Channel
 from hsr8.recorder.log.plot_layer import BLUE, GREEN, GREY, ORANGE, RED, SAND, VIOLET, Curves, Lane
-from hsr8.recorder.run.walking_table import LIGHT, OdometryToWorld
+from hsr8.recorder.log.record_frame import LIGHT, OdometryToWorld
 from navigation.angles import wrap
 from walking.body.robot_model import RobotModel
 from walking.command_limits import Limit

@@ -1,25 +1,17 @@
 """Reading of run folders, also of runs that were killed."""
 
 import json
-from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
 from typing import Any, TypeVar
 
-import numpy as np
-from numpy.typing import NDArray
-
 from hsr8.errors import ScenarioError, UsageError
 from hsr8.file_format import check_number
-from hsr8.recorder.files.json_lines import read_lines
 from hsr8.recorder.files.writing import FAILED
 from hsr8.recorder.rows import TABLES
 from hsr8.recorder.run import run_folder
-from hsr8.recorder.run.frame_summary import FrameSummary, from_line
 from hsr8.recorder.run.manifest import FORMAT, RUNNING
-from hsr8.recorder.run.trajectory import Trajectory, read_trajectory
-from hsr8.recorder.run.walking_table import WalkingTable, read_walking_table
 from hsr8.recorder.stream import SUFFIX, read_table
 from hsr8.recorder.table import Table
 from hsr8.scenario.loader import load_scenario
@@ -163,54 +155,6 @@ class Run:
             raise UsageError(f"{path}: cut off, it holds {len(table)} of {expected} rows")
         return table
 
-    def trajectory(self) -> Trajectory:
-        """Return the motion of robot and movers.
-
-        Raises:
-            UsageError: it is missing, damaged or, in a run that ended, cut off.
-        """
-        trajectory = read_trajectory(self.path / run_folder.TRAJECTORY)
-        self._require_end(run_folder.TRAJECTORY, trajectory.time)
-        return trajectory
-
-    def walking(self) -> WalkingTable:
-        """Return the walking table; errors as `trajectory`."""
-        table = read_walking_table(self.path / run_folder.WALKING)
-        self._require_end(run_folder.WALKING, table.time)
-        return table
-
-    def frame_summaries(self) -> tuple[FrameSummary, ...]:
-        """Return belief and decisions of every camera frame; errors as `trajectory`."""
-        frames: list[FrameSummary] = []
-
-        def parse(line: str) -> FrameSummary:
-            return from_line(line, frames[-1] if frames else None)
-
-        for frame in self._lines(run_folder.FRAMES, parse):
-            frames.append(frame)  # one by one: `parse` reads the latest
-        if frames:
-            self._require(run_folder.FRAMES, len(frames), "camera_frames", "frames")
-        return tuple(frames)
-
-    def event_lines(self) -> tuple[dict[str, Any], ...]:
-        """Return the events, each with ``time``, ``kind`` and ``text``; errors as `trajectory`."""
-        return tuple(self._lines(run_folder.EVENTS, _event))
-
-    def _lines(self, name: str, parse: Callable[[str], T]) -> Iterator[T]:
-        file = self.path / name
-        return read_lines(file, parse, whole=self.ended) if file.exists() else iter(())
-
-    def _require_end(self, name: str, time: NDArray[np.float64]) -> None:
-        self._require(name, float(time[-1]) if len(time) else 0.0, "sim_time_s", "s")
-
-    def _require(self, name: str, size: float, result: str, unit: str) -> None:
-        """Refuse a record that holds less than the `result` of a run that ended."""
-        expected = self.metrics().get(result) if self.ended else None
-        if isinstance(expected, int | float) and size < expected:
-            raise UsageError(
-                f"{self.path / name}: cut off, it holds {size:g} of {expected:g} {unit}"
-            )
-
 
 def open_run(path: str | Path) -> Run:
     """Return the run at `path`, or the newest run below it.
@@ -248,11 +192,6 @@ def _run(path: Path) -> Run:
         raise UsageError(f"cannot read {file}: format: expected an integer, got {number!r}")
     check_number(number, FORMAT, path, "run folder")
     return Run(path, manifest)
-
-
-def _event(line: str) -> dict[str, Any]:
-    event = json.loads(line)
-    return {"time": float(event["time"]), "kind": str(event["kind"]), "text": str(event["text"])}
 
 
 def _alternatives(path: Path) -> str:

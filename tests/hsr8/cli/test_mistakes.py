@@ -121,7 +121,7 @@ LINES = [
     ("verify RUN", "RUN"),
     ("replay RUN", "RUN: no log; the run was made with --no-log"),
     ("plot RUN --what speed", "walking"),
-    ("plot RUN", "walking.bin"),
+    ("plot RUN", "scenario.toml"),
     ("export", "export: nothing to export; expected --bag"),
     ("export --bag bag", "--bag: got 0 runs; expected one"),
     ("export --lerobot dataset", "--lerobot: got 0 runs; expected at least one"),
@@ -164,7 +164,7 @@ def folder(tmp_path_factory):
         (path / name).mkdir(parents=True)
     (path / "damaged/manifest.json").write_text("{")
     run = RunFolder.create(path, "made", 7)
-    RunFolder(run, Manifest.now("quick", 7, (), "analytic"), "", movers=1).close("goal")
+    RunFolder(run, Manifest.now("quick", 7, (), "analytic"), "").note("goal", {})
     manifest = json.loads((run / "manifest.json").read_text())
     (path / "future/manifest.json").write_text(json.dumps(manifest | {"format": 99}))
     run.rename(path / "RUN")

@@ -2,18 +2,14 @@ import pytest
 
 from hsr8.cli.main import entry
 from hsr8.recorder.run import run_folder
-from hsr8.recorder.run.manifest import Manifest
-from hsr8.recorder.run.run_folder import RunFolder
+from hsr8.recorder.run.run_reader import open_run
 
 
 @pytest.fixture
-def run(tmp_path, walk):
-    path = RunFolder.create(tmp_path, "quick", 7)
-    folder = RunFolder(path, Manifest.now("quick", 7, (), "analytic"), "", movers=1)
-    for record in walk(1.0):
-        folder.on_record(record)
-    folder.close("goal")
-    return path
+def run(tmp_path):
+    options = ["--body", "kinematic", "--camera", "analytic", "--duration", "1", "--no-log"]
+    entry(["run", "quick", *options, "--quiet", "--out", str(tmp_path)])
+    return open_run(tmp_path).path
 
 
 def test_without_a_display_alternatives_are_printed(run, capsys, monkeypatch):

@@ -10,6 +10,7 @@ from hsr8.cli.main import entry
 from hsr8.errors import SimulationDiverged
 from hsr8.loop import Simulation
 from hsr8.recorder.run.run_reader import open_run
+from hsr8.scenario.loader import dump
 
 FAST = ["run", "quick", "--body", "kinematic", "--camera", "analytic", "--duration", "1"]
 
@@ -118,16 +119,15 @@ def test_ctrl_c_leaves_a_whole_folder(tmp_path, monkeypatch, capsys, number):
     assert 0.4 < results["sim_time_s"] < 0.6
     run = open_run(tmp_path)
     assert run.manifest["exit_reason"] == "interrupted"
-    assert len(run.trajectory()) > 20
+    assert len(run.records) > 20
 
 
 def test_ctrl_c_during_setup_leaves_a_whole_folder(tmp_path, monkeypatch, capsys):
-    def interrupted(*_):
+    def interrupted(scenario):
         os.kill(os.getpid(), signal.SIGINT)
+        return dump(scenario)
 
-    monkeypatch.setattr("hsr8.evaluation.recording.WalkingTableWriter.__init__", interrupted)
-    monkeypatch.setattr("hsr8.evaluation.recording.WalkingTableWriter.on_record", lambda *_: None)
-    monkeypatch.setattr("hsr8.evaluation.recording.WalkingTableWriter.close", lambda *_: None)
+    monkeypatch.setattr("hsr8.evaluation.recording.dump", interrupted)
     assert _run(tmp_path, "--quiet") == 130
     run = open_run(tmp_path)
     assert run.manifest["exit_reason"] == run.metrics()["exit_reason"] == "interrupted"

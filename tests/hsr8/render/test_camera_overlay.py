@@ -4,9 +4,9 @@ import numpy as np
 import pytest
 
 from hsr8.recorder import palette
-from hsr8.recorder.run.frame_summary import Box, from_line, to_line
 from hsr8.render import camera_overlay
 from hsr8.render.camera_overlay import CameraOverlay
+from hsr8.render.shown_frame import Box, shown_frame
 
 FOV = np.radians(60.0)
 FOCAL = 120.0 / np.tan(FOV / 2)  # of a image 240 pixels high
@@ -16,10 +16,10 @@ AWAY = {"gaze": (1.5, 0.0), "look": (-1.5, 0.0)}  # chosen behind the camera: no
 @pytest.fixture
 def summary(fake):
     frame = fake.frame(0.6, (0.0, 0.0, 0.0))
-    line = to_line(frame, fake.record(0.6, (0.0, 0.0, 0.0)).truth)
+    shown = shown_frame(frame, np.zeros(3))
 
     def changed(**change):
-        return replace(from_line(line), **change)
+        return replace(shown, **change)
 
     return changed
 

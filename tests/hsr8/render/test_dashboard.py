@@ -1,16 +1,16 @@
 import numpy as np
 import pytest
 
-from hsr8.recorder.run.frame_summary import from_line, to_line
 from hsr8.render.dashboard import Dashboard, DashboardFrame
 from hsr8.render.run_video import VideoOptions
+from hsr8.render.shown_frame import shown_frame
 from hsr8.render.timeline import Timeline
 from hsr8.scenario.loader import load_scenario
 
 
 @pytest.fixture
 def drawn(fake, layout):
-    line = to_line(fake.frame(0.6, (0.0, 0.0, 0.0)), fake.record(0.6, (0.0, 0.0, 0.0)).truth)
+    frame = shown_frame(fake.frame(0.6, (0.0, 0.0, 0.0)), np.zeros(3))
 
     def draw(size, collisions=0, state="free"):
         board = Dashboard(layout, load_scenario("quick"), Timeline((), 0.0, 1.0), size, 1.0)
@@ -18,7 +18,7 @@ def drawn(fake, layout):
         camera = np.full((*board.camera_size[::-1], 3), (0, 200, 0), np.uint8)
         shown = DashboardFrame(
             time=0.6,
-            frame=from_line(line),
+            frame=frame,
             movers=np.array([[1.0, 1.0]]),
             trail=np.zeros((0, 2)),
             collisions=collisions,

@@ -4,17 +4,15 @@ import numpy as np
 import pytest
 
 from hsr8.recorder import palette
-from hsr8.recorder.run.frame_summary import from_line, to_line
 from hsr8.render.gaze_panel import GazePanel
+from hsr8.render.shown_frame import shown_frame
 
 PAN, TILTS = np.radians(90.0), (np.radians(-60.0), np.radians(20.0))
 
 
 @pytest.fixture
 def frame(fake):
-    return from_line(
-        to_line(fake.frame(0.6, (0.0, 0.0, 0.0)), fake.record(0.6, (0.0, 0.0, 0.0)).truth)
-    )
+    return shown_frame(fake.frame(0.6, (0.0, 0.0, 0.0)), np.zeros(3))
 
 
 def _drawn(frame):

@@ -1,9 +1,9 @@
 import numpy as np
 import pytest
 
-from hsr8.recorder.run.trajectory import Trajectory
-from hsr8.recorder.run.walking_table import COLUMNS, WalkingTable
+from hsr8.render.motion import Motion
 from hsr8.render.push_arrows import GAP, SHOWN, arrows_at, push_arrows
+from hsr8.render.walking_table import COLUMNS, WalkingTable
 
 
 @pytest.fixture
@@ -18,7 +18,7 @@ def run():
     qpos = np.zeros((100, 33))
     qpos[:, 0] = 1.0
     table = WalkingTable(time, columns, (0.01, 0.05, 0.03), {}, {})
-    return table, Trajectory(time, qpos, np.zeros((100, 0, 2)))
+    return table, Motion(time, qpos, np.zeros((100, 0, 2)))
 
 
 def test_pushes_are_distinguished_and_have_their_impulse(run):

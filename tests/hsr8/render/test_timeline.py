@@ -18,11 +18,11 @@ def test_elapsed_time_is_bright():
 
 def test_events_are_marked_at_their_time_and_falls_on_top():
     events = [
-        {"time": 12.0, "kind": "push"},
-        {"time": 12.0, "kind": "fall"},
-        {"time": 18.0, "kind": "push"},
-        {"time": 19.0, "kind": "unheard of"},
-        {"time": 25.0, "kind": "push"},
+        (12.0, "push"),
+        (12.0, "fall"),
+        (18.0, "push"),
+        (19.0, "unheard of"),
+        (25.0, "push"),
     ]
     strip = strip_at(10.0, events)
     assert strip[20] == MARKS["fall"]

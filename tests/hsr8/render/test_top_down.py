@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from hsr8.recorder import palette
-from hsr8.recorder.run.frame_summary import from_line, to_line
+from hsr8.render.shown_frame import shown_frame
 from hsr8.render.top_down import TopDown
 
 
@@ -12,7 +12,7 @@ from hsr8.render.top_down import TopDown
 def summary(fake):
     def make(pose=(0.0, 0.0, 0.0), **change):
         frame = fake.frame(0.6, pose, **change)
-        return from_line(to_line(frame, fake.record(0.6, pose).truth))
+        return shown_frame(frame, np.array(pose))
 
     return make
 

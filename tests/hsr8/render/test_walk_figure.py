@@ -5,9 +5,10 @@ import pytest
 
 from hsr8.errors import UsageError
 from hsr8.recorder.log.walk_layer import GAIT
-from hsr8.recorder.run.walking_table import COLUMNS, LIMITS, WalkingTable
+from hsr8.recorder.recorded import LIMITS
 from hsr8.render import walk_panels
 from hsr8.render.walk_figure import TIME_PANELS, draw, save
+from hsr8.render.walking_table import COLUMNS, WalkingTable
 from walking.command_limits import Limit
 from walking.phase import Phase
 

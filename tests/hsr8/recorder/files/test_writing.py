@@ -8,11 +8,9 @@ from pathlib import Path
 import pytest
 
 from hsr8.cli.main import entry
-from hsr8.errors import RecordingFailed
 from hsr8.recorder.log import rerun_log
 from hsr8.recorder.recorder import Recorder
 from hsr8.recorder.run import run_folder
-from hsr8.recorder.run.manifest import Manifest
 from hsr8.recorder.run.run_folder import RunFolder
 from hsr8.recorder.run.run_reader import open_run
 from hsr8.recorder.stream import CHECKSUMS, SUFFIX
@@ -70,14 +68,6 @@ def test_a_run_whose_results_cannot_be_written_fails(tmp_path, capfd, monkeypatc
     assert _run(tmp_path, "--no-log") == 3
     assert "No space left" in capfd.readouterr().err
     assert open_run(tmp_path).manifest["exit_reason"] == "failed"
-
-
-def test_an_event_that_cannot_be_written_ends_the_run(tmp_path, full):
-    full(run_folder.EVENTS)
-    path = RunFolder.create(tmp_path, "quick", 7)
-    folder = RunFolder(path, Manifest.now("quick", 7, ("hsr8",), "analytic"), "", movers=1)
-    with pytest.raises(RecordingFailed, match="No space left"):
-        folder.on_event(1.0, "fall", "it fell")
 
 
 def test_a_removed_folder_ends_the_run(tmp_path, capfd, monkeypatch):

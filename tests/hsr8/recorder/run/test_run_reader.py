@@ -4,8 +4,9 @@ import shutil
 import pytest
 
 from hsr8.cli.main import entry
+from hsr8.errors import UsageError
 from hsr8.recorder.run.manifest import Manifest
-from hsr8.recorder.run.run_folder import RunFolder, write_metrics
+from hsr8.recorder.run.run_folder import RunFolder
 from hsr8.recorder.run.run_reader import open_run
 
 COMMANDS = [
@@ -82,22 +83,23 @@ def test_an_unreadable_sweep_is_one_clear_error(tmp_path, capsys):
     assert error == f"hsr8: {closed}: cannot read: Permission denied\n"
 
 
-def test_only_a_run_that_ended_must_be_complete(tmp_path, walk):
-    for end, ended in (
-        ("goal", True),
-        ("fall", True),
-        ("diverged", True),
-        ("running", False),
-        ("failed", False),
-        ("interrupted", False),
-        ("error", False),
-    ):
-        path = RunFolder.create(tmp_path, "quick", 7)
-        folder = RunFolder(path, Manifest.now("quick", 7, (), "analytic"), "", movers=1)
-        for record in walk(1.0):
-            folder.on_record(record)
-        folder.close(end)
-        write_metrics(path, {"sim_time_s": 1.0, "camera_frames": 17})
-        run = open_run(path)
-        assert run.ended == ended
-        assert (len(run.trajectory()), len(run.frame_summaries())) == (51, 17)
+@pytest.mark.parametrize(
+    ("end", "ended"),
+    [
+        *((reason, True) for reason in ("goal", "fall", "diverged", "timeout", "completed")),
+        *((reason, False) for reason in ("running", "failed", "interrupted", "error")),
+    ],
+)
+def test_only_a_run_that_ended_must_be_complete(tmp_path, end, ended):
+    path = RunFolder.create(tmp_path, "quick", 7)
+    folder = RunFolder(path, Manifest.now("quick", 7, (), "analytic"), "")
+    folder.note(end, {"events": 3})
+    run = open_run(path)
+    assert run.ended == ended
+    if not ended:
+        assert len(run.events) == len(run.ticks) == 0
+        return
+    with pytest.raises(UsageError, match=r"events\.arrows: cut off, it holds 0 of 3 rows"):
+        len(run.events)
+    with pytest.raises(UsageError, match=r"ticks\.arrows: cut off"):
+        len(run.ticks)

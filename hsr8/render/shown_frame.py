@@ -1,0 +1,196 @@
+"""Camera frames as the dashboard and the maps show them."""
+
+from dataclasses import dataclass
+from typing import TypeVar
+
+import numpy as np
+from numpy.typing import NDArray
+
+from hsr8.frame_record import FrameRecord
+from hsr8.recorder.recorded import FrameRows
+from hsr8.recorder.run.run_reader import Run
+from hsr8.recorder.table import Table
+
+Array = NDArray[np.float64]
+T = TypeVar("T")
+
+
+@dataclass(frozen=True, slots=True)
+class ShownTrack:
+    """A believed obstacle.
+
+    Attributes:
+        id: number of the track.
+        label: colour class.
+        position: in W [m].
+        velocity: [m/s].
+        covariance: xx, xy, yy of its position [m²].
+        radius: [m].
+        motion: static, moving or unknown.
+        visible: seen in this frame.
+    """
+
+    id: int
+    label: str
+    position: tuple[float, float]
+    velocity: tuple[float, float]
+    covariance: tuple[float, float, float]
+    radius: float
+    motion: str
+    visible: bool
+
+
+@dataclass(frozen=True, slots=True)
+class Box:
+    """Detection in the image.
+
+    Attributes:
+        label: colour class, of a beacon ``top/bottom``.
+        box: left, top, right, bottom [pixel].
+        distance: [m].
+    """
+
+    label: str
+    box: tuple[int, int, int, int]
+    distance: float
+
+
+@dataclass(frozen=True, slots=True)
+class ShownFrame:
+    """Belief and decisions of one camera frame.
+
+    Attributes:
+        time: when the frame reached the robot [s].
+        truth: true x, y, heading of the robot [m, m, rad].
+        pose: believed x, y, heading [m, m, rad].
+        covariance: xx, xy, yy of the believed position [m²].
+        gaze: measured pan and tilt of the head [rad].
+        fov: horizontal field of view [rad].
+        target: destination in W [m].
+        passed: via points passed.
+        velocity: decided (vx, vy, wz) [m/s, m/s, rad/s].
+        situation: result of velocity modification.
+        psi: partial evaluations lm, sf, ob, way.
+        lost: localization reports being lost.
+        tracks: believed obstacles.
+        virtual_obstacles: x, y, radius of each [m].
+        captured: when the image was taken [s].
+        look: chosen pan and tilt [rad].
+        boxes: detections.
+        gaze_map: in 255 shades, left and up of the head at left and up (tilts, pans); None without
+            a map.
+    """
+
+    time: float
+    truth: tuple[float, float, float]
+    pose: tuple[float, float, float]
+    covariance: tuple[float, float, float]
+    gaze: tuple[float, float]
+    fov: float
+    target: tuple[float, float]
+    passed: int
+    velocity: tuple[float, float, float]
+    situation: str
+    psi: tuple[float, float, float, float]
+    lost: bool
+    tracks: tuple[ShownTrack, ...]
+    virtual_obstacles: tuple[tuple[float, float, float], ...]
+    captured: float
+    look: tuple[float, float]
+    boxes: tuple[Box, ...]
+    gaze_map: NDArray[np.uint8] | None
+
+
+def shown_frames(run: Run) -> tuple[ShownFrame, ...]:
+    """Return all camera frames of a run."""
+    frames, records = run.frames, run.records
+    if not len(frames):
+        return ()
+    return _shown(frames, records["robot"][records.at(frames["time"])])
+
+
+def shown_frame(frame: FrameRecord, robot: Array) -> ShownFrame:
+    """Return one camera frame with the true pose (3,) of the robot."""
+    return _shown(Table.from_rows("frames", [FrameRows().row(frame)]), robot[None])[0]
+
+
+def _shown(frames: Table, robot: Array) -> tuple[ShownFrame, ...]:
+    """Return camera frames, each with the true pose of the robot (n, 3)."""
+    tracks, boxes, virtual = _tracks(frames), _boxes(frames), _virtual(frames)
+    new = dict(zip(*frames.present("gaze_map"), strict=True))
+    columns = {name: frames[name].tolist() for name in _PLAIN}
+    covariance = frames["pose_covariance"][:, (0, 0, 1), (0, 1, 1)].tolist()
+    fov, gaze_map = frames["fov"][:, 0].tolist(), None
+    shown = []
+    for k, truth in enumerate(robot.tolist()):
+        gaze_map = new.get(k, gaze_map)
+        row = {name: values[k] for name, values in columns.items()}
+        shown.append(
+            ShownFrame(
+                time=row["time"],
+                truth=tuple(truth),
+                pose=tuple(row["pose"]),
+                covariance=tuple(covariance[k]),
+                gaze=tuple(row["head"]),
+                fov=fov[k],
+                target=tuple(row["target"]),
+                passed=row["via_points"],
+                velocity=tuple(row["velocity"]),
+                situation=row["situation"],
+                psi=tuple(row["psi"]),
+                lost=row["lost"],
+                tracks=tracks[k],
+                virtual_obstacles=virtual[k],
+                captured=row["captured"],
+                look=tuple(row["gaze"]),
+                boxes=boxes[k],
+                gaze_map=None if gaze_map is None else gaze_map[::-1, ::-1],
+            )
+        )
+    return tuple(shown)
+
+
+_PLAIN = (
+    *("time", "pose", "head", "target", "via_points", "velocity", "situation", "psi", "lost"),
+    *("captured", "gaze"),
+)
+
+
+def _tracks(frames: Table) -> list[tuple[ShownTrack, ...]]:
+    items = frames["tracks"]
+    columns = (
+        items["id"],
+        items["label"],
+        items["position"],
+        items["velocity"],
+        items["covariance"][:, (0, 0, 1), (0, 1, 1)],
+        items["radius"],
+        items["motion"],
+        items["visible"],
+    )
+    tracks = [
+        ShownTrack(id_, label, (x, y), (vx, vy), (xx, xy, yy), radius, motion, visible)
+        for id_, label, (x, y), (vx, vy), (xx, xy, yy), radius, motion, visible in zip(
+            *(column.tolist() for column in columns), strict=True
+        )
+    ]
+    return _split(tracks, items.counts)
+
+
+def _boxes(frames: Table) -> list[tuple[Box, ...]]:
+    items = frames["detections"]
+    columns = (items[name].tolist() for name in ("label", "box", "distance"))
+    rows = zip(*columns, strict=True)
+    return _split([Box(label, tuple(box), distance) for label, box, distance in rows], items.counts)
+
+
+def _virtual(frames: Table) -> list[tuple[tuple[float, float, float], ...]]:
+    items = frames["virtual_obstacles"]
+    circles = zip(items["position"].tolist(), items["radius"].tolist(), strict=True)
+    return _split([(x, y, radius) for (x, y), radius in circles], items.counts)
+
+
+def _split(items: list[T], counts: NDArray[np.intp]) -> list[tuple[T, ...]]:
+    """Return the items of each row."""
+    ends = np.cumsum(counts).tolist()
+    return [tuple(items[end - n : end]) for end, n in zip(ends, counts.tolist(), strict=True)]
