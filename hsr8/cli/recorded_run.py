@@ -9,6 +9,7 @@ from types import FrameType
 from hsr8.cli import report
 from hsr8.cli.crash import crash_report
 from hsr8.cli.options import Run
+from hsr8.cli.output_file import writing
 from hsr8.cli.progress import Progress
 from hsr8.cli.termination import like_ctrl_c, on_signals
 from hsr8.evaluation.recording import Recording, Result, renderer_of
@@ -62,7 +63,8 @@ def start(options: Run, scenario: Scenario, log: LogLevel | None, command: Seque
                 with Progress(scenario.duration) as progress:
                     result = recording.run(progress.show)
             if options.bag:
-                write_bag(open_run(path), path / BAG)
+                with writing("--bag", path / BAG):
+                    write_bag(open_run(path), path / BAG)
         code = _report(options, result, manifest)
         if view is not None and result.exit_reason != "interrupted":
             end = "Ctrl-C" if view.page else "closing the window"

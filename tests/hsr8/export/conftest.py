@@ -17,8 +17,8 @@ def run(tmp_path_factory):
 
 @pytest.fixture(scope="package")
 def illustrated(tmp_path_factory):
-    """Half a second of `quick` with images, with its bag."""
+    """Half a second of `quick` with images."""
     out = tmp_path_factory.mktemp("runs")
-    options = ["--duration", "0.5", "--set", "camera.latency_ms=40", "--bag", "--quiet"]
+    options = ["--duration", "0.5", "--set", "camera.latency_ms=40", "--quiet"]
     entry(["run", "quick", "--out", str(out), *options])
     return open_run(out)

@@ -9,7 +9,9 @@ import pytest
 from scipy.spatial.transform import Rotation
 
 from hsr8.cli.main import entry
+from hsr8.errors import ModelError
 from hsr8.export.bag import write_bag
+from hsr8.recorder.run.run_reader import open_run
 from hsr8.robots.loaded import load_robot
 
 pytest.importorskip("rosbags")
@@ -149,8 +151,9 @@ def test_messages_of_a_template_are_those_of_the_serializer():
 
 
 @pytest.mark.gl
-def test_images_are_stamped_when_they_were_taken(illustrated):
-    run, (messages, _) = illustrated, read(illustrated.path / "bag")
+def test_images_are_stamped_when_they_were_taken(illustrated, tmp_path):
+    write_bag(illustrated, tmp_path / "bag")
+    run, (messages, _) = illustrated, read(tmp_path / "bag")
     images = messages["/camera/image/compressed"]
     assert len(images) == len(messages["/camera/camera_info"]) == len(run.images) > 0
     for k, (arrival, image) in enumerate(images):
@@ -158,6 +161,20 @@ def test_images_are_stamped_when_they_were_taken(illustrated):
         assert 1e-9 * arrival == pytest.approx(run.images["time"][k])
         assert seconds(image.header.stamp) == pytest.approx(run.images["captured"][k])
         assert 1e-9 * arrival - seconds(image.header.stamp) == pytest.approx(0.04)
+
+
+@pytest.mark.parametrize("robot", ["hsr8", "op3"])
+def test_a_run_writes_its_bag_at_the_end(robot, tmp_path):
+    try:
+        load_robot(robot)
+    except ModelError as error:
+        pytest.skip(str(error))
+    options = ["--duration", "0.1", "--camera", "analytic", "--no-log", "--quiet", "--bag"]
+    entry(["run", "walk", "--robot", robot, "--out", str(tmp_path), *options])
+    run = open_run(tmp_path)
+    messages, _ = read(run.path / "bag")
+    assert len(messages["/joint_states"]) == len(run.ticks) > 0
+    assert not messages["/camera/camera_info"]
 
 
 def test_a_folder_that_exists_is_kept(run, bag, tmp_path, capsys):
