@@ -62,10 +62,12 @@ def write_bag(run: Run, folder: Path) -> int:
         folder: new.
 
     Raises:
-        UsageError: `rosbags` is not installed, or the run cannot be read.
+        UsageError: `rosbags` is not installed, or the run is empty or cannot be read.
         OSError: the folder cannot be written.
     """
     rosbag2, messages = require_rosbags()
+    if not len(run.records):
+        raise UsageError(f"--bag: {run.path}: no records")
     robot = load_robot(run.scenario().robot.model)
     urdf = urdf_of(robot)
     writer = rosbag2.Writer(folder, version=9, storage_plugin=rosbag2.StoragePlugin.MCAP)
@@ -166,8 +168,6 @@ def _tf(messages: Messages, times: NDArray[np.int64], tf: Transforms) -> list[by
 def _sensors(ticks: Table, messages: Messages) -> Iterator[Topic]:
     """Yield the topics with a message per control tick."""
     times, names = nanoseconds(ticks["time"]), ticks.names("joint_position")
-    if not len(ticks):
-        return
     kind = "rosgraph_msgs/msg/Clock"
     empty = np.zeros((len(times), 0))
     clock = messages.many(kind, times, empty, lambda time, _: {"clock": time})
@@ -206,8 +206,6 @@ def _motion(records: Table, messages: Messages) -> Iterator[Topic]:
     """Yield odometry, truth and command, which have a message per record."""
     time = records["time"]
     times = nanoseconds(time)
-    if not len(records):
-        return
     odometry, covariance = records["odometry"], records["odometry_covariance"]
     nothing = np.zeros_like(covariance)
     for name, frame, pose, uncertainty in (

@@ -37,16 +37,14 @@ def fixed_transforms(robot: LoadedRobot, measured: tuple[str, ...]) -> Transform
 
 
 def moving_transforms(run: Run, robot: LoadedRobot) -> Transforms:
-    """Return the transforms at the time of every record.
+    """Return the transforms at the time of every record, at least one.
 
     The frame map is W, base_footprint R. The base is where the camera pose of the robot puts it.
     """
     records, frames = run.records, run.frames
     count = len(records)
-    ticks = run.ticks.at(records["time"]) if len(run.ticks) else np.zeros(0, np.intp)
-    names = run.ticks.names("joint_position")
-    columns = run.ticks["joint_position"][ticks].T if len(run.ticks) else np.zeros((0, count))
-    angles = dict(zip(names, columns, strict=False))
+    measured = run.ticks["joint_position"][run.ticks.at(records["time"])]
+    angles = dict(zip(run.ticks.names("joint_position"), measured.T, strict=True))
     links = links_of(model_of(robot))
     moved = _of_links([k for k in links if k.parent and k.joint in angles], robot, angles, count)
     odometry = records["odometry"]
@@ -104,7 +102,7 @@ def _base(
         offset, step = _pose(link, robot, angles, count)
         position, turn = offset + rotated(step, position), product(step, turn)
         link = by_name[link.parent]
-    camera = Rotation.from_matrix(camera_rotation).as_quat(scalar_first=True) if count else turn
+    camera = Rotation.from_matrix(camera_rotation).as_quat(scalar_first=True)
     orientation = product(camera, inverse(turn))
     return camera_position - rotated(orientation, position), orientation
 
