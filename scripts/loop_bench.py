@@ -161,7 +161,7 @@ class Bench:
             (type(parts["_planner"]), "plan", "planner"),
             (type(parts["_gaze"]), "choose", "gaze"),
             (Recorder, "append", "tables"),
-            (RerunLog, "on_record", "Rerun log"),
+            (RerunLog, "add", "Rerun log"),
             (Floor, "on_tick", "floor: its own turn"),
             (Floor, "physics", FLOOR[0]),
             (Floor, "image", FLOOR[1]),

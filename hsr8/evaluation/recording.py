@@ -6,7 +6,7 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from tempfile import TemporaryDirectory
 from time import perf_counter
-from typing import Any, Protocol
+from typing import TYPE_CHECKING, Any
 
 from hsr8.errors import RecordingFailed
 from hsr8.evaluation import metrics
@@ -14,10 +14,10 @@ from hsr8.evaluation.verdict import Criterion, evaluate_criteria
 from hsr8.gl import require_gl
 from hsr8.loop import Simulation
 from hsr8.plugin_file import digests
-from hsr8.record import Tick, TickRecord
+from hsr8.record import Tick
 from hsr8.recorder.files.writing import FAILED
 from hsr8.recorder.log_level import RATES, LogLevel, LogRates
-from hsr8.recorder.recorder import Recorder
+from hsr8.recorder.recorder import PERIOD, Recorder
 from hsr8.recorder.run import run_folder
 from hsr8.recorder.run.manifest import Manifest
 from hsr8.recorder.run.run_folder import RunFolder
@@ -25,6 +25,11 @@ from hsr8.recorder.selection import Selection
 from hsr8.robots.locate import digest
 from hsr8.scenario.loader import dump
 from hsr8.scenario.schema import Scenario
+
+if TYPE_CHECKING:
+    from hsr8.recorder.log.rerun_log import RerunLog
+
+LIVE_PERIOD = PERIOD // 2  # ticks of a batch while a viewer is connected
 
 
 @dataclass(frozen=True, slots=True)
@@ -64,19 +69,6 @@ def renderer_of(scenario: Scenario) -> str:
     return require_gl() if scenario.camera.source == "rendered" else scenario.camera.source
 
 
-class Writer(Protocol):
-    """Writer of records and events."""
-
-    def on_record(self, record: TickRecord) -> None:
-        """Write one record."""
-
-    def on_event(self, time: float, kind: str, text: str) -> None:
-        """Write one event."""
-
-    def close(self, exit_reason: str) -> None:
-        """Write the remaining records; called once, also after an error."""
-
-
 class Recording:
     """A simulation that is recorded and measured.
 
@@ -89,7 +81,8 @@ class Recording:
     def __init__(self, simulation: Simulation) -> None:
         self._started = perf_counter()
         self._simulation = simulation
-        self._writers: list[Writer] = []
+        self._log: RerunLog | None = None
+        self._period = PERIOD
         self._folder: RunFolder | None = None
         self._images: LogRates | None = None
 
@@ -122,18 +115,9 @@ class Recording:
                 # Imported late: runs without a log start a third of a second earlier.
                 from hsr8.recorder.log.rerun_log import RerunLog  # noqa: PLC0415
 
-                self._writers.append(
-                    RerunLog(
-                        path / run_folder.LOG,
-                        (simulation.model, simulation.humanoid, simulation.layout),
-                        (scenario.camera.width, scenario.camera.height),
-                        f"{scenario.name} {scenario.seed}",
-                        gaze=scenario.navigation.gaze,
-                        level=log,
-                        live=live,
-                        duration=scenario.duration,
-                    )
-                )
+                world = simulation.model, simulation.humanoid, simulation.layout
+                self._log = RerunLog(path / run_folder.LOG, world, scenario, level=log, live=live)
+                self._period = LIVE_PERIOD if live else PERIOD
 
     def run(self, on_tick: Callable[[Tick], None] | None = None) -> Result:
         """Run to the end and write the results.
@@ -169,17 +153,16 @@ class Recording:
                 simulation.humanoid.model.names,
                 scale=simulation.layout.scale,
                 images=self._images,
-                listeners=[selection],
+                listeners=[selection] if self._log is None else [selection, self._log.add],
+                period=self._period,
             )
             with suppress(KeyboardInterrupt), ExitStack() as open_:
                 open_.callback(self._note, recorder)
-                for writer in self._writers:
-                    open_.callback(self._close, writer)
+                open_.callback(self._close_log)
                 open_.enter_context(simulation)
                 open_.enter_context(recorder)
                 for tick in simulation:
                     recorder.append(tick)
-                    self._write(tick)
                     if on_tick is not None:
                         on_tick(tick)
                     diverged = next((e.text for e in tick.events if e.kind == "diverged"), "")
@@ -198,15 +181,9 @@ class Recording:
         criteria = evaluate_criteria(simulation.scenario.criteria, results)
         return Result(results, criteria, path, diverged)
 
-    def _write(self, tick: Tick) -> None:
-        for writer in self._writers:
-            if tick.record is not None:
-                writer.on_record(tick.record)
-            for event in tick.events:
-                writer.on_event(*event)
-
-    def _close(self, writer: Writer) -> None:
-        writer.close(self._simulation.exit_reason or "error")
+    def _close_log(self) -> None:
+        if self._log is not None:
+            self._log.close(self._simulation.exit_reason or "error")
 
     def _note(self, recorder: Recorder) -> None:
         if self._folder is not None:

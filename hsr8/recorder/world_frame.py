@@ -7,6 +7,8 @@ from hsr8.recorder.table import Table
 
 Array = NDArray[np.float64]
 
+LIGHT = 1.0  # feet that carry less have no centre of pressure [N]
+
 
 class WorldFrame:
     """Transformation from the odometry frame to W by the true pose of the robot.

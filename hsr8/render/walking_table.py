@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 from hsr8.recorder.recorded import LIMITS
 from hsr8.recorder.run.run_reader import Run
 from hsr8.recorder.table import Table
-from hsr8.recorder.world_frame import WorldFrame
+from hsr8.recorder.world_frame import LIGHT, WorldFrame
 from hsr8.robots.loaded import load_robot
 from walking.command_limits import Limit
 from walking.phase import Phase
@@ -42,7 +42,6 @@ COLUMNS = (
     "limits",
     *(f"push_{c}" for c in ("x", "y", "z", "fx", "fy", "fz", "begin", "impulse")),
 )
-LIGHT = 1.0  # feet that carry less have no centre of pressure [N]
 
 
 @dataclass(frozen=True, slots=True)

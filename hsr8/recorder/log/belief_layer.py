@@ -1,20 +1,16 @@
 """Belief: pose, tracks, particles, local map, virtual obstacles, target."""
 
-from collections.abc import Sequence
 from math import pi
 
 import numpy as np
 import rerun as rr
 from numpy.typing import NDArray
 
-from hsr8.frame_record import FrameRecord
 from hsr8.recorder import ellipse, palette
 from hsr8.recorder.log.block_stream import BlockStream
 from hsr8.recorder.log.channel import Channel
-from hsr8.recorder.throttle import Throttle
-from navigation.belief.belief import Belief, Motion
-from navigation.decision import MotionDecision
-from navigation.observation import CameraView
+from hsr8.recorder.table import Items, Table
+from navigation.belief.belief import Motion
 
 Array = NDArray[np.float64]
 
@@ -35,16 +31,13 @@ class BeliefLayer:
 
     Args:
         stream: recording.
-        map_period: minimum interval between two local maps and particle clouds [s].
         scale: of the world [1].
     """
 
-    def __init__(self, stream: BlockStream, map_period: float, scale: float = 1.0) -> None:
+    def __init__(self, stream: BlockStream, scale: float = 1.0) -> None:
         self._scale = scale
         self._stream = stream
-        self._map_throttle = Throttle(map_period)
         self._map_shape: tuple[int, ...] = ()
-        self._motion: MotionDecision | None = None  # of the shown virtual obstacles
         self._target_position: list[float] = []
         solid = rr.components.FillMode.Solid
         lines = rr.components.FillMode.MajorWireframe
@@ -68,105 +61,101 @@ class BeliefLayer:
         self._particles = channel("particles", rr.Points3D)
         self._map = channel("local_map", rr.GridMap)
 
-    def add(self, frames: Sequence[FrameRecord]) -> None:
-        """Take camera frames."""
-        times, beliefs = [frame.time for frame in frames], [frame.belief for frame in frames]
-        poses = np.array([belief.pose for belief in beliefs])
+    def add(self, frames: Table, shown: Table) -> None:
+        """Take camera frames.
+
+        Args:
+            frames: all new frames.
+            shown: those at the rate of the log.
+        """
+        times, poses = shown["time"].tolist(), shown["pose"]
         ones = [1] * len(times)
-        centres, ahead = np.full((len(times), 3), MARK_HEIGHT), np.zeros((len(times), 3))
-        centres[:, :2] = poses[:, :2]
-        ahead[:, 0], ahead[:, 1] = np.cos(poses[:, 2]), np.sin(poses[:, 2])
+        centres = _flat(poses[:, :2])
+        ahead = np.column_stack([np.cos(poses[:, 2]), np.sin(poses[:, 2]), np.zeros(len(poses))])
         self._pose.add_rows(
             times, ones, origins=centres, vectors=HEADING_LENGTH * self._scale * ahead
         )
-        covariances = np.array([belief.pose_covariance for belief in beliefs])[:, :2, :2]
+        covariances = shown["pose_covariance"][:, :2, :2]
         self._ellipses(self._uncertainty, times, ones, centres, covariances)
-        self._view.add_rows(
-            times, ones, strips=list(_wedges(poses, [b.view for b in beliefs], self._scale))
-        )
-        self._add_tracks(times, beliefs)
-        for frame in frames:
-            if frame.motion is not self._motion:
-                self._motion = frame.motion
-                self._add_virtual(frame)
-            target = frame.task.target.tolist()
+        self._view.add_rows(times, ones, strips=list(_wedges(shown, self._scale)))
+        self._add_tracks(times, shown["tracks"])
+        self._add_virtual(frames.take(np.flatnonzero(frames["planned"])))
+        for time, target in zip(frames["time"].tolist(), frames["target"].tolist(), strict=True):
             if target != self._target_position:
                 self._target_position = target
-                self._target.add(frame.time, positions=np.array([[*target, 0.05 * self._scale]]))
-            if self._map_throttle.due(frame.time):
-                self._add_particles(frame.time, frame.belief)
-                self._add_map(frame.time, frame.belief)
+                self._target.add(time, positions=np.array([[*target, 0.05 * self._scale]]))
+        rows, maps = frames.present("local_map")
+        with_map = frames.take(rows)
+        self._add_particles(with_map)
+        self._add_maps(with_map, maps)
 
-    def _add_tracks(self, times: list[float], beliefs: Sequence[Belief]) -> None:
-        tracks = [track for belief in beliefs for track in belief.tracks]
-        rows = np.repeat(np.arange(len(times)), [len(belief.tracks) for belief in beliefs])
-        centres = np.full((len(tracks), 3), MARK_HEIGHT)
-        centres[:, :2] = np.reshape([t.position for t in tracks], (-1, 2))
+    def _add_tracks(self, times: list[float], tracks: Items) -> None:
+        n, rows = len(times), tracks.parents
+        centres = _flat(tracks["position"])
         colors = [
-            palette.packed(palette.of_label(t.label), SEEN if t.visible else UNSEEN) for t in tracks
+            palette.packed(palette.of_label(label), SEEN if visible else UNSEEN)
+            for label, visible in zip(tracks["label"], tracks["visible"], strict=True)
         ]
         self._tracks.add_rows(
             times,
-            _counts(times, rows),
+            tracks.counts.tolist(),
             centers=centres,
             lengths=np.full(len(tracks), FLAT),
-            radii=np.array([t.radius for t in tracks]),
+            radii=tracks["radius"],
             colors=np.array(colors, dtype=np.uint32),
         )
-        covariances = np.reshape([t.covariance for t in tracks], (-1, 4, 4))[:, :2, :2]
+        covariances = tracks["covariance"][:, :2, :2]
         known = np.trace(covariances, axis1=1, axis2=2) < (MAX_SIGMA * self._scale) ** 2
-        counts = _counts(times, rows[known])
+        counts = _counts(n, rows[known])
         self._ellipses(self._track_uncertainty, times, counts, centres[known], covariances[known])
-        moving = np.array([t.motion is not Motion.STATIC for t in tracks], dtype=bool)
-        vectors = np.zeros((len(tracks), 3))
-        vectors[:, :2] = np.reshape([t.velocity for t in tracks], (-1, 2))
+        moving = tracks["motion"] != Motion.STATIC
+        vectors = np.column_stack([tracks["velocity"], np.zeros(len(tracks))])
         self._velocities.add_rows(
             times,
-            _counts(times, rows[moving]),
+            _counts(n, rows[moving]),
             origins=centres[moving],
             vectors=VELOCITY_SCALE * vectors[moving],
         )
 
-    def _add_particles(self, time: float, belief: Belief) -> None:
+    def _add_particles(self, frames: Table) -> None:
         """Add the particles of lost movers, with radii by weight."""
-        clouds = [(t, t.particles) for t in belief.tracks if t.particles is not None]
-        positions = [cloud.positions for _, cloud in clouds]
-        relative = [len(cloud.weights) * cloud.weights for _, cloud in clouds]
-        points = np.concatenate(positions) if clouds else np.zeros((0, 2))
-        weights = np.concatenate(relative) if clouds else np.zeros(0)
+        particles = frames["particles"]
         colors = [
-            palette.packed(palette.darker(palette.of_label(t.label)))
-            for t, cloud in clouds
-            for _ in range(len(cloud.weights))
+            palette.packed(palette.darker(palette.of_label(label))) for label in particles["label"]
         ]
-        self._particles.add(
-            time,
-            positions=np.column_stack([points, np.full(len(points), MARK_HEIGHT)]),
-            radii=PARTICLE * self._scale * np.sqrt(np.clip(weights, *PARTICLE_WEIGHTS)),
+        radii = PARTICLE * self._scale * np.sqrt(np.clip(particles["weight"], *PARTICLE_WEIGHTS))
+        self._particles.add_rows(
+            frames["time"].tolist(),
+            particles.counts.tolist(),
+            positions=_flat(particles["position"]),
+            radii=radii,
             colors=np.array(colors, dtype=np.uint32),
         )
 
-    def _add_virtual(self, frame: FrameRecord) -> None:
-        virtual = frame.motion.virtual_obstacles
-        centres = np.full((len(virtual), 3), MARK_HEIGHT)
-        centres[:, :2] = np.array([o.position for o in virtual]).reshape(-1, 2)
-        self._virtual.add(
-            frame.time,
-            centers=centres,
+    def _add_virtual(self, frames: Table) -> None:
+        virtual = frames["virtual_obstacles"]
+        self._virtual.add_rows(
+            frames["time"].tolist(),
+            virtual.counts.tolist(),
+            centers=_flat(virtual["position"]),
             lengths=np.full(len(virtual), FLAT),
-            radii=np.array([o.radius for o in virtual]),
+            radii=virtual["radius"],
         )
 
-    def _add_map(self, time: float, belief: Belief) -> None:
-        grid = belief.local_map
-        # The first row of an image is its top, the first row of the map its minimum y.
-        cells = np.round(255.0 * grid.confidence[::-1]).astype(np.uint8)
-        if cells.shape != self._map_shape:
-            self._map_shape = cells.shape
-            self._stream.log("/belief/local_map", _map_style(grid.cell, cells.shape), static=True)
-        self._map.add(
-            time, data=[cells.ravel()], translation=np.array([[*grid.origin, MAP_HEIGHT]])
-        )
+    def _add_maps(self, frames: Table, maps: NDArray[np.uint8]) -> None:
+        """Add local maps (n, rows, columns)."""
+        if not len(frames):
+            return
+        if maps.shape[1:] != self._map_shape:
+            self._map_shape = maps.shape[1:]
+            style = _map_style(float(frames["map_cell"][0]), self._map_shape)
+            self._stream.log("/belief/local_map", style, static=True)
+        origins = frames["map_origin"].tolist()
+        for time, cells, origin in zip(frames["time"].tolist(), maps, origins, strict=True):
+            # The first row of an image is its top, the first row of the map its minimum y.
+            self._map.add(
+                time, data=[cells[::-1].ravel()], translation=np.array([[*origin, MAP_HEIGHT]])
+            )
 
     @staticmethod
     def _ellipses(
@@ -189,9 +178,14 @@ class BeliefLayer:
         )
 
 
-def _counts(times: list[float], rows: NDArray[np.intp]) -> list[int]:
-    """Return the number of elements in `rows` for each of the times."""
-    counts: list[int] = np.bincount(rows, minlength=len(times)).tolist()
+def _flat(points: Array) -> Array:
+    """Return points in W (n, 2) at the height of flat drawings (n, 3) [m]."""
+    return np.column_stack([points, np.full(len(points), MARK_HEIGHT)])
+
+
+def _counts(n: int, rows: NDArray[np.intp]) -> list[int]:
+    """Return the number of elements in `rows` for each of `n` rows."""
+    counts: list[int] = np.bincount(rows, minlength=n).tolist()
     return counts
 
 
@@ -210,11 +204,11 @@ def _map_style(cell: float, shape: tuple[int, ...]) -> rr.GridMap:
     )
 
 
-def _wedges(poses: Array, views: Sequence[CameraView], scale: float = 1.0) -> Array:
+def _wedges(frames: Table, scale: float = 1.0) -> Array:
     """Return the outlines of the fields of view on the floor (m, n, 3) [m]."""
-    axes = np.array([view.rotation[:, 2] for view in views])
+    poses, axes = frames["pose"], frames["camera_rotation"][:, :, 2]
     middles = poses[:, 2] + np.arctan2(axes[:, 1], axes[:, 0])
-    halves = np.minimum([0.5 * view.horizontal_fov for view in views], pi)
+    halves = np.minimum(0.5 * frames["fov"][:, 0], pi)
     angles = middles[:, None] + halves[:, None] * np.linspace(-1.0, 1.0, 9)
     outlines = np.full((len(poses), 11, 3), MARK_HEIGHT)
     outlines[:, :, :2] = poses[:, None, :2]

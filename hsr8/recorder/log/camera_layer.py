@@ -9,13 +9,12 @@ import numpy as np
 import rerun as rr
 from numpy.typing import NDArray
 
-from hsr8.frame_record import FrameRecord, Image
 from hsr8.recorder import palette
 from hsr8.recorder.log.block_stream import BlockStream
 from hsr8.recorder.log.channel import Channel
 from hsr8.recorder.log.geometry import quaternions
+from hsr8.recorder.table import Table
 from hsr8.robots.normal_form import HEAD_CAMERA
-from navigation.decision import GazeDecision
 from navigation.parameters.gaze import GazeParameters
 
 Array = NDArray[np.float64]
@@ -33,7 +32,6 @@ class CameraLayer:
         stream: recording.
         model: compiled world.
         size: width and height of the image [pixel].
-        jpeg: quality of the images [%].
         gaze: range of the gaze map, and size of its window.
         scale: of the robot, for the size of the image in the scene [1].
     """
@@ -43,14 +41,11 @@ class CameraLayer:
         stream: BlockStream,
         model: mujoco.MjModel,
         size: tuple[int, int],
-        jpeg: int,
         gaze: GazeParameters,
         *,
         scale: float = 1.0,
     ) -> None:
-        self._jpeg_quality = jpeg
-        self._parameters = gaze
-        self._gaze: GazeDecision | None = None  # shown
+        self._parameters, self._box = gaze, gaze.box_fraction
         self._size = width, height = size
         fov = radians(float(model.camera(HEAD_CAMERA).fovy[0]))
         self._focal = focal = 0.5 * height / tan(0.5 * fov)
@@ -87,53 +82,60 @@ class CameraLayer:
             times, [1] * len(times), translation=positions, quaternion=quaternions(turned)
         )
 
-    def add_frames(self, frames: Sequence[FrameRecord]) -> None:
-        """Take camera frames."""
-        detections = [d for frame in frames for d in frame.detections]
-        boxes = np.array([d.box for d in detections], dtype=float).reshape(-1, 4)
+    def add_frames(self, frames: Table, shown: Table, images: Table | None) -> None:
+        """Take camera frames.
+
+        Args:
+            frames: all new frames.
+            shown: those at the rate of the log.
+            images: new images, if any.
+        """
+        detections, times = shown["detections"], shown["time"].tolist()
+        boxes = detections["box"].astype(float)
         self._boxes.add_rows(
-            [frame.time for frame in frames],
-            [len(frame.detections) for frame in frames],
+            times,
+            detections.counts.tolist(),
             centers=0.5 * (boxes[:, :2] + boxes[:, 2:]),
             half_sizes=0.5 * (boxes[:, 2:] - boxes[:, :2]),
-            colors=palette.packed_all(palette.of_label(d.label) for d in detections),
-            labels=[f"{d.distance:.1f} m" for d in detections],
+            colors=palette.packed_all(map(palette.of_label, detections["label"])),
+            labels=[f"{distance:.1f} m" for distance in detections["distance"].tolist()],
         )
-        for frame in frames:
-            if frame.image is not None:
-                self._image.add(frame.time, blob=[_jpeg(frame.image, self._jpeg_quality)])
-            self._add_gaze(frame)
+        if images is not None:
+            for time, jpeg in zip(images["time"].tolist(), images["jpeg"], strict=True):
+                self._image.add(time, blob=[np.frombuffer(jpeg, np.uint8)])
+        windows = _windows(shown, self._box)
+        for time, (pan, tilt), window in zip(times, shown["head"].tolist(), windows, strict=True):
+            outline = image_points((pan, tilt), window, self._focal, self._size)
+            self._image_window.add(time, strips=[] if outline is None else [outline])
+        self._add_maps(frames)
 
-    def _add_gaze(self, frame: FrameRecord) -> None:
-        gaze_map = frame.gaze.gaze_map
-        window = self._outline(frame)
-        view = frame.belief.view
-        outline = image_points((view.pan, view.tilt), window, self._focal, self._size)
-        self._image_window.add(frame.time, strips=[] if outline is None else [outline])
-        if frame.gaze is self._gaze or gaze_map.size <= 1:
-            return
-        self._gaze = frame.gaze
-        top = float(gaze_map.max())
-        shades = np.zeros(gaze_map.shape, np.uint8)
-        if top > 0.0:
-            shades = np.round(255.0 * gaze_map / top).astype(np.uint8)
-        # Rows and columns of the map run up and left.
-        colored = self._heat[shades[::-1, ::-1]]
-        self._gaze_map.add(frame.time, blob=[cv2.imencode(".png", colored)[1].ravel()])
-        chosen = np.array([[frame.gaze.pan, frame.gaze.tilt]])
-        self._choice.add(
-            frame.time,
-            positions=map_points(chosen, gaze_map.shape, self._parameters),
-            colors=palette.packed_all([palette.BELIEF]),
-        )
-        self._window.add(frame.time, strips=[map_points(window, gaze_map.shape, self._parameters)])
+    def _add_maps(self, frames: Table) -> None:
+        """Add new gaze maps."""
+        rows, maps = frames.present("gaze_map")
+        new = frames.take(rows)
+        columns = (new["time"].tolist(), maps, new["gaze"], _windows(new, self._box))
+        for time, shades, gaze, window in zip(*columns, strict=True):
+            # Rows and columns of the map run up and left.
+            colored = self._heat[shades[::-1, ::-1]]
+            self._gaze_map.add(time, blob=[cv2.imencode(".png", colored)[1].ravel()])
+            self._choice.add(
+                time,
+                positions=map_points(gaze[None], shades.shape, self._parameters),
+                colors=palette.packed_all([palette.BELIEF]),
+            )
+            self._window.add(time, strips=[map_points(window, shades.shape, self._parameters)])
 
-    def _outline(self, frame: FrameRecord) -> Array:
-        """Return the outline of the chosen gaze window, pan and tilt (n, 2) [rad]."""
-        view, gaze = frame.belief.view, frame.gaze
-        fov = np.minimum([view.horizontal_fov, view.vertical_fov], pi)
-        outline: Array = OUTLINE * (self._parameters.box_fraction * fov) + (gaze.pan, gaze.tilt)
-        return outline
+
+def _windows(frames: Table, box: float) -> Array:
+    """Return the outlines of the chosen gaze windows, pan and tilt (n, m, 2) [rad].
+
+    Args:
+        frames: camera frames.
+        box: side of the window as a fraction of the field of view [1].
+    """
+    fov = np.minimum(frames["fov"], pi)
+    outlines: Array = OUTLINE * (box * fov)[:, None] + frames["gaze"][:, None]
+    return outlines
 
 
 def map_points(angles: Array, shape: tuple[int, ...], gaze: GazeParameters) -> Array:
@@ -180,10 +182,3 @@ def image_points(
         [0.5 * size[0] - focal * left / depth, 0.5 * size[1] + focal * down / depth]
     )
     return np.clip(pixels, 0.0, size)
-
-
-def _jpeg(image: Image, quality: int) -> NDArray[np.uint8]:
-    bgr = cv2.cvtColor(image, cv2.COLOR_RGB2BGR)
-    encoded = cv2.imencode(".jpg", bgr, [cv2.IMWRITE_JPEG_QUALITY, quality])[1]
-    blob: NDArray[np.uint8] = encoded.ravel()
-    return blob

@@ -176,10 +176,8 @@ class Scene:
             pose = poses(self._model, batch, positions, rotations)
             stream.log(f"{path}/{batch.kind}", shapes(self._model, batch, **pose), static=True)
 
-    def add(
-        self, times: Sequence[float], qpos: Sequence[Array], movers: Sequence[Array]
-    ) -> tuple[Array, Array]:
-        """Add n rows: times [s], configurations (nq,), mover positions in W (m, 2) [m].
+    def add(self, times: Sequence[float], qpos: Array, movers: Array) -> tuple[Array, Array]:
+        """Add n rows: times [s], configurations (n, nq), mover positions in W (n, m, 2) [m].
 
         Returns:
             True positions (n, 3) [m] and rotations (n, 9) of the head camera.

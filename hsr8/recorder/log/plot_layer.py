@@ -6,11 +6,10 @@ import numpy as np
 import rerun as rr
 from numpy.typing import NDArray
 
-from hsr8.frame_record import FrameRecord
-from hsr8.record import TickRecord
 from hsr8.recorder import ellipse, palette
 from hsr8.recorder.log.block_stream import BlockStream
 from hsr8.recorder.log.channel import Channel
+from hsr8.recorder.table import Table
 from navigation.angles import wrap
 
 Array = NDArray[np.float64]
@@ -78,13 +77,14 @@ class Lane:
             self._channel.add(time, state=[state])
 
 
-def gaze_reason(frame: FrameRecord) -> str:
-    """Return the reason of the gaze: its maximum partial evaluation."""
-    if frame.belief.lost:
-        return "search"
-    gaze = frame.gaze
-    values = (gaze.psi_lm, gaze.psi_sf, gaze.psi_ob, gaze.psi_way)
-    return tuple(GAZE)[values.index(max(values))] if max(values) > 0.0 else "none"
+def gaze_reasons(frames: Table) -> list[str]:
+    """Return the reason of the gaze of each frame: its maximum partial evaluation."""
+    psi, lost, names = frames["psi"], frames["lost"], tuple(GAZE)
+    best, any_ = psi.argmax(axis=1).tolist(), psi.max(axis=1) > 0.0
+    return [
+        "search" if is_lost else names[k] if seen else "none"
+        for k, seen, is_lost in zip(best, any_.tolist(), lost.tolist(), strict=True)
+    ]
 
 
 class PlotLayer:
@@ -106,25 +106,25 @@ class PlotLayer:
         self._gaze = Lane(stream, "/state/gaze", GAZE)
         self._localization = Lane(stream, "/state/localization", LOCALIZATION)
 
-    def add(self, records: Sequence[TickRecord]) -> None:
+    def add(self, records: Table) -> None:
         """Take records at the rate of the plots."""
-        clearance = np.array([[record.truth.clearance] for record in records])
+        clearance = records["clearance"][:, None]
         shown = np.where(np.isfinite(clearance), clearance, np.nan)
-        self._clearance.add([record.time for record in records], shown)
+        self._clearance.add(records["time"].tolist(), shown)
 
-    def add_frames(self, samples: Sequence[tuple[FrameRecord, Array]]) -> None:
-        """Take camera frames, each with the true pose (3,) of that time."""
-        frames = [frame for frame, _ in samples]
-        times, gazes = [f.time for f in frames], [f.gaze for f in frames]
-        self._partial.add(
-            times, np.array([(g.psi_lm, g.psi_sf, g.psi_ob, g.psi_way) for g in gazes])
-        )
-        dx, dy, turn = np.array([frame.belief.pose - truth for frame, truth in samples]).T
-        covariance = np.array([f.belief.pose_covariance for f in frames])[:, :2, :2]
-        spread = 2.0 * ellipse.axes(covariance)[0][:, 0]
+    def add_frames(self, frames: Table, truth: Array) -> None:
+        """Take camera frames, each with the true pose of that time (n, 3)."""
+        times = frames["time"].tolist()
+        self._partial.add(times, frames["psi"])
+        dx, dy, turn = (frames["pose"] - truth).T
+        spread = 2.0 * ellipse.axes(frames["pose_covariance"][:, :2, :2])[0][:, 0]
         turned = [abs(wrap(angle)) for angle in turn.tolist()]
         self._error.add(times, np.column_stack([np.hypot(dx, dy), spread, turned]))
-        for frame in frames:
-            self._situation.add(frame.time, frame.motion.situation)
-            self._gaze.add(frame.time, gaze_reason(frame))
-            self._localization.add(frame.time, "lost" if frame.belief.lost else "localized")
+        localization = ["lost" if lost else "localized" for lost in frames["lost"].tolist()]
+        for lane, states in (
+            (self._situation, frames["situation"]),
+            (self._gaze, gaze_reasons(frames)),
+            (self._localization, localization),
+        ):
+            for time, state in zip(times, states, strict=True):
+                lane.add(time, state)

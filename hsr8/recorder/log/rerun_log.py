@@ -1,6 +1,5 @@
-"""Listener that writes the log of a run for the Rerun viewer, ``log.rrd``."""
+"""Log of a run for the Rerun viewer, ``log.rrd``: a function of its tables."""
 
-from collections.abc import Sequence
 from math import cos, sin
 from pathlib import Path
 
@@ -10,7 +9,6 @@ import rerun as rr
 import rerun_bindings
 from numpy.typing import NDArray
 
-from hsr8.record import TickRecord
 from hsr8.recorder import palette
 from hsr8.recorder.files.writing import failure
 from hsr8.recorder.log.belief_layer import BeliefLayer
@@ -21,22 +19,22 @@ from hsr8.recorder.log.channel import TIMELINE, Channel
 from hsr8.recorder.log.geometry import Scene, sole_outline
 from hsr8.recorder.log.plan_layer import PlanLayer
 from hsr8.recorder.log.plot_layer import PlotLayer
-from hsr8.recorder.log.record_frame import OdometryToWorld
 from hsr8.recorder.log.robot_layer import RobotLayer, followed_entity
 from hsr8.recorder.log.walk_layer import WalkLayer
 from hsr8.recorder.log_level import RATES, LogLevel
-from hsr8.recorder.record_buffer import PERIOD, RecordBuffer
+from hsr8.recorder.recorder import Tables
+from hsr8.recorder.table import Table
 from hsr8.recorder.throttle import Throttle
+from hsr8.recorder.world_frame import WorldFrame
 from hsr8.robots.loaded import LoadedRobot
 from hsr8.robots.scale import DEFAULT_ROBOT, DEFAULT_STATURE
 from hsr8.robots.shown import visual_model
+from hsr8.scenario.schema import Scenario
 from hsr8.world.field.layout import Layout
-from navigation.parameters.gaze import GazeParameters
 
 Array = NDArray[np.float64]
 
 APRON = 1.0  # margin of the floor around the field, both sides together, at scale 1 [m]
-LIVE_PERIOD = 0.5  # interval between two batches while a viewer is connected [s]
 SOLE_HEIGHT = 0.004  # height of drawn footsteps [m]
 MAX_LABELS = 12  # more waypoints than this are shown without numbers
 WRITE_TIMEOUT = 20.0  # wall time until a batch must be written [s]
@@ -48,20 +46,14 @@ LEVELS = {"fall": "ERROR", "diverged": "ERROR"} | dict.fromkeys(
 
 
 class RerunLog:
-    """Listener that logs a run.
+    """Log of a run: pass each batch of tables to `add`, all of a finished run at once.
 
     Args:
         path: file to write.
-        model: compiled world.
-        robot: in it.
-        layout: of the run's world.
-        image_size: width and height of the head camera's image [pixel].
-        name: name of the recording in the viewer.
-        gaze: parameters of the gaze map.
+        world: compiled world, robot in it, and layout.
+        scenario: of the run.
         level: level of detail.
         live: address of a viewer that shows the log during the run; empty for none.
-        duration: longest time of the run; the log of a run up to `MAX_INDEXED` ends with an index
-            of its parts, for tools that read single parts [s].
 
     Raises:
         RecordingFailed: here and in every method, the file cannot be written.
@@ -71,13 +63,10 @@ class RerunLog:
         self,
         path: Path,
         world: tuple[mujoco.MjModel, LoadedRobot, Layout],
-        image_size: tuple[int, int],
-        name: str,
+        scenario: Scenario,
         *,
-        gaze: GazeParameters,
         level: LogLevel = LogLevel.STANDARD,
         live: str = "",
-        duration: float = 0.0,
     ) -> None:
         model, robot, layout = world
         rates = RATES[level]
@@ -87,7 +76,7 @@ class RerunLog:
         rerun_bindings.flush_and_cleanup_orphaned_recordings()
         self._stream = BlockStream(path.parent.name)
         self._stream.set_log_time_enabled(False)
-        sinks = [rr.FileSink(str(path), write_footer=duration <= MAX_INDEXED)]
+        sinks = [rr.FileSink(str(path), write_footer=scenario.duration <= MAX_INDEXED)]
         sinks += [rr.GrpcSink(live)] if live else []
         self._folder = path.parent
         self._waits = not live  # for the file; a viewer may disconnect
@@ -103,7 +92,7 @@ class RerunLog:
             self._stream.begin(sinks, shown)
         except RuntimeError as error:
             raise failure(self._folder, f"the log: {error}") from error
-        self._stream.send_recording_name(name)
+        self._stream.send_recording_name(f"{scenario.name} {scenario.seed}")
         self._stream.log("/", rr.ViewCoordinates.RIGHT_HAND_Z_UP, static=True)
         self._n_movers = len(layout.movers)
         width, depth = (side + APRON * layout.scale for side in layout.field_size)
@@ -111,99 +100,96 @@ class RerunLog:
         self._robot = RobotLayer(self._stream, robot)
         self._soles = (sole_outline(robot.model.sole),) * 2
         self._camera: CameraLayer | None = None
-        self._belief_layers: tuple[BeliefLayer | PlanLayer, ...] = ()
+        self._belief: BeliefLayer | None = None
+        self._plan: PlanLayer | None = None
         if rates.jpeg:
-            self._camera = CameraLayer(
-                self._stream, model, image_size, rates.jpeg, gaze, scale=view.size
-            )
-            self._belief_layers = (
-                BeliefLayer(self._stream, rates.map, layout.scale),
-                PlanLayer(self._stream, rates.map, layout.scale),
-            )
+            size, gaze = (scenario.camera.width, scenario.camera.height), scenario.navigation.gaze
+            self._camera = CameraLayer(self._stream, model, size, gaze, scale=view.size)
+            self._belief = BeliefLayer(self._stream, layout.scale)
+            self._plan = PlanLayer(self._stream, layout.scale)
         self._plots = PlotLayer(self._stream)
         self._walk = WalkLayer(self._stream, robot.model, view.size)
         self._footsteps = Channel(self._stream, "/world/footsteps", rr.LineStrips3D)
         self._path = Channel(self._stream, "/world/path", rr.LineStrips3D)
         self._trail: list[list[float]] = []
         self._log_waypoints(layout)
-        self._buffer = RecordBuffer(LIVE_PERIOD if live else PERIOD)
         self._time = 0.0
 
-    def on_record(self, record: TickRecord) -> None:
-        """Log one record."""
-        if self._buffer.add(record):
-            self._write_buffer()
-
-    def on_event(self, time: float, kind: str, text: str) -> None:
-        """Log one event."""
-        self._stream.set_time(TIMELINE, duration=time)
-        level = LEVELS.get(kind, "INFO")
-        self._stream.log("/events", rr.TextLog(f"{kind}: {text}", level=level))
+    def add(self, tables: Tables) -> None:
+        """Log the new rows of the tables."""
+        records, frames = tables.get("records"), tables.get("frames")
+        if records is not None:
+            self._time = float(records["time"][-1])
+            self._add_records(records)
+            if frames is not None:
+                self._add_frames(records, frames, tables.get("images"))
+        if "events" in tables:
+            events = tables["events"]
+            columns = (events["time"].tolist(), events["kind"], events["text"])
+            for time, kind, text in zip(*columns, strict=True):
+                self._log_event(time, kind, text)
+        self._send()
 
     def close(self, exit_reason: str) -> None:
-        """Write the remaining records and close the file."""
+        """Log the end and close the file."""
         try:
-            self._write_buffer()
             self._wait()
-            self.on_event(self._time, "end", exit_reason)
+            self._log_event(self._time, "end", exit_reason)
         finally:
             if self._failed:
                 self._stream.abandon()
             else:
                 self._stream.disconnect()
 
-    def _add(self, records: Sequence[TickRecord]) -> None:
-        self._time = records[-1].time
-        shown = [record for record in records if self._pose_throttle.due(record.time)]
-        if shown:
-            times, truths = [r.time for r in shown], [r.truth for r in shown]
-            first = len(truths[0].obstacle_positions) - self._n_movers
-            movers = [truth.obstacle_positions[first:] for truth in truths]
-            qpos = [truth.qpos for truth in truths]
-            self._robot.add(times, qpos)
-            poses = self._scene.add(times, qpos, movers)
-            if self._camera is not None:
-                self._camera.add_poses(times, *poses)
-            self._plots.add(shown)
-            self._walk.add(shown)
-        for record in records:
-            self._walk.watch(record)
-        with_frame = [record for record in records if record.frame is not None]
-        selected = [record for record in with_frame if self._frame_throttle.due(record.time)]
-        if selected:
-            self._add_frames(selected)
+    def _log_event(self, time: float, kind: str, text: str) -> None:
+        self._stream.set_time(TIMELINE, duration=time)
+        level = LEVELS.get(kind, "INFO")
+        self._stream.log("/events", rr.TextLog(f"{kind}: {text}", level=level))
 
-    def _add_frames(self, records: Sequence[TickRecord]) -> None:
-        pairs = [(r.frame, r.truth.robot) for r in records if r.frame is not None]
-        frames = [frame for frame, _ in pairs]
+    def _add_records(self, records: Table) -> None:
+        self._walk.watch(records)
+        shown = records.take(self._pose_throttle.select(records["time"]))
+        if not len(shown):
+            return
+        times, qpos, obstacles = shown["time"].tolist(), shown["qpos"], shown["obstacle_positions"]
+        self._robot.add(times, qpos)
+        poses = self._scene.add(times, qpos, obstacles[:, obstacles.shape[1] - self._n_movers :])
         if self._camera is not None:
-            self._camera.add_frames(frames)
-        for layer in self._belief_layers:
-            layer.add(frames)
-        self._plots.add_frames(pairs)
-        for record in records:
-            if self._trail_throttle.due(record.time):
-                x, y, _ = record.truth.robot.tolist()
-                self._trail.append([x, y, 0.003])
-        self._add_footsteps(records, [frame.time for frame in frames])
+            self._camera.add_poses(times, *poses)
+        self._plots.add(shown)
+        self._walk.add(shown)
 
-    def _add_footsteps(self, records: Sequence[TickRecord], times: list[float]) -> None:
+    def _add_frames(self, records: Table, frames: Table, images: Table | None) -> None:
+        shown = frames.take(self._frame_throttle.select(frames["time"]))
+        if self._camera is not None and self._belief is not None and self._plan is not None:
+            self._camera.add_frames(frames, shown, images)
+            self._belief.add(frames, shown)
+            self._plan.add(frames)
+        if not len(shown):
+            return
+        rows = records.at(shown["time"])
+        truth = records["robot"][rows]
+        self._plots.add_frames(shown, truth)
+        for row in self._trail_throttle.select(shown["time"]).tolist():
+            x, y, _ = truth[row].tolist()
+            self._trail.append([x, y, 0.003])
+        self._add_footsteps(records.take(rows), shown["time"].tolist())
+
+    def _add_footsteps(self, records: Table, times: list[float]) -> None:
         """Log planned footsteps, transformed with the true pose."""
-        steps = [step for record in records for step in record.walking.footsteps]
-        counts = [len(record.walking.footsteps) for record in records]
-        rows = np.repeat(np.arange(len(records)), counts)
-        transform = OdometryToWorld(records)
-        positions = transform.point(np.reshape([(f.x, f.y) for f in steps], (-1, 2)), rows)
-        yaws = np.array([f.yaw for f in steps]) + transform.turn[rows]
+        steps, frame = records["footsteps"], WorldFrame(records)
+        rows, left = steps.parents, steps["left"].tolist()
+        positions = frame.point(np.column_stack([steps["x"], steps["y"]]), rows)
+        yaws = steps["yaw"] + frame.turn[rows]
         self._footsteps.add_rows(
             times,
-            counts,
+            steps.counts.tolist(),
             strips=[
-                self._sole(step.left, position, yaw)
-                for step, position, yaw in zip(steps, positions, yaws.tolist(), strict=True)
+                self._sole(is_left, position, yaw)
+                for is_left, position, yaw in zip(left, positions, yaws.tolist(), strict=True)
             ],
             colors=palette.packed_all(
-                palette.LEFT_FOOT if step.left else palette.RIGHT_FOOT for step in steps
+                palette.LEFT_FOOT if is_left else palette.RIGHT_FOOT for is_left in left
             ),
             radii=np.full(len(steps), 0.004),
         )
@@ -215,11 +201,8 @@ class RerunLog:
         outline[:, :2] = self._soles[not left] @ np.array([[c, s], [-s, c]]) + position
         return outline
 
-    def _write_buffer(self) -> None:
-        """Send the buffered records; Rerun's threads write them while the run goes on."""
-        records = self._buffer.take()
-        if records:
-            self._add(records)
+    def _send(self) -> None:
+        """Send all rows; Rerun's threads write them while the run goes on."""
         if self._trail:
             self._path.add(
                 self._time,

@@ -49,7 +49,7 @@ class RobotLayer:
             stream.log(path, mesh_of(model, self._data, int(part), geoms), static=True)
             self._part_channels.append(Channel(stream, path, rr.Transform3D))
 
-    def add(self, times: Sequence[float], qpos: Sequence[Array]) -> None:
+    def add(self, times: Sequence[float], qpos: Array) -> None:
         """Add n rows: times [s], configurations (nq,)."""
         data, copies = self._data, []
         for configuration in qpos:

@@ -7,18 +7,18 @@ import numpy as np
 import rerun as rr
 from numpy.typing import NDArray
 
-from hsr8.record import TickRecord
 from hsr8.recorder import palette
 from hsr8.recorder.arc import mean_velocity
 from hsr8.recorder.log.block_stream import BlockStream
 from hsr8.recorder.log.channel import Channel
 from hsr8.recorder.log.plot_layer import BLUE, GREEN, GREY, ORANGE, RED, SAND, VIOLET, Curves, Lane
-from hsr8.recorder.log.record_frame import LIGHT, OdometryToWorld
+from hsr8.recorder.recorded import LIMITS, limit_bits
+from hsr8.recorder.table import Table
+from hsr8.recorder.world_frame import LIGHT, WorldFrame
 from navigation.angles import wrap
 from walking.body.robot_model import RobotModel
 from walking.command_limits import Limit
 from walking.robot_measures import HSR_VIII
-from walking.state import WalkingState
 
 Array = NDArray[np.float64]
 
@@ -95,56 +95,57 @@ class WalkLayer:
         self._limits = Channel(stream, "/command_limits", rr.TextLog)
         self._meter = _Speedometer()
         self._interval: tuple[str, int] | None = None
-        self._active: tuple[Limit, ...] = ()
+        self._active = 0  # limits, one bit each
         self._pushed = False
 
-    def add(self, records: Sequence[TickRecord]) -> None:
+    def add(self, records: Table) -> None:
         """Take records at the rate of the plots."""
-        times, truths = [r.time for r in records], [r.truth for r in records]
-        walks = [record.walking for record in records]
-        transform = OdometryToWorld(records)
-        known = [(walking.zmp, walking.balance.com, walking.balance.dcm) for walking in walks]
-        planned, com, dcm = transform.point(np.array(known)).swapaxes(0, 1)
-        loaded = np.array([truth.foot_force for truth in truths]).sum(axis=1) > LIGHT
-        zmp = np.array([truth.zmp for truth in truths])
-        measured = np.where(loaded[:, None], zmp, np.nan)
-        corners = [len(walking.balance.support) for walking in walks]
-        rows = np.repeat(np.arange(len(walks)), corners)
-        support = transform.point(np.concatenate([w.balance.support for w in walks]), rows)
+        times, frame = records["time"].tolist(), WorldFrame(records)
+        planned, com, dcm = (frame.point(records[name]) for name in ("zmp", "com", "measured_dcm"))
+        loaded = records["foot_load"].sum(axis=1, keepdims=True) > LIGHT
+        measured = np.where(loaded, records["cop"], np.nan)
+        corners = [len(area) for area in records["support"]]
+        rows = np.repeat(np.arange(len(times)), corners)
+        support = frame.point(np.concatenate(records["support"]), rows)
         points = np.stack([planned, measured, com, dcm], axis=1)
-        self._add_curves(times, np.array([t.robot for t in truths]), points, support, rows)
+        self._add_curves(times, records["robot"], points, support, rows)
         points[:, 1] = np.where(np.isnan(measured[:, :1]), planned, measured)
         pins = np.full((len(times), len(POINTS), 3), self._pin)
         pins[..., :2] = points
         self._points.add_rows(times, [len(POINTS)] * len(times), origins=pins.reshape(-1, 3))
-        commanded = np.array([record.command.velocity for record in records])
-        applied = np.array([walking.applied_velocity for walking in walks])
+        commanded, applied = records["command"], records["applied_velocity"]
         for curves, a, g in zip(self._commanded, commanded.T, applied.T, strict=True):
             curves.add(times, np.column_stack([a, g]))
-        torque = np.array([truth.joint_torque for truth in truths])
         for curves, columns in self._torque:
-            curves.add(times, torque[:, columns])
-        self._tilt.add(times, np.degrees([(walking.roll, walking.pitch) for walking in walks]))
-        for record, area in zip(records, np.split(support, np.cumsum(corners[:-1])), strict=True):
-            self._add_gait(record.time, record.walking, area)
-            self._log_limits(record)
+            curves.add(times, records["joint_torque"][:, columns])
+        tilt = np.column_stack([records["roll"], records["pitch"]])
+        self._tilt.add(times, np.degrees(tilt))
+        self._add_gait(times, records, np.split(support, np.cumsum(corners[:-1])))
+        self._log_limits(records)
 
-    def watch(self, record: TickRecord) -> None:
+    def watch(self, records: Table) -> None:
         """Take every record, for footsteps and pushes shorter than the period of the plots."""
-        measured = self._meter.add(record)
-        if measured is not None:
-            time, velocity = measured
-            for curves, value in zip(self._achieved, velocity, strict=True):
-                curves.add([time], np.array([[value]]))
-        pushes = record.truth.pushes
-        if pushes or self._pushed:
-            self._pushed = bool(pushes)
-            vectors = self._arrow * np.array([p.force for p in pushes]).reshape(-1, 3)
-            reach = 1.0 + self._gap / np.maximum(
-                np.linalg.norm(vectors, axis=1, keepdims=True), 1e-9
-            )
-            origins = np.array([p.point for p in pushes]).reshape(-1, 3) - reach * vectors
-            self._pushes.add(record.time, origins=origins, vectors=vectors)
+        columns = (records["time"], records["robot"], records["step_count"])
+        for time, robot, steps in zip(*(column.tolist() for column in columns), strict=True):
+            measured = self._meter.add(time, robot, steps)
+            if measured is not None:
+                middle, velocity = measured
+                for curves, value in zip(self._achieved, velocity, strict=True):
+                    curves.add([middle], np.array([[value]]))
+        pushes = records["pushes"]
+        vectors = self._arrow * pushes["force"]
+        reach = 1.0 + self._gap / np.maximum(np.linalg.norm(vectors, axis=1, keepdims=True), 1e-9)
+        origins = pushes["point"] - reach * vectors
+        # An empty row ends the display of the last push.
+        pushed = np.concatenate([[self._pushed], pushes.counts > 0])
+        shown = np.flatnonzero(pushed[1:] | pushed[:-1])
+        self._pushed = bool(pushed[-1])
+        self._pushes.add_rows(
+            records["time"][shown].tolist(),
+            pushes.counts[shown].tolist(),
+            origins=origins,
+            vectors=vectors,
+        )
 
     @staticmethod
     def _torque_curves(
@@ -178,28 +179,30 @@ class WalkLayer:
             ends = np.minimum.reduceat(edges, firsts), np.maximum.reduceat(edges, firsts)
             curves.add(times, np.column_stack([(along * x + across * y).T, *ends]))
 
-    def _add_gait(self, time: float, walking: WalkingState, support: Array) -> None:
-        """Add the phase and, if it is new, the support polygon (n, 2) in W [m]."""
-        self._phase.add(time, str(walking.phase))
-        interval = (str(walking.phase), walking.step_count)
-        if interval != self._interval:
-            self._interval = interval
-            strip = np.full((len(support) + 1, 3), FLOOR)
-            strip[:, :2] = *support, support[0]
-            self._support.add(time, strips=[strip])
+    def _add_gait(self, times: list[float], records: Table, support: list[Array]) -> None:
+        """Add the phase and, if it is new, the support polygon (m, 2) in W of each row [m]."""
+        rows = zip(times, records["phase"], records["step_count"].tolist(), support, strict=True)
+        for time, phase, steps, area in rows:
+            self._phase.add(time, phase)
+            if (phase, steps) != self._interval:
+                self._interval = (phase, steps)
+                strip = np.full((len(area) + 1, 3), FLOOR)
+                strip[:, :2] = *area, area[0]
+                self._support.add(time, strips=[strip])
 
-    def _log_limits(self, record: TickRecord) -> None:
-        report = record.walking.command_limits
-        limits = () if report is None else report.limits
-        active = tuple(dict.fromkeys(limit for limit in limits if limit is not ROUTINE))
-        if active == self._active or report is None:
-            return
-        self._active = active
-        commanded = report.commanded.velocity
-        applied = record.walking.applied_velocity.tolist()
-        text = "obeyed" if not active else ", ".join(active)
-        line = f"{text}: commanded {_described(commanded)}, applied {_described(applied)}"
-        self._limits.add(record.time, text=[line], level=["WARN" if active else "INFO"])
+    def _log_limits(self, records: Table) -> None:
+        known = np.isfinite(records["limited_command"]).all(axis=1)
+        active = np.where(known, records["limits"] & ~limit_bits((ROUTINE,)), self._active)
+        before = np.concatenate([[self._active], active[:-1]])
+        self._active = int(active[-1])
+        for row in np.flatnonzero(active != before).tolist():
+            names = [limit for k, limit in enumerate(LIMITS) if active[row] >> k & 1]
+            commanded = _described(records["limited_command"][row])
+            applied = _described(records["applied_velocity"][row])
+            text = ", ".join(names) or "obeyed"
+            line = f"{text}: commanded {commanded}, applied {applied}"
+            level = "WARN" if names else "INFO"
+            self._limits.add(float(records["time"][row]), text=[line], level=[level])
 
 
 class _Speedometer:
@@ -210,23 +213,29 @@ class _Speedometer:
         self._steps = 0
         self._yaw = 0.0
 
-    def add(self, record: TickRecord) -> tuple[float, list[float]] | None:
-        """Return the middle of the stride [s] and the velocity, if a stride ends."""
-        x, y, yaw = record.truth.robot.tolist()
+    def add(self, time: float, robot: list[float], steps: int) -> tuple[float, list[float]] | None:
+        """Return the middle of the stride [s] and the velocity, if a stride ends.
+
+        Args:
+            time: of the record [s].
+            robot: true pose.
+            steps: completed steps.
+        """
+        x, y, yaw = robot
         self._yaw += wrap(yaw - self._yaw)
-        idle = not self._marks or record.time - self._marks[-1][0] >= IDLE_WINDOW - 1e-9
-        if record.walking.step_count == self._steps and not idle:
+        idle = not self._marks or time - self._marks[-1][0] >= IDLE_WINDOW - 1e-9
+        if steps == self._steps and not idle:
             return None
-        self._steps = record.walking.step_count
+        self._steps = steps
         pose = np.array([x, y, self._yaw])
-        self._marks.append((record.time, pose))
+        self._marks.append((time, pose))
         first, start = self._marks[0] if not idle else self._marks[max(0, len(self._marks) - 2)]
-        if record.time - first <= 0.0:
+        elapsed = time - first
+        if elapsed <= 0.0:
             return None
-        elapsed = record.time - first
         return first + 0.5 * elapsed, mean_velocity(start, pose, elapsed).tolist()
 
 
-def _described(velocity: tuple[float, ...] | list[float]) -> str:
-    vx, vy, wz = velocity
+def _described(velocity: Array) -> str:
+    vx, vy, wz = velocity.tolist()
     return f"{vx:.2f} {vy:.2f} m/s {wz:.2f} rad/s"

@@ -8,17 +8,15 @@ from hsr8.recorder.log.log_reader import Log, read_log
 from hsr8.recorder.log.rerun_log import RerunLog
 from hsr8.recorder.run.manifest import Manifest
 from hsr8.robots.loaded import load_robot
-from navigation.parameters.gaze import GazeParameters
+from hsr8.scenario.loader import load_scenario
+from tests.hsr8.recorder.log.batches import batch_of
 
 
 def _write(path, model, layout, records):
     path.parent.mkdir(exist_ok=True)
-    listener = RerunLog(
-        path, (model, load_robot("hsr8"), layout), (320, 240), "test", gaze=GazeParameters()
-    )
-    for record in records:
-        listener.on_record(record)
-    listener.close("goal")
+    log = RerunLog(path, (model, load_robot("hsr8"), layout), load_scenario("quick"))
+    log.add(batch_of(records))
+    log.close("goal")
     return path
 
 

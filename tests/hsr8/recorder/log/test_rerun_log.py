@@ -16,9 +16,10 @@ from hsr8.recorder.log.log_reader import Log
 from hsr8.recorder.log.rerun_log import MAX_INDEXED, WRITE_TIMEOUT, RerunLog
 from hsr8.recorder.log_level import LogLevel
 from hsr8.robots.loaded import load_robot
+from hsr8.scenario.loader import load_scenario
 from hsr8.world.truth.truth import ActivePush
 from navigation.belief.belief import Particles
-from navigation.parameters.gaze import GazeParameters
+from tests.hsr8.recorder.log.batches import batch_of
 from walking.command import VelocityCommand
 from walking.command_limits import CommandLimits, Limit
 
@@ -49,35 +50,28 @@ def folder(tmp_path):
 def _logged(folder, model, layout, records, **options):
     """Log of `records`."""
     path = folder / "log.rrd"
-    listener = RerunLog(
-        path,
-        (model, load_robot("hsr8"), layout),
-        (320, 240),
-        "test 7",
-        gaze=GazeParameters(),
-        **options,
-    )
-    for record in records:
-        listener.on_record(record)
-    listener.close("goal")
+    log = _opened(path, model, layout, **options)
+    log.add(batch_of(records, level=options.get("level", LogLevel.STANDARD)))
+    log.close("goal")
     return path
+
+
+def _opened(path, model, layout, duration=10.0, **options):
+    scenario = load_scenario("quick", [f"duration={duration}"])
+    return RerunLog(path, (model, load_robot("hsr8"), layout), scenario, **options)
 
 
 @pytest.fixture
 def log(tmp_path, model, layout):
     (tmp_path / "7-abc").mkdir()
     path = tmp_path / "7-abc" / "log.rrd"
-    return path, RerunLog(
-        path, (model, load_robot("hsr8"), layout), (320, 240), "test 7", gaze=GazeParameters()
-    )
+    return path, _opened(path, model, layout)
 
 
 def test_a_run_is_logged_at_its_rates(log, walk):
-    path, listener = log
-    for record in walk(3.0):
-        listener.on_record(record)
-    listener.on_event(1.0, "collision", "l_sole touches obstacle 0")
-    listener.close("goal")
+    path, log = log
+    log.add(batch_of(walk(3.0), [(1.0, "collision", "l_sole touches obstacle 0")]))
+    log.close("goal")
     rows = _rows(path)
     assert rows["/events"] == 2
     # 17 Hz of poses, a third of the camera frames; one row more holds what never changes.
@@ -107,8 +101,7 @@ def test_a_full_log_leaves_nothing_out(folder, model, layout, walk):
     rows = _rows(_logged(folder, model, layout, walk(1.0), level=LogLevel.FULL))
     assert rows["/world/robot/ellipsoids"] == 51 + 1
     assert rows["/world/camera/image"] == rows["/belief/tracks"] == 17 + 1
-    assert rows["/belief/local_map"] == 17 + 1
-    assert rows["/belief/particles"] == 17
+    assert rows["/belief/local_map"] == 1 + 1  # recorded once per second
 
 
 class Field:
@@ -118,9 +111,9 @@ class Field:
         return np.broadcast_to([2.0, 0.0], np.shape(points))
 
 
-def test_the_field_is_shown_while_there_is_one(folder, model, layout, fake):
+def test_the_field_is_shown_where_there_is_one(folder, model, layout, fake):
     records = []
-    for k, field in enumerate((Field(), None, None)):
+    for k, field in enumerate((Field(), None, Field())):
         frame = fake.frame(0.6 * k)
         motion = replace(frame.motion, field=field)
         frame = replace(frame, decision=replace(frame.decision, motion=motion))
@@ -128,12 +121,11 @@ def test_the_field_is_shown_while_there_is_one(folder, model, layout, fake):
     path = _logged(folder, model, layout, records)
     arrows = _values(path, "/plan/field", "Arrows3D:vectors")
     paths = _values(path, "/plan/path", "LineStrips3D:strips")
-    assert [time for time, _ in arrows] == [time for time, _ in paths] == [0.0, 0.6]
+    assert [time for time, _ in arrows] == [time for time, _ in paths] == [0.0, 1.2]
     assert np.array(arrows[0][1]) == pytest.approx(
         np.tile([0.13, 0.0, 0.0], (len(arrows[0][1]), 1))
     )
     assert len(paths[0][1]) == 1
-    assert arrows[1][1] == paths[1][1] == []
     assert len(_values(path, "/plan/decision", "Arrows3D:vectors")) == 3
 
 
@@ -197,7 +189,7 @@ def test_logs_one_after_the_other_leave_no_threads(folder, model, layout, walk):
 
 
 def test_a_log_that_cannot_be_written_is_abandoned(log, walk, monkeypatch):
-    _, listener = log
+    _, log = log
     left, asked = [], []
 
     def stalled(stream, *, timeout_sec):
@@ -209,20 +201,19 @@ def test_a_log_that_cannot_be_written_is_abandoned(log, walk, monkeypatch):
     monkeypatch.setattr(BlockStream, "disconnect", lambda stream: pytest.fail("waits for ever"))
     monkeypatch.setattr("hsr8.recorder.log.block_stream.ABANDONED", left)
     monkeypatch.setattr(rr, "unregister_shutdown", lambda: left.append("at the end of the process"))
-    for record in walk(0.1):
-        listener.on_record(record)
     with pytest.raises(RecordingFailed, match="timed out"):
-        listener.close("goal")
+        log.add(batch_of(walk(0.1)))
+    log.close("goal")  # at once, without another wait
     assert [type(entry) for entry in left] == [BlockStream, str]
-    listener.close("goal")  # at once, without another wait
     assert [timeout for timeout in asked if timeout > 0.0] == [WRITE_TIMEOUT]
 
 
 def test_an_empty_belief_is_logged(log, fake):
-    path, listener = log
+    path, log = log
     frame = fake.frame(0.0, tracks=(), image=None)
-    listener.on_record(fake.record(0.0, frame=frame, zmp=np.full(2, np.nan), clearance=np.inf))
-    listener.close("completed")
+    record = fake.record(0.0, frame=frame, zmp=np.full(2, np.nan), clearance=np.inf)
+    log.add(batch_of([record]))
+    log.close("completed")
     assert _rows(path)["/belief/tracks"] == 2
 
 
@@ -265,28 +256,30 @@ def _values(path, entity, component="Scalars:scalars"):
 
 
 def test_pushes_and_limits_are_logged_when_they_change(log, fake):
-    path, listener = log
+    path, log = log
     asked, given = VelocityCommand(0.5), VelocityCommand(0.3)
     altered = CommandLimits(asked, given, (Limit.SPEED, Limit.LANDING_FROZEN))
     routine = CommandLimits(given, given, (Limit.LANDING_FROZEN,))
     push = ActivePush(
         0, 0.2, 0.05, "torso_link", 0.0, np.array([0.0, 0.0, 0.3]), np.array([4.0, 0.0, 0.0])
     )
+    records = []
     for k in range(50):
         record = fake.record(0.02 * k, pushes=(push,) if 10 <= k < 13 else ())
         report = altered if 20 <= k < 30 else routine
-        listener.on_record(replace(record, walking=replace(record.walking, command_limits=report)))
-    listener.close("completed")
+        records.append(replace(record, walking=replace(record.walking, command_limits=report)))
+    for part in (records[:12], records[12:25], records[25:]):  # batches may end anywhere
+        log.add(batch_of(part))
+    log.close("completed")
     rows = _rows(path)
     assert rows["/world/pushes"] == 3 + 1 + 1
     assert rows["/command_limits"] == 2
 
 
 def test_the_achieved_velocity_is_logged_once_per_footstep(log, walk):
-    path, listener = log
-    for record in walk(4.0):
-        listener.on_record(record)
-    listener.close("goal")
+    path, log = log
+    log.add(batch_of(walk(4.0)))
+    log.close("goal")
     values = _values(path, "/plots/speed_vx/achieved")
     assert len(values) >= 9
     assert [v[1][0] for v in values] == pytest.approx([0.2] * len(values))
