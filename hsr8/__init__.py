@@ -6,8 +6,8 @@
     print(result.criteria_met, result.metrics["time_to_goal_s"])
 
 `run` and `Result` make whole runs, `load_scenario` and `Simulation` run tick by tick, `open_run`
-and `read_log` read run folders. `docs/python.md` shows custom planners and gaze controllers,
-`docs/log.md` the contents of a log.
+reads run folders. `docs/python.md` shows custom planners and gaze controllers, `docs/data.md` the
+tables of a run.
 """
 
 from importlib import import_module
@@ -22,12 +22,11 @@ if TYPE_CHECKING:
     from hsr8.api import run
     from hsr8.evaluation.recording import Result
     from hsr8.loop import Simulation
-    from hsr8.recorder.log.log_reader import read_log
     from hsr8.recorder.run.run_reader import open_run
     from hsr8.scenario.loader import load_scenario
 
 __version__ = VERSION
-__all__ = ["Result", "Simulation", "load_scenario", "open_run", "read_log", "run"]
+__all__ = ["Result", "Simulation", "load_scenario", "open_run", "run"]
 
 # Imported on first use: MuJoCo and SciPy take seconds.
 _PLACES = {
@@ -35,7 +34,6 @@ _PLACES = {
     "Simulation": "hsr8.loop",
     "load_scenario": "hsr8.scenario.loader",
     "open_run": "hsr8.recorder.run.run_reader",
-    "read_log": "hsr8.recorder.log.log_reader",
     "run": "hsr8.api",
 }
 
@@ -46,6 +44,8 @@ choose_kernel_cache()
 def __getattr__(name: str) -> Any:
     if name == "load":
         raise AttributeError("hsr8.load: renamed to load_scenario")
+    if name == "read_log":
+        raise AttributeError("hsr8.read_log: removed; hsr8.open_run gives the tables of a run")
     if name not in _PLACES:
         raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
     return getattr(import_module(_PLACES[name]), name)

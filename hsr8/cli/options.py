@@ -227,9 +227,11 @@ class Render:
 
 @dataclass(frozen=True)
 class Replay:
-    """Open the log of a run in the Rerun viewer."""
+    """Open the log of a run in the Rerun viewer; a missing log is made from the tables."""
 
     run: RunPath
+    view: View = None
+    """native (default): a window; web: a page for a browser on this machine."""
     screenshot: File = None
     """Write a screenshot of the viewer as a PNG instead; needs no display."""
     time: Seconds = None

@@ -2,14 +2,17 @@
 
 import shlex
 import sys
+from pathlib import Path
 
 from hsr8.cli.options import Replay
 from hsr8.cli.output_file import parse_size, require_file_name, writing
+from hsr8.cli.termination import like_ctrl_c
 from hsr8.errors import UsageError
 from hsr8.recorder.files import atomic
 from hsr8.recorder.run.manifest import versions
 from hsr8.recorder.run.run_reader import Run, open_run
 from hsr8.render import viewer
+from hsr8.render.live_view import live_view
 
 
 def main(options: Replay) -> int:
@@ -19,14 +22,13 @@ def main(options: Replay) -> int:
         UsageError: there is no such run or log, or no display.
     """
     run = open_run(options.run)
-    if run.log_file is None:
-        raise UsageError(f"{run.path}: no log; the run was made with --no-log")
+    log = run.log_file or _made(run)
     if options.screenshot is not None:
         require_file_name("--screenshot", options.screenshot, (".png",))
         size = parse_size(options.size)
         time = _time(options, run)
         print("drawing in the viewer, which takes some ten seconds", file=sys.stderr, flush=True)
-        image = viewer.screenshot(run.log_file, time, size)
+        image = viewer.screenshot(log, time, size)
         with writing("--screenshot", options.screenshot):
             options.screenshot.write_bytes(image)
         if options.json:
@@ -34,19 +36,35 @@ def main(options: Replay) -> int:
         else:
             print(f"screenshot  {options.screenshot} (at {time:.1f} s)")
         return 0
+    if options.view == "web":
+        with like_ctrl_c(), live_view("web", log) as view:
+            print(f"open in a browser on this machine:  {view.page}", flush=True)
+            print("Ctrl-C ends the viewer", file=sys.stderr)
+            view.wait()
+        return 0
     if not viewer.has_display():
-        run_word, log_word = shlex.quote(str(run.path)), shlex.quote(str(run.log_file))
+        run_word, log_word = shlex.quote(str(run.path)), shlex.quote(str(log))
         version = versions()["rerun-sdk"]
         raise UsageError(
             "no display for the viewer"
+            f"\n  in a browser:        hsr8 replay {run_word} --view web"
             f"\n  screenshot:          hsr8 replay {run_word} --screenshot log.png"
             f"\n  on another machine:  copy {log_word}, then"
             f"\n                       pip install rerun-sdk=={version} && rerun log.rrd"
         )
-    code = viewer.show(run.log_file)
+    code = viewer.show(log)
     if code != 0:
         raise UsageError(f"the Rerun viewer ended with status {code}; try --screenshot PNG")
     return 0
+
+
+def _made(run: Run) -> Path:
+    """Write the log of a run that has none."""
+    run.scenario()  # reports a scenario that cannot be read
+    print("writing the log", file=sys.stderr, flush=True)
+    from hsr8.render.finished_log import write_log  # noqa: PLC0415  takes seconds
+
+    return write_log(run)
 
 
 def _time(options: Replay, run: Run) -> float:

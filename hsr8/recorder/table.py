@@ -38,6 +38,11 @@ class Table(Mapping[str, Any]):
         batch = batch_of(rows, schema_of(type(rows[0]), sizes_of(rows), {}))
         return Table(name, pa.Table.from_batches([batch]))
 
+    @staticmethod
+    def joined(tables: Sequence["Table"]) -> "Table":
+        """Return the rows of tables with the same columns, at least one, in one table."""
+        return Table(tables[0].name, pa.concat_tables([table.arrow for table in tables]))
+
     def __len__(self) -> int:
         """Return the number of rows."""
         return int(self.arrow.num_rows)

@@ -3,6 +3,7 @@
 from collections.abc import Iterator
 from contextlib import contextmanager, suppress
 from dataclasses import dataclass
+from pathlib import Path
 from typing import Literal
 from urllib.parse import quote
 
@@ -33,15 +34,19 @@ class LiveView:
 
 
 @contextmanager
-def live_view(kind: Kind) -> Iterator[LiveView]:
+def live_view(kind: Kind, log: Path | None = None) -> Iterator[LiveView]:
     """Start a viewer and end it with the context.
+
+    Args:
+        kind: native or web.
+        log: finished log to show; None for a run that goes on.
 
     Raises:
         UsageError: it cannot be started, for example without a display.
     """
     require_display(kind)
     port, web_port = viewer.free_port(), viewer.free_port()
-    words = viewer.command(port, "--expect-data-soon")
+    words = viewer.command(port, "--expect-data-soon" if log is None else str(log))
     if kind == "web":
         words += ["--serve-web", "--web-viewer-port", str(web_port)]
     with viewer.Viewer(words) as process:

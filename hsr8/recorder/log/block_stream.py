@@ -55,12 +55,9 @@ class BlockStream(rr.RecordingStream):  # type: ignore[misc]  # Rerun is not typ
         self._channels.append(channel)
 
     def send(self) -> None:
-        """Send the rows of all channels; packing all before sending keeps code in the caches."""
-        packed = [(channel.path, channel.take()) for channel in self._channels]
-        native = self.to_native()
-        for path, rows in packed:
-            if rows is not None:
-                rerun_bindings.send_arrow_chunk(path, *rows, native)
+        """Send the rows of all channels."""
+        for channel in self._channels:
+            channel.send(self)
 
     def abandon(self) -> None:
         """Give up the recording without closing it.

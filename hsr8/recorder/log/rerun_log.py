@@ -39,6 +39,7 @@ SOLE_HEIGHT = 0.004  # height of drawn footsteps [m]
 MAX_LABELS = 12  # more waypoints than this are shown without numbers
 WRITE_TIMEOUT = 20.0  # wall time until a batch must be written [s]
 TRAIL, TRAIL_PERIOD = 60.0, 0.12  # length of the path shown, interval between its points [s]
+BATCHES = 4  # logged together: the cost of Rerun is by call
 MAX_INDEXED = 600.0  # logs of longer runs have no index, which is held in memory [s]
 LEVELS = {"fall": "ERROR", "diverged": "ERROR"} | dict.fromkeys(
     ("collision", "fault", "lost", "push"), "WARN"
@@ -71,7 +72,7 @@ class RerunLog:
         model, robot, layout = world
         rates = RATES[level]
         self._pose_throttle, self._frame_throttle = Throttle(rates.pose), Throttle(rates.frame)
-        self._trail_throttle = Throttle(TRAIL_PERIOD)
+        self._trail_throttle, self._path_throttle = Throttle(TRAIL_PERIOD), Throttle(1.0)
         # Without this call Rerun keeps the threads of streams that are no longer used.
         rerun_bindings.flush_and_cleanup_orphaned_recordings()
         self._stream = BlockStream(path.parent.name)
@@ -114,9 +115,21 @@ class RerunLog:
         self._trail: list[list[float]] = []
         self._log_waypoints(layout)
         self._time = 0.0
+        self._batches: list[Tables] = []
+        self._together = 1 if live else BATCHES
 
     def add(self, tables: Tables) -> None:
-        """Log the new rows of the tables."""
+        """Log new rows of the tables, several batches at a time without a viewer."""
+        self._batches.append(tables)
+        if len(self._batches) >= self._together:
+            self._flush()
+
+    def _flush(self) -> None:
+        batches, self._batches = self._batches, []
+        names = {name for batch in batches for name in batch}
+        self._add({name: Table.joined([b[name] for b in batches if name in b]) for name in names})
+
+    def _add(self, tables: Tables) -> None:
         records, frames = tables.get("records"), tables.get("frames")
         if records is not None:
             self._time = float(records["time"][-1])
@@ -133,6 +146,8 @@ class RerunLog:
     def close(self, exit_reason: str) -> None:
         """Log the end and close the file."""
         try:
+            if self._batches:
+                self._flush()
             self._wait()
             self._log_event(self._time, "end", exit_reason)
         finally:
@@ -170,10 +185,22 @@ class RerunLog:
         rows = records.at(shown["time"])
         truth = records["robot"][rows]
         self._plots.add_frames(shown, truth)
-        for row in self._trail_throttle.select(shown["time"]).tolist():
+        self._add_path(shown["time"], truth)
+        self._add_footsteps(records.take(rows), shown["time"].tolist())
+
+    def _add_path(self, times: Array, truth: Array) -> None:
+        """Extend the path by true poses (n, 3) and log it once per second."""
+        for row in self._trail_throttle.select(times).tolist():
             x, y, _ = truth[row].tolist()
             self._trail.append([x, y, 0.003])
-        self._add_footsteps(records.take(rows), shown["time"].tolist())
+            if self._path_throttle.due(float(times[row])):
+                del self._trail[: -round(TRAIL / TRAIL_PERIOD)]
+                self._path.add(
+                    float(times[row]),
+                    strips=[np.array(self._trail)],
+                    colors=palette.packed_all([palette.TRUTH]),
+                    radii=np.array([0.006]),
+                )
 
     def _add_footsteps(self, records: Table, times: list[float]) -> None:
         """Log planned footsteps, transformed with the true pose."""
@@ -203,14 +230,6 @@ class RerunLog:
 
     def _send(self) -> None:
         """Send all rows; Rerun's threads write them while the run goes on."""
-        if self._trail:
-            self._path.add(
-                self._time,
-                strips=[np.array(self._trail)],
-                colors=palette.packed_all([palette.TRUTH]),
-                radii=np.array([0.006]),
-            )
-            del self._trail[: -round(TRAIL / TRAIL_PERIOD)]
         self._wait()
         self._stream.send()
         if self._waits:

@@ -119,7 +119,7 @@ LINES = [
     ("compare nowhere RUN", "nowhere"),
     ("compare empty RUN", "empty"),
     ("verify RUN", "RUN"),
-    ("replay RUN", "RUN: no log; the run was made with --no-log"),
+    ("replay RUN", "scenario.toml"),
     ("plot RUN --what speed", "walking"),
     ("plot RUN", "scenario.toml"),
     ("export", "export: nothing to export; expected --bag"),

@@ -1,4 +1,5 @@
 import pytest
+from rerun.chunk import RrdReader
 
 from hsr8.cli.main import entry
 from hsr8.recorder.run import run_folder
@@ -36,6 +37,14 @@ def test_the_screenshot_shows_the_middle_of_the_run_by_default(run, monkeypatch,
     assert picture.read_bytes() == b"PNG"
     assert asked[0] == (run / run_folder.LOG, 0.5, (1600, 900))
     assert asked[1][1] == 0.1
+
+
+def test_a_missing_log_is_made_from_the_tables(run, monkeypatch, capsys):
+    monkeypatch.setattr("hsr8.render.viewer.screenshot", lambda *_: b"PNG")
+    assert not (run / run_folder.LOG).exists()
+    assert entry(["replay", str(run), "--screenshot", str(run / "log.png")]) == 0
+    entities = {str(chunk.entity_path) for chunk in RrdReader(str(run / run_folder.LOG)).stream()}
+    assert {"/belief/tracks", "/plots/tilt", "/world/robot/ellipsoids"} <= entities
 
 
 @pytest.mark.parametrize("time", ["nan", "inf", "-inf", "1e300", "-1", "1.01"])

@@ -4,7 +4,7 @@ import rerun as rr
 from hsr8.recorder.log.block_stream import BlockStream
 from hsr8.recorder.log.blueprint import blueprint
 from hsr8.recorder.log.channel import Channel
-from hsr8.recorder.log.log_reader import Log
+from tests.hsr8.recorder.log.reading import Log
 
 
 def test_the_rows_of_a_channel_are_sent_once(tmp_path):
@@ -17,8 +17,8 @@ def test_the_rows_of_a_channel_are_sent_once(tmp_path):
         stream.send()
         stream.send()
     stream.disconnect()
-    table = Log(tmp_path / "log.rrd").table("/plots/x")
-    assert table.array()[:, 0].tolist() == [0.0, 0.0, 1.0, 1.0, 2.0, 2.0]
+    table = Log(tmp_path / "log.rrd").table("/plots/x", "Scalars:scalars")
+    assert [value for (value,) in table.rows] == [0.0, 0.0, 1.0, 1.0, 2.0, 2.0]
 
 
 def test_the_arrangement_is_in_the_file_as_with_set_sinks(tmp_path):

@@ -9,10 +9,10 @@ from hsr8.recorder.log.geometry import (
     colors,
     sole_outline,
 )
-from hsr8.recorder.log.log_reader import Log
 from hsr8.recorder.log.robot_layer import RobotLayer
 from hsr8.robots.loaded import load_robot
 from hsr8.robots.normal_form import FEET, HEAD_CAMERA, SOLES
+from tests.hsr8.recorder.log.reading import Log
 
 
 @pytest.fixture(scope="module")

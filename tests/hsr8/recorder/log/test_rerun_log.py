@@ -12,7 +12,6 @@ from rerun.chunk import RrdReader
 
 from hsr8.errors import RecordingFailed
 from hsr8.recorder.log.block_stream import BlockStream
-from hsr8.recorder.log.log_reader import Log
 from hsr8.recorder.log.rerun_log import MAX_INDEXED, WRITE_TIMEOUT, RerunLog
 from hsr8.recorder.log_level import LogLevel
 from hsr8.robots.loaded import load_robot
@@ -20,6 +19,7 @@ from hsr8.scenario.loader import load_scenario
 from hsr8.world.truth.truth import ActivePush
 from navigation.belief.belief import Particles
 from tests.hsr8.recorder.log.batches import batch_of
+from tests.hsr8.recorder.log.reading import Log
 from walking.command import VelocityCommand
 from walking.command_limits import CommandLimits, Limit
 
@@ -201,10 +201,11 @@ def test_a_log_that_cannot_be_written_is_abandoned(log, walk, monkeypatch):
     monkeypatch.setattr(BlockStream, "disconnect", lambda stream: pytest.fail("waits for ever"))
     monkeypatch.setattr("hsr8.recorder.log.block_stream.ABANDONED", left)
     monkeypatch.setattr(rr, "unregister_shutdown", lambda: left.append("at the end of the process"))
+    log.add(batch_of(walk(0.1)))
     with pytest.raises(RecordingFailed, match="timed out"):
-        log.add(batch_of(walk(0.1)))
+        log.close("goal")
     log.close("goal")  # at once, without another wait
-    assert [type(entry) for entry in left] == [BlockStream, str]
+    assert [type(entry) for entry in left] == 2 * [BlockStream, str]
     assert [timeout for timeout in asked if timeout > 0.0] == [WRITE_TIMEOUT]
 
 
@@ -237,7 +238,7 @@ os.kill(os.getpid(), 9)
     done = subprocess.run([sys.executable, "-c", script, str(file)], check=False, timeout=60)
     assert done.returncode == -9
     assert _rows(file)["/plots/x"] == 100
-    assert Log(file).table("/plots/x").array()[:, 0].tolist() == list(range(100))
+    assert [x for (x,) in Log(file).table("/plots/x", "Scalars:scalars").rows] == list(range(100))
 
 
 def _values(path, entity, component="Scalars:scalars"):

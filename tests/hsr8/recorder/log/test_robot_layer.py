@@ -5,10 +5,10 @@ import numpy as np
 import pytest
 
 from hsr8.recorder.log.block_stream import BlockStream
-from hsr8.recorder.log.log_reader import Log
 from hsr8.recorder.log.robot_layer import RobotLayer, followed_entity
 from hsr8.robots.loaded import load_robot
 from hsr8.robots.shown import VISUAL_GROUPS, visual_model
+from tests.hsr8.recorder.log.reading import Log
 from tests.hsr8.robots.mesh_humanoid import write_robot
 
 MESH = int(mujoco.mjtGeom.mjGEOM_MESH)
