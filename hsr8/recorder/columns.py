@@ -8,11 +8,12 @@ the front only, ``n`` for a size that differs between rows.
 """
 
 import re
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, fields, is_dataclass
 from enum import Enum
 from functools import cache
 from itertools import accumulate
+from operator import attrgetter
 from types import NoneType, UnionType
 from typing import Any, Union, cast, get_args, get_origin, get_type_hints
 
@@ -97,11 +98,7 @@ def sizes_of(rows: Sequence[Any]) -> dict[str, int]:
 
 def batch_of(rows: Sequence[Any], schema: pa.Schema) -> pa.RecordBatch:
     """Return rows, at least one, as a record batch."""
-    columns = columns_of(type(rows[0]))
-    arrays = [
-        _array([getattr(row, column.name) for row in rows], column, field.type)
-        for column, field in zip(columns, schema, strict=True)
-    ]
+    arrays = _arrays(rows, columns_of(type(rows[0])), schema)
     return pa.RecordBatch.from_arrays(arrays, schema=schema)
 
 
@@ -202,14 +199,22 @@ def _array(values: list[Any], column: Column, type_: pa.DataType) -> pa.Array:
 
 def _structs(items: list[Any], column: Column) -> pa.StructArray:
     assert column.items is not None
-    columns, types = columns_of(column.items), list(column.type)
     if not items:
         return pa.array([], column.type)
-    arrays = [
-        _array([getattr(item, part.name) for item in items], part, field.type)
-        for part, field in zip(columns, types, strict=True)
-    ]
+    types = list(column.type)
+    arrays = _arrays(items, columns_of(column.items), types)
     return pa.StructArray.from_arrays(arrays, fields=types)
+
+
+def _arrays(
+    objects: Sequence[Any], columns: tuple[Column, ...], fields_: Iterable[pa.Field]
+) -> list[pa.Array]:
+    """Return the columns of objects of one class as Arrow arrays."""
+    values = zip(*map(attrgetter(*(column.name for column in columns)), objects), strict=True)
+    return [
+        _array(list(part), column, field.type)
+        for part, column, field in zip(values, columns, fields_, strict=True)
+    ]
 
 
 def _ravel(values: Sequence[Any]) -> np.ndarray:

@@ -82,8 +82,8 @@ def gaze_reasons(frames: Table) -> list[str]:
     psi, lost, names = frames["psi"], frames["lost"], tuple(GAZE)
     best, any_ = psi.argmax(axis=1).tolist(), psi.max(axis=1) > 0.0
     return [
-        "search" if is_lost else names[k] if seen else "none"
-        for k, seen, is_lost in zip(best, any_.tolist(), lost.tolist(), strict=True)
+        "search" if is_lost else names[k] if positive else "none"
+        for k, positive, is_lost in zip(best, any_.tolist(), lost.tolist(), strict=True)
     ]
 
 
