@@ -143,6 +143,7 @@ def hsr8(words, capsys):
         ONLY_READ & set(given)
         or " ".join(given[:2]) in ONLY_READ
         or (given[0] in ("render", "doctor") and not draws())
+        or (given[0] == "replay" and "--view" in given)  # lasts until Ctrl-C
         or ("--robot" in given and not installed(given[given.index("--robot") + 1]))
     ):
         parse(given)

@@ -31,8 +31,8 @@ def arm_spheres(robot: Posed, roles: Roles) -> list[tuple[Array, Array]]:
     for shoulder in roles.shoulders or ():
         root = int(model.joint(shoulder).bodyid[0])
         geoms = [g for g in range(model.ngeom) if _below(model, int(model.geom_bodyid[g]), root)]
-        seen = [g for g in geoms if _seen(model, g)]
-        spheres = [sphere for g in seen for sphere in _spheres(model, data, g)]
+        visible = [g for g in geoms if _seen(model, g)]
+        spheres = [sphere for g in visible for sphere in _spheres(model, data, g)]
         centres = np.array([centre for centre, _ in spheres]).reshape(-1, 3)
         away = np.linalg.norm(centres - data.xanchor[model.joint(shoulder).id], axis=1)
         arms.append((centres, np.array([radius for _, radius in spheres]) + SWING * away))
