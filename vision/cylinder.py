@@ -126,6 +126,8 @@ def locate(
     roundness_sigma: float,
     edge_correlation: float,
     outlier_threshold: float,
+    *,
+    unit: float = 1.0,
 ) -> list[Cylinder]:
     """Return the cylinder that fits the edges of each candidate best (least squares).
 
@@ -135,6 +137,7 @@ def locate(
         roundness_sigma: standard deviation of the outline relative to the radius [1].
         edge_correlation: correlation of the errors of two points of one edge [1].
         outlier_threshold: deviation of an outlier from its rim [standard deviations].
+        unit: of length, in which the bounds of the kernel are given [m].
     """
     if not candidates:
         return []
@@ -157,19 +160,19 @@ def locate(
     pose = view.pose
     result, covariances = cylinder_kernel.locate(
         np.array(sides).reshape(-1, 2, 6),
-        np.array(known).reshape(-1, 3),
-        np.array(rims, float).reshape(-1, 3),
+        np.array(known).reshape(-1, 3) / unit,
+        np.array(rims, float).reshape(-1, 3) / (unit, 1.0, 1.0),
         np.array(first_rims),
         np.array(points),
         np.concatenate(azimuths) if azimuths else np.empty(0),
         np.concatenate(slopes) if slopes else np.empty(0),
         np.array(
             [
-                view.height,
+                view.height / unit,
                 pose.tilt_sigma**2,
                 pose.roll_sigma**2,
                 pose.yaw_sigma**2,
-                pose.height_sigma**2,
+                (pose.height_sigma / unit) ** 2,
                 # Motion blur: the error of an edge is uniform over the smear.
                 pose.pan_smear**2 / 12.0,
                 pose.tilt_smear**2 / 12.0,
@@ -180,6 +183,8 @@ def locate(
     return [
         Cylinder(azimuth, distance, radius, covariance, misfit, outlier_fraction)
         for (azimuth, distance, radius, misfit, outlier_fraction), covariance in zip(
-            result.tolist(), covariances, strict=True
+            (result * (1.0, unit, unit, 1.0, 1.0)).tolist(),
+            covariances * np.outer((1.0, unit, unit), (1.0, unit, unit)),
+            strict=True,
         )
     ]

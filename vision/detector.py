@@ -230,6 +230,7 @@ class Detector:
             parameters.roundness_sigma,
             parameters.edge_correlation,
             0.5 * parameters.outline_step / parameters.edge_sigma,
+            unit=parameters.unit,
         )
 
     def _detection(

@@ -55,6 +55,7 @@ class VisionParameters:
     """Maximum distance of a reported obstacle [m]."""
     max_beacon_range: Annotated[float, Interval(ge=0.001, le=100.0), "m"] = 5.5
     """Maximum distance of a reported beacon [m]."""
+    unit: Annotated[float, "m"] = 1.0  # of the bounds of the fit of a cylinder
     min_area: int = 20  # minimum area of an obstacle's blob [pixel]
     min_beacon_area: int = 5  # minimum area of the blob of one colour of a beacon [pixel]
     edge_sigma: float = 0.30  # standard deviation of an edge point [pixel]

@@ -76,7 +76,7 @@ def split(
     head = parameters.obstacle_height - view.height
     lower = grid.pieces(-view.height, step, nearest=True)
     upper = []
-    if head < -MIN_CLEARANCE:
+    if head < -MIN_CLEARANCE * parameters.unit:
         upper = grid.pieces(head, step, nearest=False)
     if len(lower) < 2 and len(upper) < 2:
         return []

@@ -140,3 +140,31 @@ def test_cylinders_interpenetrate_when_their_axes_are_too_close() -> None:
 
 def test_no_candidates_give_no_cylinders() -> None:
     assert locate([], View(CAMERA, pose()), *NOISE) == []
+
+
+@pytest.mark.parametrize("unit", [0.3, 3.15])
+def test_a_scene_of_another_size_is_located_alike(unit: float) -> None:
+    gaze = replace(pose(tilt=-0.3), height_sigma=0.004)
+    outline = outline_of(at(1.5, 5.0, "red"), gaze)
+    cues = (foot_of(outline), head_of(outline))
+    candidate = Candidate(outline.left, outline.right, cues, 0.30, *TYPICAL_RADIUS)
+    (small,) = locate([candidate], View(CAMERA, gaze), *NOISE)
+    (large,) = locate(
+        [
+            replace(
+                candidate,
+                rims=tuple(replace(cue, height=unit * cue.height) for cue in cues),
+                height=unit * 0.30,
+                radius=unit * TYPICAL_RADIUS[0],
+                radius_sigma=unit * TYPICAL_RADIUS[1],
+            )
+        ],
+        View(CAMERA, replace(gaze, position=unit * gaze.position, height_sigma=unit * 0.004)),
+        *NOISE,
+        unit=unit,
+    )
+    scale = np.array([1.0, unit, unit])
+    found = np.array([large.azimuth, large.distance, large.radius])
+    expected = scale * (small.azimuth, small.distance, small.radius)
+    assert found == pytest.approx(expected, rel=1e-6)
+    assert large.covariance == pytest.approx(np.outer(scale, scale) * small.covariance, rel=1e-5)
