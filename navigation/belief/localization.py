@@ -89,7 +89,7 @@ class Localizer:
                 self._detect_failure(frame.time, beacons, self._correct(frame, beacons))
         except np.linalg.LinAlgError:
             self._restart()
-        if not (np.isfinite(self._filter.x).all() and np.isfinite(self._filter.P).all()):
+        if not self._valid():
             self._restart()
         self._last_valid = self.pose
 
@@ -103,6 +103,20 @@ class Localizer:
         """Remove the rounding errors of the covariance."""
         P = self._filter.P
         self._filter.P = 0.5 * (P + P.T)
+
+    def _valid(self) -> bool:
+        """Return whether the pose is finite and its covariance positive definite.
+
+        A very accurate observation of a far landmark can leave an indefinite covariance.
+        """
+        x, P = self._filter.x, self._filter.P
+        if not (np.isfinite(x).all() and np.isfinite(P).all()):
+            return False
+        try:
+            np.linalg.cholesky(P)
+        except np.linalg.LinAlgError:
+            return False
+        return True
 
     def _restart(self) -> None:
         """Re-initialize, lost, at the last valid pose."""

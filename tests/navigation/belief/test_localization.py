@@ -4,6 +4,7 @@ from math import cos, pi, sin
 
 import numpy as np
 import pytest
+from filterpy.kalman import UnscentedKalmanFilter
 
 from navigation.angles import wrap
 from navigation.belief.localization import Localizer
@@ -302,3 +303,19 @@ def test_a_moved_beacon_does_not_spoil_finding_back():
     localizer.update(frame(3.1, (0, 0, 0), observed))
     assert not localizer.lost
     assert np.hypot(*localizer.pose[:2]) < 0.05
+
+
+def test_an_update_that_leaves_no_covariance_is_a_fault_at_once(monkeypatch):
+    """Trackers use the covariance of the same frame."""
+    update = UnscentedKalmanFilter.update
+
+    def spoiling(self, z, **options):
+        update(self, z, **options)
+        self.P = self.P - 2.0 * np.linalg.eigvalsh(self.P)[0] * np.eye(3)
+
+    localizer = Localizer(LocalizationParameters(), BEACONS, np.zeros(3), P0)
+    monkeypatch.setattr(UnscentedKalmanFilter, "update", spoiling)
+    localizer.update(frame(0.0, (0, 0, 0), [beacon((0, 0, 0), "b0"), beacon((0, 0, 0), "b2")]))
+    assert localizer.faults == 1
+    assert localizer.lost
+    assert np.linalg.eigvalsh(localizer.covariance)[0] > 0.0
