@@ -16,12 +16,11 @@ from hsr8.errors import SimulationDiverged
 from hsr8.frame_record import FrameRecord
 from hsr8.loop import HASH
 from hsr8.recorder.columns import batch_of
-from hsr8.recorder.fingerprints import CHANNELS
-from hsr8.recorder.recorded import FrameRows
+from hsr8.recorder.recorded import FrameSampler, RecordedFrame
 from hsr8.recorder.rows import TABLES, FrameRow
 from hsr8.recorder.run.run_reader import Run
 from hsr8.recorder.table import Table
-from hsr8.recorder.table_difference import PRINTS, first_cell, first_print
+from hsr8.recorder.table_difference import first_cell
 from hsr8.robot_builder import build_decisions, build_estimator, build_schedule
 from hsr8.seeds import named_rng
 from hsr8.world.field.generator import draw_layout
@@ -31,6 +30,11 @@ from walking.parameters import CONTROL_PERIOD
 from walking.targets import JointTargets
 
 _observed = attrgetter(*(field.name for field in fields(Observation)))
+BELIEF = (
+    *("pose", "pose_covariance", "lost", "filter_faults", "seen_beacons", "tracks"),
+    *("local_map", "map_hash", "map_origin", "map_cell", "particles"),
+)
+"""Columns of the belief."""
 CHUNK = 200  # frames computed between two comparisons
 
 
@@ -126,27 +130,25 @@ def _first_difference(run: Run) -> Replayed | None:
         rows = list(islice(computed, len(recorded)))
         row, stage, channel = len(rows), "estimator", "order"
         if rows:
-            batch = batch_of(rows, frames.arrow.schema)
+            batch = batch_of(FrameRow, rows, frames.arrow.schema)
             cell = first_cell(recorded, Table("frames", pa.Table.from_batches([batch])))
             if cell is not None:
-                prints = rows[cell.row].fingerprints, recorded["fingerprints"][cell.row]
-                k = first_print(*prints)
-                row, channel = cell.row, cell.channel if k is None else PRINTS[k]
-                stage = "decisions" if k is None or k >= len(CHANNELS) else "estimator"
+                row, channel = cell.row, cell.channel
+                stage = "estimator" if cell.column in BELIEF else "decisions"
         if row < len(recorded):
             time = float(recorded["time"][row])
             return Replayed(stage, "frames", len(frames), first + row, time, channel)
     return None
 
 
-def _computed(run: Run) -> Iterator[FrameRow]:
-    """Yield the rows of the frames that follow from the inputs, up to one out of order."""
+def _computed(run: Run) -> Iterator[RecordedFrame]:
+    """Yield the frames that follow from the inputs, up to one out of order."""
     scenario = run.scenario()
     layout = draw_layout(scenario, run.seed)
     estimator = build_estimator(scenario, layout, named_rng(run.seed, "belief"))
     schedule = build_schedule(scenario, named_rng(run.seed, "command"))
     decisions = build_decisions(scenario, layout, run.seed, schedule)
-    frame_rows = FrameRows(layout.scale)
+    sampler = FrameSampler(layout.scale)
     inputs = zip(_inputs(run.frames), run.frames["first_plan"], strict=True)
     for index, ((detections, measured, context), first_plan) in enumerate(inputs):
         try:
@@ -156,7 +158,7 @@ def _computed(run: Run) -> Iterator[FrameRow]:
         if first_plan:
             decisions.forget()
         decision = decisions.make(estimate, measured, context)
-        yield frame_rows.row(
+        yield sampler.sample(
             FrameRecord(
                 index=index,
                 time=context.time,

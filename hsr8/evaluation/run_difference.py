@@ -72,7 +72,7 @@ def _first(name: str, a: Table, b: Table) -> RunDifference | None:
     if cell is None:
         if len(a) == len(b):
             return None
-        cell = Cell(min(len(a), len(b)), "number of rows", len(a), len(b))
+        cell = Cell(min(len(a), len(b)), "", "number of rows", len(a), len(b))
     time = float(longer["time"][cell.row])
     tick = int(longer["tick"][cell.row]) if "tick" in longer else round(time / CONTROL_PERIOD)
     return RunDifference(name, cell.channel, cell.a, cell.b, tick, time)

@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from hsr8.recorder.arc import mean_velocity
-from hsr8.recorder.recorded import BITS
+from hsr8.recorder.limit_bits import BITS
 from hsr8.recorder.table import Table
 from navigation.angles import wrap
 from walking.phase import Phase

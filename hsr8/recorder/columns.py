@@ -1,20 +1,21 @@
-"""Columns of a table, derived from a dataclass whose instances are its rows.
+"""Columns of a table, derived from a dataclass.
 
 The class states everything once: the annotation of a field gives the type of its column, the
-docstring of the class its description, shape and unit: ``zmp: planned ZMP (2,) [m].``
+docstring of the class its description, shape and unit: ``zmp: planned ZMP (2,) [m].`` The default
+of a field, `at` or `computed`, states where the value is in the recorded object, by default in the
+attribute of the same name. Columns are filled from the objects directly, without rows.
 
 A shape contains numbers, names of sizes that are constant in a run, like ``(joints,)``, and, at
 the front only, ``n`` for a size that differs between rows.
 """
 
 import re
-from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass, fields, is_dataclass
-from enum import Enum
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from dataclasses import dataclass, field, fields, is_dataclass
 from functools import cache
-from itertools import accumulate
+from itertools import accumulate, chain
 from operator import attrgetter
-from types import NoneType, UnionType
+from types import MappingProxyType, NoneType, UnionType
 from typing import Any, Union, cast, get_args, get_origin, get_type_hints
 
 import numpy as np
@@ -38,6 +39,7 @@ class Column:
         shape: of the value of a row; empty for a scalar.
         type: Arrow type of one element.
         optional: whether a row may lack a value.
+        source: returns the value of a recorded object.
         items: class of the items of a column of lists of objects.
     """
 
@@ -47,12 +49,23 @@ class Column:
     shape: tuple[int | str, ...]
     type: pa.DataType
     optional: bool
+    source: Callable[[Any], Any]
     items: type | None = None
 
     @property
     def varying(self) -> bool:
         """Whether the number of elements differs between rows."""
         return self.shape[:1] == (_VARYING,)
+
+
+def at(*paths: str) -> Any:
+    """Return a field with the value at a path of attributes, or the values at several."""
+    return computed(attrgetter(*paths))
+
+
+def computed(source: Callable[[Any], Any]) -> Any:
+    """Return a field with the value that `source` returns for a recorded object."""
+    return field(metadata={"source": source})
 
 
 def columns_of(rows: type) -> tuple[Column, ...]:
@@ -67,39 +80,35 @@ def columns_of(rows: type) -> tuple[Column, ...]:
 @cache
 def _columns_of(rows: Any) -> tuple[Column, ...]:
     texts, hints = _descriptions(rows), get_type_hints(rows)
-    return tuple(_column(field.name, hints[field.name], texts) for field in fields(rows))
+    return tuple(
+        _column(f.name, hints[f.name], texts, f.metadata.get("source") or attrgetter(f.name))
+        for f in fields(rows)
+    )
 
 
 def schema_of(
-    rows: type, sizes: Mapping[str, int], labels: Mapping[str, Sequence[str]]
+    rows: type,
+    objects: Sequence[Any] = (),
+    labels: Mapping[str, Sequence[str]] = MappingProxyType({}),
 ) -> pa.Schema:
     """Return the Arrow schema of a dataclass, with units and descriptions in the metadata.
 
     Args:
         rows: the dataclass.
-        sizes: of the named dimensions.
+        objects: recorded objects, which have the sizes of named dimensions.
         labels: names of the elements of named dimensions.
     """
+    sizes: dict[str, int] = {}
+    for column in columns_of(rows):
+        value = next((v for v in map(column.source, objects) if v is not None), None)
+        if value is not None and not column.varying:
+            sizes |= zip(map(str, column.shape), np.shape(value), strict=True)
     return pa.schema([_field(column, sizes, labels) for column in columns_of(rows)])
 
 
-def sizes_of(rows: Sequence[Any]) -> dict[str, int]:
-    """Return the named dimensions of the columns, read from rows."""
-    sizes: dict[str, int] = {}
-    for column in columns_of(type(rows[0])):
-        values = (getattr(row, column.name) for row in rows)
-        value = next((value for value in values if value is not None), None)
-        if value is not None and not column.varying and column.items is None:
-            for size, number in zip(column.shape, np.shape(value), strict=True):
-                if isinstance(size, str):
-                    sizes[size] = number
-    return sizes
-
-
-def batch_of(rows: Sequence[Any], schema: pa.Schema) -> pa.RecordBatch:
-    """Return rows, at least one, as a record batch."""
-    arrays = _arrays(rows, columns_of(type(rows[0])), schema)
-    return pa.RecordBatch.from_arrays(arrays, schema=schema)
+def batch_of(rows: type, objects: Sequence[Any], schema: pa.Schema) -> pa.RecordBatch:
+    """Return recorded objects, at least one, as a record batch with the columns of `rows`."""
+    return pa.RecordBatch.from_arrays(_arrays(rows, objects, schema), schema=schema)
 
 
 def shape_of(field: pa.Field) -> tuple[int, ...]:
@@ -122,7 +131,7 @@ def _descriptions(rows: type) -> dict[str, str]:
     return dict(entries)
 
 
-def _column(name: str, hint: Any, texts: dict[str, str]) -> Column:
+def _column(name: str, hint: Any, texts: dict[str, str], source: Callable[[Any], Any]) -> Column:
     if name not in texts:
         raise TypeError(f"{name}: the docstring does not describe it")
     text = texts[name]
@@ -141,11 +150,12 @@ def _column(name: str, hint: Any, texts: dict[str, str]) -> Column:
         sizes = tuple(int(s) if s.isdigit() else s for s in re.findall(r"\w+", shapes[-1]))
     elif origin is not None and is_dataclass(arguments[0]):
         items, sizes = cast(type, arguments[0]), (_VARYING,)
-        type_ = pa.struct(list(schema_of(items, {}, {})))
+        type_ = pa.struct(list(schema_of(items)))
     elif origin is tuple:
         type_ = _SCALARS.get(arguments[0], pa.string())
         sizes = (_VARYING,) if arguments[-1] is Ellipsis else (len(arguments),)
-    return Column(name, description, unit[-1] if unit else "", sizes, type_, optional, items)
+    unit_text = unit[-1] if unit else ""
+    return Column(name, description, unit_text, sizes, type_, optional, source, items)
 
 
 def _field(
@@ -168,11 +178,17 @@ def _field(
     return pa.field(column.name, type_, metadata=metadata)
 
 
+def _arrays(rows: type, objects: Sequence[Any], fields_: Iterable[pa.Field]) -> list[pa.Array]:
+    """Return the columns of recorded objects as Arrow arrays."""
+    return [
+        _array([*map(column.source, objects)], column, field_.type)
+        for column, field_ in zip(columns_of(rows), fields_, strict=True)
+    ]
+
+
 def _array(values: list[Any], column: Column, type_: pa.DataType) -> pa.Array:
-    """Return the values of a column, one per row, as an Arrow array."""
+    """Return the values of a column, one per recorded object, as an Arrow array."""
     if not column.shape:
-        if issubclass(type(values[0]), Enum):
-            values = [value.value for value in values]
         return pa.array(values, type_)
     if column.optional:  # a list, empty and null where the value is missing
         present = [np.empty(0) if value is None else np.ravel(value) for value in values]
@@ -183,50 +199,25 @@ def _array(values: list[Any], column: Column, type_: pa.DataType) -> pa.Array:
     if not column.varying:
         if not type_.list_size:  # such as the obstacles of a world without any
             return pa.array([[]] * len(values), type_)
-        return pa.FixedSizeListArray.from_arrays(
-            _flat(_ravel(values), column.type), type_.list_size
-        )
+        return pa.FixedSizeListArray.from_arrays(_flat(values, column.type), type_.list_size)
     offsets = _offsets(values)
-    elements = [element for value in values for element in value]
-    if column.items is not None:
-        return pa.ListArray.from_arrays(offsets, _structs(elements, column))
     if isinstance(type_.value_type, pa.FixedSizeListType):
-        flat = _flat(_ravel(elements), column.type)
+        flat = _flat(np.concatenate(values), column.type)
         inner = pa.FixedSizeListArray.from_arrays(flat, type_.value_type.list_size)
         return pa.ListArray.from_arrays(offsets, inner)
-    return pa.ListArray.from_arrays(offsets, pa.array(elements, column.type))
+    elements = [*chain.from_iterable(values)]
+    if column.items is None or not elements:
+        return pa.ListArray.from_arrays(offsets, pa.array(elements, column.type))
+    parts = _arrays(column.items, elements, column.type)
+    return pa.ListArray.from_arrays(
+        offsets, pa.StructArray.from_arrays(parts, fields=[*column.type])
+    )
 
 
-def _structs(items: list[Any], column: Column) -> pa.StructArray:
-    assert column.items is not None
-    if not items:
-        return pa.array([], column.type)
-    types = list(column.type)
-    arrays = _arrays(items, columns_of(column.items), types)
-    return pa.StructArray.from_arrays(arrays, fields=types)
-
-
-def _arrays(
-    objects: Sequence[Any], columns: tuple[Column, ...], fields_: Iterable[pa.Field]
-) -> list[pa.Array]:
-    """Return the columns of objects of one class as Arrow arrays."""
-    values = zip(*map(attrgetter(*(column.name for column in columns)), objects), strict=True)
-    return [
-        _array(list(part), column, field.type)
-        for part, column, field in zip(values, columns, fields_, strict=True)
-    ]
-
-
-def _ravel(values: Sequence[Any]) -> np.ndarray:
-    """Return all elements of arrays or tuples in one array."""
-    if values and isinstance(values[0], np.ndarray):
-        return np.concatenate(values, axis=None)
-    return np.reshape(values, -1)
-
-
-def _flat(values: np.ndarray, type_: pa.DataType) -> pa.Array:
-    return pa.array(np.ascontiguousarray(values, type_.to_pandas_dtype()), type_)
+def _flat(values: Sequence[Any] | np.ndarray, type_: pa.DataType) -> pa.Array:
+    """Return all elements of arrays or tuples of equal shape in one Arrow array."""
+    return pa.array(np.array(values, type_.to_pandas_dtype()).reshape(-1), type_)
 
 
 def _offsets(values: Sequence[Any]) -> pa.Array:
-    return pa.array(list(accumulate(map(len, values), initial=0)), pa.int32())
+    return pa.array([*accumulate(map(len, values), initial=0)], pa.int32())

@@ -10,8 +10,8 @@ from hsr8.frame_record import FrameRecord
 from hsr8.record import Tick
 from hsr8.recorder.files.writing import GrowingFile, writing
 from hsr8.recorder.log_level import LogRates
-from hsr8.recorder.recorded import FrameRows, image_row, record_row, second_row, tick_row
-from hsr8.recorder.rows import TABLES, EventRow
+from hsr8.recorder.recorded import FrameSampler, image_row
+from hsr8.recorder.rows import TABLES
 from hsr8.recorder.stream import CHECKSUMS, TableWriter
 from hsr8.recorder.table import Table
 from hsr8.recorder.throttle import Throttle
@@ -53,13 +53,14 @@ class Recorder:
         self._folder = folder
         self._period = period
         self._listeners = listeners
-        self._frame_rows = FrameRows(scale)
+        self._sampler = FrameSampler(scale)
         self._images = images
         self._throttle = Throttle(images.frame if images else 0.0)
         self._checksums = GrowingFile(folder / CHECKSUMS)
         labels = {"joints": joints}
         self._writers = {
-            name: TableWriter(folder, name, labels, self._checksums) for name in TABLES
+            name: TableWriter(folder, name, rows, labels, self._checksums)
+            for name, rows in TABLES.items()
         }
         self._ticks: list[Tick] = []
 
@@ -93,22 +94,23 @@ class Recorder:
             if not self._folder.exists():  # open files outlive their folder
                 raise FileNotFoundError(errno.ENOENT, "the folder was removed")
         tables = {
-            name: self._writers[name].write(rows)
-            for name, rows in self._rows_of(ticks).items()
-            if rows
+            name: self._writers[name].write(objects)
+            for name, objects in self._objects_of(ticks).items()
+            if objects
         }
         for listener in self._listeners:
             listener(tables)
 
-    def _rows_of(self, ticks: Sequence[Tick]) -> dict[str, list[Any]]:
+    def _objects_of(self, ticks: Sequence[Tick]) -> dict[str, Sequence[Any]]:
+        """Return the recorded objects of each table."""
         records = [tick.record for tick in ticks if tick.record is not None]
         frames = [record.frame for record in records if record.frame is not None]
         return {
-            "ticks": [tick_row(tick) for tick in ticks],
-            "records": [record_row(record) for record in records],
-            "frames": [self._frame_rows.row(frame) for frame in frames],
-            "seconds": [second_row(second) for tick in ticks for second in tick.seconds],
-            "events": [EventRow(*event) for tick in ticks for event in tick.events],
+            "ticks": ticks,
+            "records": records,
+            "frames": [*map(self._sampler.sample, frames)],
+            "seconds": [second for tick in ticks for second in tick.seconds],
+            "events": [event for tick in ticks for event in tick.events],
             "images": self._image_rows(frames),
         }
 

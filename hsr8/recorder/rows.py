@@ -1,16 +1,20 @@
-"""Rows of the tables of a run: what is recorded, with units.
+"""Rows of the tables of a run: what is recorded, with units, and its source.
 
 Poses are those of the robot frame R: x, y, heading [m, m, rad]. W is the world frame. Quantities
 "in odometry" are in the odometry frame of the robot, which drifts.
 """
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from operator import attrgetter
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
+from hsr8.record import Second, TickRecord
+from hsr8.recorder.columns import at, computed
+from hsr8.recorder.limit_bits import limit_bits
 from hsr8.world.truth.truth import ActivePush, Contact
 from navigation.decision import VirtualObstacle
 from vision.detection import Detection
@@ -21,8 +25,26 @@ Array = NDArray[np.float64]
 Vector = Array | tuple[float, ...]
 Shades = NDArray[np.uint8]
 
+UNKNOWN = np.full(3, np.nan)
 
-@value
+
+def _limited_command(record: TickRecord) -> Vector:
+    report = record.walking.command_limits
+    return UNKNOWN if report is None else report.commanded.velocity
+
+
+def _limits(record: TickRecord) -> int:
+    report = record.walking.command_limits
+    return 0 if report is None else limit_bits(report.limits)
+
+
+def _saturation(name: str) -> Callable[[Second], Any]:
+    """Return the source of a counter of saturation, which a body without dynamics lacks."""
+    counter = attrgetter(name)
+    return lambda second: None if second.saturation is None else counter(second.saturation)
+
+
+@dataclass(kw_only=True)
 class TickRow:
     """Sensors, as the robot receives them, and setpoints of one control tick.
 
@@ -44,22 +66,22 @@ class TickRow:
             repeated runs [s].
     """
 
-    tick: int
+    tick: int = at("number")
     time: float
-    joint_position: Array
-    joint_velocity: Array
-    gyro: Array
-    accelerometer: Array
-    orientation: Array
-    foot_force: Array
+    joint_position: Array = at("sensors.joint_position")
+    joint_velocity: Array = at("sensors.joint_velocity")
+    gyro: Array = at("sensors.gyro")
+    accelerometer: Array = at("sensors.accelerometer")
+    orientation: Array = at("sensors.orientation")
+    foot_force: Array = at("sensors.foot_force")
     setpoint: Array
-    limits: int
+    limits: int = computed(lambda tick: limit_bits(tick.limits))
     zmp_depth: float
     down: bool
     walking_time: float
 
 
-@value
+@dataclass(kw_only=True)
 class RecordRow:
     """True state of the world and state of the walking engine, every 20 ms.
 
@@ -107,46 +129,46 @@ class RecordRow:
 
     tick: int
     time: float
-    qpos: Array
-    robot: Array
-    obstacle_positions: Array
-    obstacle_velocities: Array
-    clearance: float
-    joint_torque: Array
-    foot_load: Array
-    cop: Array
-    fallen: bool
-    contacts: tuple[Contact, ...]
-    pushes: tuple[ActivePush, ...]
-    phase: str
-    odometry: Vector
-    odometry_covariance: Array
-    camera_rotation: Array
-    camera_position: Array
-    head: Vector
-    head_rate: Vector
-    head_target: Vector
-    command: Vector
-    applied_velocity: Array
-    limited_command: Vector
-    limits: int
-    footsteps: tuple[Foothold, ...]
-    step_count: int
-    zmp: Array
-    com: Array
-    measured_com: Array
-    dcm: Array
-    measured_dcm: Array
-    support: Array
-    zmp_depth: float
-    feet: Array
-    capture: Array
-    roll: float
-    pitch: float
-    believes_fallen: bool
+    qpos: Array = at("truth.qpos")
+    robot: Array = at("truth.robot")
+    obstacle_positions: Array = at("truth.obstacle_positions")
+    obstacle_velocities: Array = at("truth.obstacle_velocities")
+    clearance: float = at("truth.clearance")
+    joint_torque: Array = at("truth.joint_torque")
+    foot_load: Array = at("truth.foot_force")
+    cop: Array = at("truth.zmp")
+    fallen: bool = at("truth.fallen")
+    contacts: tuple[Contact, ...] = at("truth.contacts")
+    pushes: tuple[ActivePush, ...] = at("truth.pushes")
+    phase: str = at("walking.phase")
+    odometry: Vector = at("walking.odometry.x", "walking.odometry.y", "walking.odometry.yaw")
+    odometry_covariance: Array = at("walking.odometry.covariance")
+    camera_rotation: Array = at("walking.camera.rotation")
+    camera_position: Array = at("walking.camera.position")
+    head: Vector = at("walking.camera.pan", "walking.camera.tilt")
+    head_rate: Vector = at("walking.camera.pan_rate", "walking.camera.tilt_rate")
+    head_target: Vector = at("head.pan", "head.tilt")
+    command: Vector = at("command.velocity")
+    applied_velocity: Array = at("walking.applied_velocity")
+    limited_command: Vector = computed(_limited_command)
+    limits: int = computed(_limits)
+    footsteps: tuple[Foothold, ...] = at("walking.footsteps")
+    step_count: int = at("walking.step_count")
+    zmp: Array = at("walking.zmp")
+    com: Array = at("walking.balance.com")
+    measured_com: Array = at("walking.com")
+    dcm: Array = at("walking.dcm")
+    measured_dcm: Array = at("walking.balance.dcm")
+    support: Array = at("walking.balance.support")
+    zmp_depth: float = at("walking.balance.zmp_depth")
+    feet: Array = at("walking.balance.feet")
+    capture: Array = at("walking.balance.capture")
+    roll: float = at("walking.roll")
+    pitch: float = at("walking.pitch")
+    believes_fallen: bool = at("walking.fallen")
 
 
-@value
+@dataclass(kw_only=True)
 class TrackRow:
     """Believed obstacle.
 
@@ -180,7 +202,7 @@ class TrackRow:
     age: float
     last_seen: Array
     visible: bool
-    lost: bool
+    lost: bool = computed(lambda track: track.particles is not None)
     reach: float
     turn_rate: float
 
@@ -200,7 +222,7 @@ class ParticleRow:
     weight: float
 
 
-@value
+@dataclass(kw_only=True)
 class FrameRow:
     """Detections, belief and decisions of one camera frame.
 
@@ -250,66 +272,66 @@ class FrameRow:
         gaze_map: gaze map GM in 255 shades of its maximum, from below and from the right
             (tilts, pans) [1].
         local_map: confidence in 255 shades, from minimum y and minimum x (rows, columns) [1].
+        map_hash: hash of the whole local map, recorded with it.
         map_origin: corner of minimum x and y of the local map in W (2,) [m].
         map_cell: side of a cell of the local map [m].
         particles: of lost movers.
         field_points: points in W at which the direction field is sampled (n, 2) [m].
         field_directions: unit vectors there (n, 2) [1].
         field_path: path along the field in W (n, 2) [m].
-        fingerprints: 8 bytes for each channel of `hsr8.recorder.fingerprints`.
     """
 
-    index: int
-    time: float
-    captured: float
-    capture_odometry: Array
-    motion_covariance: Array
-    capture_rotation: Array
-    capture_position: Array
-    capture_head: Vector
-    detections: tuple[Detection, ...]
-    odometry: Array
-    camera_rotation: Array
-    camera_position: Array
-    head: Vector
-    fov: Vector
-    yaw_sigma: float
-    step_count: int
-    pose: Array
-    pose_covariance: Array
-    lost: bool
-    filter_faults: int
-    seen_beacons: tuple[str, ...]
-    tracks: Sequence[TrackRow]
-    target: Array
-    target_heading: float
-    is_goal: bool
-    via_points: int
-    aligning: bool
-    done: bool
+    index: int = at("frame.index")
+    time: float = at("frame.time")
+    captured: float = at("frame.measured.time")
+    capture_odometry: Array = at("frame.measured.odometry")
+    motion_covariance: Array = at("frame.measured.motion_covariance")
+    capture_rotation: Array = at("frame.measured.view.rotation")
+    capture_position: Array = at("frame.measured.view.position")
+    capture_head: Vector = at("frame.measured.view.pan", "frame.measured.view.tilt")
+    detections: tuple[Detection, ...] = at("frame.detections")
+    odometry: Array = at("frame.context.odometry")
+    camera_rotation: Array = at("frame.context.view.rotation")
+    camera_position: Array = at("frame.context.view.position")
+    head: Vector = at("frame.context.view.pan", "frame.context.view.tilt")
+    fov: Vector = at("frame.context.view.horizontal_fov", "frame.context.view.vertical_fov")
+    yaw_sigma: float = at("frame.context.view.yaw_sigma")
+    step_count: int = at("frame.context.step_count")
+    pose: Array = at("frame.decision.belief.pose")
+    pose_covariance: Array = at("frame.decision.belief.pose_covariance")
+    lost: bool = at("frame.decision.belief.lost")
+    filter_faults: int = at("frame.decision.belief.filter_faults")
+    seen_beacons: tuple[str, ...] = at("frame.decision.belief.seen_beacons")
+    tracks: Sequence[TrackRow] = at("frame.decision.belief.tracks")
+    target: Array = at("frame.decision.task.target")
+    target_heading: float = at("frame.decision.task.heading")
+    is_goal: bool = at("frame.decision.task.is_goal")
+    via_points: int = at("frame.decision.task.index")
+    aligning: bool = at("frame.decision.task.aligning")
+    done: bool = at("frame.decision.task.done")
     planned: bool
-    first_plan: bool
-    velocity: Array
-    direction: float
-    speed: float
-    situation: str
-    look_request: float | None
-    virtual_obstacles: tuple[VirtualObstacle, ...]
-    gaze: Vector
-    body_direction: float | None
-    psi: Vector
+    first_plan: bool = at("frame.decision.fresh")
+    velocity: Array = at("frame.decision.motion.velocity")
+    direction: float = at("frame.decision.motion.direction")
+    speed: float = at("frame.decision.motion.speed")
+    situation: str = at("frame.decision.motion.situation")
+    look_request: float | None = at("frame.decision.motion.look_request")
+    virtual_obstacles: tuple[VirtualObstacle, ...] = at("frame.decision.motion.virtual_obstacles")
+    gaze: Vector = at("frame.decision.gaze.pan", "frame.decision.gaze.tilt")
+    body_direction: float | None = at("frame.decision.gaze.body_direction")
+    psi: Vector = at(*(f"frame.decision.gaze.psi_{name}" for name in ("lm", "sf", "ob", "way")))
     gaze_map: Shades | None
     local_map: Shades | None
-    map_origin: Vector
-    map_cell: float
+    map_hash: bytes | None
+    map_origin: Vector = at("frame.decision.belief.local_map.origin")
+    map_cell: float = at("frame.decision.belief.local_map.cell")
     particles: Sequence[ParticleRow]
-    field_points: Array
-    field_directions: Array
-    field_path: Array
-    fingerprints: bytes
+    field_points: Array = at("field.points")
+    field_directions: Array = at("field.directions")
+    field_path: Array = at("field.path")
 
 
-@dataclass(slots=True, eq=False)
+@dataclass(kw_only=True)
 class SecondRow:
     """Hashes of the state and saturation of the servos so far, every second and at the end.
 
@@ -330,12 +352,12 @@ class SecondRow:
     time: float
     world: bytes
     robot: bytes
-    torque_saturated: int | None = None
-    torque_saturated_by: NDArray[np.int64] | None = None
-    at_stop: int | None = None
-    at_stop_by: NDArray[np.int64] | None = None
-    peak_torque: Array | None = None
-    peak_speed: Array | None = None
+    torque_saturated: int | None = computed(_saturation("torque_any"))
+    torque_saturated_by: NDArray[np.int64] | None = computed(_saturation("torque_ticks"))
+    at_stop: int | None = computed(_saturation("stop_any"))
+    at_stop_by: NDArray[np.int64] | None = computed(_saturation("stop_ticks"))
+    peak_torque: Array | None = computed(_saturation("peak_torque"))
+    peak_speed: Array | None = computed(_saturation("peak_speed"))
 
 
 @value

@@ -34,4 +34,4 @@ class Selection:
 
 
 def _empty(name: str) -> pa.Table:
-    return schema_of(TABLES[name], {}, {}).empty_table()
+    return schema_of(TABLES[name]).empty_table()

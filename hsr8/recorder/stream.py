@@ -15,7 +15,7 @@ from typing import Any
 import pyarrow as pa
 
 from hsr8.errors import UsageError
-from hsr8.recorder.columns import batch_of, schema_of, sizes_of
+from hsr8.recorder.columns import batch_of, schema_of
 from hsr8.recorder.files.writing import GrowingFile, writing
 from hsr8.recorder.table import Table
 
@@ -30,6 +30,7 @@ class TableWriter:
     Args:
         folder: of the run.
         name: of the table.
+        rows: class of its rows.
         labels: names of the elements of each named dimension, such as the joints.
         checksums: open file of the checksums.
 
@@ -44,27 +45,29 @@ class TableWriter:
         self,
         folder: Path,
         name: str,
+        rows: type,
         labels: Mapping[str, Sequence[str]],
         checksums: GrowingFile,
     ) -> None:
         self._folder = folder
         self._name = name
+        self._rows = rows
         self._labels = labels
         self._checksums = checksums
         self._file: _CheckedFile | None = None
         self._writer: pa.RecordBatchStreamWriter | None = None
         self.count = 0
 
-    def write(self, rows: Sequence[Any]) -> Table:
-        """Append rows, at least one, and return them as a table."""
+    def write(self, objects: Sequence[Any]) -> Table:
+        """Append recorded objects, at least one, and return their rows as a table."""
         with writing(self._folder):
             if self._writer is None:
-                self._schema = schema_of(type(rows[0]), sizes_of(rows), self._labels)
+                self._schema = schema_of(self._rows, objects, self._labels)
                 self._file = _CheckedFile(self._folder / f"{self._name}{SUFFIX}")
                 self._writer = pa.ipc.new_stream(self._file, self._schema, options=OPTIONS)
-            batch = batch_of(rows, self._schema)
+            batch = batch_of(self._rows, objects, self._schema)
             self._writer.write_batch(batch)
-        self.count += len(rows)
+        self.count += len(objects)
         self._end_part()
         return Table(self._name, pa.Table.from_batches([batch]))
 
@@ -137,7 +140,7 @@ def read_table(path: Path, rows: type, *, whole: bool) -> Table:
         UsageError: the file cannot be read or is damaged.
     """
     if not path.exists():
-        return Table(path.stem, schema_of(rows, {}, {}).empty_table())
+        return Table(path.stem, schema_of(rows).empty_table())
     try:
         content = path.read_bytes()
         lines = (path.parent / CHECKSUMS).read_text().splitlines(keepends=True)
@@ -162,6 +165,6 @@ def read_table(path: Path, rows: type, *, whole: bool) -> Table:
     if whole:
         raise UsageError(f"{path}: cut off after {count} rows")
     if not size:
-        return Table(path.stem, schema_of(rows, {}, {}).empty_table())
+        return Table(path.stem, schema_of(rows).empty_table())
     with pa.ipc.open_stream(content[:size]) as reader:
         return Table(path.stem, pa.Table.from_batches(reader, reader.schema))

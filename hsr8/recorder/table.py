@@ -8,7 +8,7 @@ import pyarrow as pa
 from numpy.typing import NDArray
 
 from hsr8.errors import UsageError
-from hsr8.recorder.columns import batch_of, schema_of, shape_of, sizes_of
+from hsr8.recorder.columns import batch_of, schema_of, shape_of
 from hsr8.suggestion import suggestion
 
 
@@ -33,10 +33,11 @@ class Table(Mapping[str, Any]):
         self._columns: dict[str, Any] = {}
 
     @staticmethod
-    def from_rows(name: str, rows: Sequence[Any]) -> "Table":
-        """Return rows, at least one, as a table."""
-        batch = batch_of(rows, schema_of(type(rows[0]), sizes_of(rows), {}))
-        return Table(name, pa.Table.from_batches([batch]))
+    def from_objects(name: str, rows: type, objects: Sequence[Any]) -> "Table":
+        """Return recorded objects as a table with the columns of the dataclass `rows`."""
+        schema = schema_of(rows, objects)
+        batches = [batch_of(rows, objects, schema)] if objects else []
+        return Table(name, pa.Table.from_batches(batches, schema))
 
     @staticmethod
     def joined(tables: Sequence["Table"]) -> "Table":

@@ -7,11 +7,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from hsr8.recorder.fingerprints import CHANNELS, DECISIONS, FINGERPRINT
 from hsr8.recorder.table import Items, Table
-
-PRINTS = (*CHANNELS, *DECISIONS)
-"""Fingerprints of a frame in their order."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -20,11 +16,13 @@ class Cell:
 
     Attributes:
         row: of the tables.
+        column: of the tables.
         channel: column and element, with unit.
         a, b: the two values.
     """
 
     row: int
+    column: str
     channel: str
     a: Any
     b: Any
@@ -40,11 +38,6 @@ def first_cell(a: Table, b: Table, ignored: Collection[str] = ()) -> Cell | None
     return min(cells, key=lambda cell: cell.row, default=None)
 
 
-def first_print(x: bytes, y: bytes) -> int | None:
-    """Return the index in `PRINTS` of the first fingerprint of a frame that differs."""
-    return next((k for k in range(len(PRINTS)) if _print(x, k) != _print(y, k)), None)
-
-
 def _first_of_column(a: Table, b: Table, name: str) -> Cell | None:
     x, y, rows = a[name], b[name], min(len(a), len(b))
     if isinstance(x, Items) and isinstance(y, Items):
@@ -53,10 +46,10 @@ def _first_of_column(a: Table, b: Table, name: str) -> Cell | None:
         if cell is not None and (row is None or x.parents[cell.row] < row):
             parent = int(x.parents[cell.row])
             number = cell.row - int(x.counts[:parent].sum())
-            return Cell(parent, f"{name}[{number}].{cell.channel}", cell.a, cell.b)
+            return Cell(parent, name, f"{name}[{number}].{cell.channel}", cell.a, cell.b)
         if row is None:
             return None
-        return Cell(row, f"number of {name}", int(x.counts[row]), int(y.counts[row]))
+        return Cell(row, name, f"number of {name}", int(x.counts[row]), int(y.counts[row]))
     row = _first_row(x, y, rows)
     return None if row is None else _cell(a, name, row, x[row], y[row])
 
@@ -87,23 +80,16 @@ def _cell(table: Table, name: str, row: int, x: Any, y: Any) -> Cell:
     p, q = np.asarray(x), np.asarray(y)
     if p.shape != q.shape:
         sizes = [None if v is None else list(np.shape(v)) for v in (x, y)]
-        return Cell(row, f"shape of {name}", *sizes)
-    if name == "fingerprints":
-        k = first_print(x, y) or 0
-        return Cell(row, f"fingerprint of the {PRINTS[k]}", _print(x, k), _print(y, k))
+        return Cell(row, name, f"shape of {name}", *sizes)
     unit = f" [{table.unit(name)}]" if table.unit(name) else ""
     if not p.shape:
-        return Cell(row, f"{name}{unit}", _plain(x), _plain(y))
+        return Cell(row, name, f"{name}{unit}", _plain(x), _plain(y))
     index = np.unravel_index(int(np.argmax(_differ(p, q))), p.shape)
     names = table.names(name)
     element = f"[{', '.join(map(str, index))}]"
     if len(names) == len(p):
         element = f" of {names[index[0]]}"
-    return Cell(row, f"{name}{element}{unit}", _plain(p[index]), _plain(q[index]))
-
-
-def _print(value: bytes, k: int) -> str:
-    return value[FINGERPRINT * k : FINGERPRINT * (k + 1)].hex()
+    return Cell(row, name, f"{name}{element}{unit}", _plain(p[index]), _plain(q[index]))
 
 
 def _plain(value: Any) -> Any:

@@ -7,7 +7,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from hsr8.frame_record import FrameRecord
-from hsr8.recorder.recorded import FrameRows
+from hsr8.recorder.recorded import FrameSampler
+from hsr8.recorder.rows import FrameRow
 from hsr8.recorder.run.run_reader import Run
 from hsr8.recorder.table import Table
 
@@ -111,7 +112,8 @@ def shown_frames(run: Run) -> tuple[ShownFrame, ...]:
 
 def shown_frame(frame: FrameRecord, robot: Array) -> ShownFrame:
     """Return one camera frame with the true pose (3,) of the robot."""
-    return _shown(Table.from_rows("frames", [FrameRows().row(frame)]), robot[None])[0]
+    frames = Table.from_objects("frames", FrameRow, [FrameSampler().sample(frame)])
+    return _shown(frames, robot[None])[0]
 
 
 def _shown(frames: Table, robot: Array) -> tuple[ShownFrame, ...]:

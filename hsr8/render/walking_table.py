@@ -12,7 +12,7 @@ from math import hypot
 import numpy as np
 from numpy.typing import NDArray
 
-from hsr8.recorder.recorded import LIMITS
+from hsr8.recorder.limit_bits import LIMITS
 from hsr8.recorder.run.run_reader import Run
 from hsr8.recorder.table import Table
 from hsr8.recorder.world_frame import LIGHT, WorldFrame

@@ -11,8 +11,8 @@ import pytest
 from hsr8.decisions import Decision, DecisionContext
 from hsr8.frame_record import FrameRecord
 from hsr8.record import TickRecord
-from hsr8.recorder.columns import batch_of, schema_of, sizes_of
-from hsr8.recorder.recorded import FrameRows, record_row
+from hsr8.recorder.columns import batch_of, schema_of
+from hsr8.recorder.recorded import FrameSampler
 from hsr8.recorder.rows import TABLES
 from hsr8.recorder.stream import CHECKSUMS
 from hsr8.recorder.table import Table
@@ -273,22 +273,22 @@ def rewrite():
     return changed
 
 
-def _table(name, rows):
-    if not rows:
-        return Table(name, schema_of(TABLES[name], {}, {}).empty_table())
-    schema = schema_of(TABLES[name], sizes_of(rows), {"joints": JOINT_NAMES})
-    return Table(name, pa.Table.from_batches([batch_of(rows, schema)]))
+def _table(name, objects):
+    rows = TABLES[name]
+    schema = schema_of(rows, objects, {"joints": JOINT_NAMES})
+    batches = [batch_of(rows, objects, schema)] if objects else []
+    return Table(name, pa.Table.from_batches(batches, schema))
 
 
 @pytest.fixture(scope="session")
 def tables_of():
-    """Tables of a run, from records, rows of ``seconds`` and columns of ``ticks``."""
+    """Tables of a run, from records, seconds and columns of ``ticks``."""
 
     def tables(records=(), seconds=(), **ticks):
-        records, frames = list(records), FrameRows(1.0)
+        records, sampler = list(records), FrameSampler()
         return {
-            "records": _table("records", [record_row(record) for record in records]),
-            "frames": _table("frames", [frames.row(r.frame) for r in records if r.frame]),
+            "records": _table("records", records),
+            "frames": _table("frames", [sampler.sample(r.frame) for r in records if r.frame]),
             "seconds": _table("seconds", list(seconds)),
             "ticks": Table("ticks", pa.table(ticks)) if ticks else _table("ticks", []),
         }

@@ -23,7 +23,7 @@ LIBRARIES = (
     "pydantic",
     "av",
 )
-FORMAT = 5  # of run folders; those without a number are of format 1
+FORMAT = 6  # of run folders; those without a number are of format 1
 RUNNING = "running"
 CALL = "hsr8.run("  # begins the command of a run with a planner or gaze object
 

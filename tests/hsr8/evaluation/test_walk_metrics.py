@@ -5,9 +5,11 @@ import numpy as np
 import pytest
 
 from hsr8.evaluation.walk_metrics import walk_metrics
-from hsr8.recorder.recorded import limit_bits
-from hsr8.recorder.rows import SecondRow
+from hsr8.record import Second
+from hsr8.recorder.limit_bits import limit_bits
+from hsr8.world.truth.saturation import Saturation
 from hsr8.world.truth.truth import ActivePush
+from walking.body.joints import JOINT_NAMES
 from walking.command import VelocityCommand
 from walking.command_limits import Limit
 from walking.phase import Phase
@@ -125,8 +127,8 @@ def test_servos_and_times_need_a_body_with_dynamics(fake, results_of):
     saturated[3], peak[3] = 7, 1.0
     push = ActivePush(4, 1.0, 0.05, "torso_link", 0.0, np.zeros(3), np.array([3.0, 4.0, 0.0]))
     seconds = [
-        SecondRow(0, 0.0, b"", b"", 0, none, 0, none, none * 0.0, none * 0.0),
-        SecondRow(9, 1.0, b"", b"", 7, saturated, 0, none, peak, 5.0 * peak),
+        Second(0, 0.0, b"", b"", Saturation(JOINT_NAMES, 0, none, 0, none, 0.0 * peak, peak)),
+        Second(9, 1.0, b"", b"", Saturation(JOINT_NAMES, 7, saturated, 0, none, peak, 5.0 * peak)),
     ]
     results = results_of([fake.record(0.0, pushes=(push,))], seconds, **ticks((), ()))
     assert results["torque_saturated_by"] == {"l_knee": 7}

@@ -81,7 +81,7 @@ def write_all(writer, content, size=7):
 
 def written(folder, content):
     checksums = GrowingFile(folder / CHECKSUMS)
-    writer = TableWriter(folder, "things", {"joints": ("hip", "knee", "ankle")}, checksums)
+    writer = TableWriter(folder, "things", Row, {"joints": ("hip", "knee", "ankle")}, checksums)
     write_all(writer, content)
     writer.close()
     checksums.close()
@@ -150,7 +150,7 @@ def test_checksums_cut_off_at_any_byte_lose_the_last_batches_only(tmp_path):
 @pytest.mark.parametrize("size", [100, 3000, 7001])
 def test_a_full_disk_is_one_error_and_the_whole_batches_stay(tmp_path, size):
     content, lines = rows(70), GrowingFile(tmp_path / CHECKSUMS)
-    writer = TableWriter(tmp_path, "things", {}, lines)
+    writer = TableWriter(tmp_path, "things", Row, {}, lines)
     limits = resource.getrlimit(resource.RLIMIT_FSIZE)
     resource.setrlimit(resource.RLIMIT_FSIZE, (size, limits[1]))
     try:

@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 
 from hsr8.errors import UsageError
+from hsr8.recorder.limit_bits import LIMITS
 from hsr8.recorder.log.walk_layer import GAIT
-from hsr8.recorder.recorded import LIMITS
 from hsr8.render import walk_panels
 from hsr8.render.walk_figure import TIME_PANELS, draw, save
 from hsr8.render.walking_table import COLUMNS, WalkingTable

@@ -1,21 +1,26 @@
 """Batches of tables, as the recorder passes them to a log."""
 
+from hsr8.record import Event
 from hsr8.recorder.log_level import RATES, LogLevel
-from hsr8.recorder.recorded import FrameRows, image_row, record_row
-from hsr8.recorder.rows import EventRow
+from hsr8.recorder.recorded import FrameSampler, image_row
+from hsr8.recorder.rows import TABLES
 from hsr8.recorder.table import Table
 from hsr8.recorder.throttle import Throttle
 
 
 def batch_of(records, events=(), level=LogLevel.STANDARD):
     """Return the tables of records and of events: time, kind and text."""
-    records, frame_rows, due = list(records), FrameRows(), Throttle(RATES[level].frame)
+    records, sampler, due = list(records), FrameSampler(), Throttle(RATES[level].frame)
     frames = [record.frame for record in records if record.frame is not None]
     images = [f for f in frames if f.image is not None and RATES[level].jpeg and due.due(f.time)]
-    rows = {
-        "records": [record_row(record) for record in records],
-        "frames": [frame_rows.row(frame) for frame in frames],
-        "events": [EventRow(*event) for event in events],
+    objects = {
+        "records": records,
+        "frames": [*map(sampler.sample, frames)],
+        "events": [Event(*event) for event in events],
         "images": [image_row(frame, frame.image, 75) for frame in images],
     }
-    return {name: Table.from_rows(name, content) for name, content in rows.items() if content}
+    return {
+        name: Table.from_objects(name, TABLES[name], content)
+        for name, content in objects.items()
+        if content
+    }
