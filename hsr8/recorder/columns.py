@@ -16,10 +16,21 @@ from functools import cache
 from itertools import accumulate, chain
 from operator import attrgetter
 from types import MappingProxyType, NoneType, UnionType
-from typing import Any, Union, cast, get_args, get_origin, get_type_hints
+from typing import (
+    Any,
+    TypeVar,
+    Union,
+    cast,
+    dataclass_transform,
+    get_args,
+    get_origin,
+    get_type_hints,
+)
 
 import numpy as np
 import pyarrow as pa
+
+T = TypeVar("T")
 
 _ENTRY = re.compile(r"^((?:\w+, )*\w+): (.*)$")
 _SHAPE = re.compile(r"\(((?:\w+, ?)*\w+,?)\)")
@@ -66,6 +77,12 @@ def at(*paths: str) -> Any:
 def computed(source: Callable[[Any], Any]) -> Any:
     """Return a field with the value that `source` returns for a recorded object."""
     return field(metadata={"source": source})
+
+
+@dataclass_transform(kw_only_default=True, field_specifiers=(at, computed))
+def row(rows: type[T]) -> type[T]:
+    """Make a dataclass of columns, which is not instantiated."""
+    return dataclass(kw_only=True)(rows)
 
 
 def columns_of(rows: type) -> tuple[Column, ...]:

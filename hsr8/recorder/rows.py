@@ -5,7 +5,6 @@ Poses are those of the robot frame R: x, y, heading [m, m, rad]. W is the world 
 """
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
 from operator import attrgetter
 from typing import Any
 
@@ -13,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from hsr8.record import Second, TickRecord
-from hsr8.recorder.columns import at, computed
+from hsr8.recorder.columns import at, computed, row
 from hsr8.recorder.limit_bits import limit_bits
 from hsr8.world.truth.truth import ActivePush, Contact
 from navigation.decision import VirtualObstacle
@@ -44,7 +43,7 @@ def _saturation(name: str) -> Callable[[Second], Any]:
     return lambda second: None if second.saturation is None else counter(second.saturation)
 
 
-@dataclass(kw_only=True)
+@row
 class TickRow:
     """Sensors, as the robot receives them, and setpoints of one control tick.
 
@@ -81,7 +80,7 @@ class TickRow:
     walking_time: float
 
 
-@dataclass(kw_only=True)
+@row
 class RecordRow:
     """True state of the world and state of the walking engine, every 20 ms.
 
@@ -168,7 +167,7 @@ class RecordRow:
     believes_fallen: bool = at("walking.fallen")
 
 
-@dataclass(kw_only=True)
+@row
 class TrackRow:
     """Believed obstacle.
 
@@ -222,7 +221,7 @@ class ParticleRow:
     weight: float
 
 
-@dataclass(kw_only=True)
+@row
 class FrameRow:
     """Detections, belief and decisions of one camera frame.
 
@@ -331,7 +330,7 @@ class FrameRow:
     field_path: Array = at("field.path")
 
 
-@dataclass(kw_only=True)
+@row
 class SecondRow:
     """Hashes of the state and saturation of the servos so far, every second and at the end.
 
