@@ -6,20 +6,52 @@ from pathlib import Path
 from typing import Annotated, Any, Literal
 
 from annotated_types import Interval, Len
-from pydantic import BaseModel, ConfigDict, Field, ValidationError, model_validator
-from pydantic_core import ErrorDetails
+from pydantic import (
+    AfterValidator,
+    BaseModel,
+    ConfigDict,
+    Discriminator,
+    Field,
+    Tag,
+    ValidationError,
+    model_validator,
+)
 
 from hsr8.errors import ModelError
-from hsr8.suggestion import suggestion
+from hsr8.robots.description_mistakes import NAME, NAMES, TABLE, mistakes_of
 
 MODEL_SUFFIXES = (".xml", ".mjcf", ".urdf")
 
+
+def _different(names: tuple[str, str]) -> tuple[str, str]:
+    if names[0] == names[1]:
+        raise ValueError(f"equal names, got {list(names)}; expected two parts")
+    return names
+
+
+def _rising(limits: tuple[float, float]) -> tuple[float, float]:
+    if not limits[0] < limits[1]:
+        raise ValueError(f"empty range, got {list(limits)}; expected lower < upper [rad]")
+    return limits
+
+
+def _form(value: object) -> str:
+    """Return the form of a key that has several; the name of its type if it is wrong."""
+    if isinstance(value, dict | BaseModel):
+        return TABLE
+    if isinstance(value, list | tuple):
+        return NAMES
+    return NAME if isinstance(value, str) else type(value).__name__
+
+
 Name = Annotated[str, Len(1, 200)]
-Pair = tuple[Name, Name]
+Names = tuple[Name, Name]
+Pair = Annotated[Names, AfterValidator(_different)]
 Angle = Annotated[float, Interval(ge=-7.0, le=7.0)]
 Positive = Annotated[float, Interval(gt=0.0, le=1e6)]
 Length = Annotated[float, Interval(ge=-5.0, le=5.0)]
 Size = Annotated[float, Interval(gt=0.0, le=5.0)]
+Limits = Annotated[tuple[Angle, Angle], AfterValidator(_rising)]
 Sigma = Annotated[float, Interval(ge=0.0, le=1.0)]
 
 TRUNK = "trunk"
@@ -46,6 +78,17 @@ class SoleRectangle(Table):
     height: Length
     """Height of the sole above the origin; usually negative [m]."""
 
+    @model_validator(mode="after")
+    def _ordered(self) -> "SoleRectangle":
+        for upper, lower in (("front", "back"), ("left", "right")):
+            limit, value = getattr(self, lower), getattr(self, upper)
+            if not value > limit:
+                raise ValueError(
+                    f"{upper} edge not beyond the {lower} edge, got {upper} = {value:g}, {lower} = "
+                    f"{limit:g}; expected {upper} > {lower}"
+                )
+        return self
+
 
 class CameraMount(Table):
     """Camera fixed to a body or link."""
@@ -67,6 +110,18 @@ class ServoRule(Table):
     """Maximum ratio of damping to stiffness of a leg servo [s]."""
     upper_hz: Annotated[float, Interval(gt=0.0, le=1000.0)] = 6.0
     """Natural frequency of the other servos [Hz]."""
+
+
+Sole = Annotated[
+    Annotated[Names, Tag(NAMES)] | Annotated[SoleRectangle, Tag(TABLE)], Discriminator(_form)
+]
+Camera = Annotated[
+    Annotated[Name, Tag(NAME)] | Annotated[CameraMount, Tag(TABLE)], Discriminator(_form)
+]
+Servo = Annotated[
+    Annotated[Literal["own", "rule"], Tag(NAME)] | Annotated[ServoRule, Tag(TABLE)],
+    Discriminator(_form),
+]
 
 
 class SpeedEnvelope(Table):
@@ -137,7 +192,7 @@ class RobotDescription(Table):
     """Module of the package `robot_descriptions` that fetches the model where it is missing."""
     base: Name | None = None
     """Body of the pelvis; default: the body with the free joint, or the root link."""
-    sole: SoleRectangle | Pair | None = None
+    sole: Sole | None = None
     """Rectangle of the left sole, or the names of the left and the right geom; default: the lowest
     4 mm of the foot's collision shapes, else of its visual ones."""
     zero: dict[Name, Angle] = {}
@@ -152,7 +207,7 @@ class RobotDescription(Table):
     """SRDF file with a group state that completes `posture`; relative to the description."""
     state: Name | None = None
     """Name of that group state."""
-    camera: Name | CameraMount | None = None
+    camera: Camera | None = None
     """Camera of the model, or where to mount one; default: the only camera of a body, or in front
     of the head or the upper trunk."""
     vertical_fov_deg: Annotated[float, Interval(ge=10.0, le=120.0)] | None = None
@@ -160,11 +215,11 @@ class RobotDescription(Table):
     radius: Size | None = None
     """Radius of the walking robot for navigation; default: from its shapes in the ready posture
     [m]."""
-    servo: Literal["own", "rule"] | ServoRule | None = None
+    servo: Servo | None = None
     """Position servos of the model, or by rule; default: own if the model has them."""
     effort: dict[Name, Positive] = {}
     """Maximum torque by joint, where the model is silent or wrong [N m]."""
-    range: dict[Name, tuple[Angle, Angle]] = {}
+    range: dict[Name, Limits] = {}
     """Lower and upper limit by joint, where the model is silent or wrong [rad]."""
     speed: dict[Name, Positive] = {}
     """Maximum speed by joint, where the model is silent or wrong [rad/s]."""
@@ -182,11 +237,18 @@ class RobotDescription(Table):
     """Properties measured by ``hsr8 robot calibrate``."""
 
     @model_validator(mode="after")
-    def _complete(self) -> "RobotDescription":
-        if (self.srdf is None) != (self.state is None):
-            raise ValueError("srdf and state go together: expected both or neither")
-        if self.feet[0] == self.feet[1]:
-            raise ValueError(f"feet: left and right are the same body, {self.feet[0]!r}")
+    def _consistent(self) -> "RobotDescription":
+        for key, other in (("srdf", "state"), ("state", "srdf")):
+            if getattr(self, key) is not None and getattr(self, other) is None:
+                raise ValueError(f"{other}: missing, got {key} alone; expected both or neither")
+        for key in ("head_rate", "head_acceleration"):
+            if getattr(self, key) is not None and self.head is None:
+                raise ValueError(f"{key}: the description has no head; expected the key head")
+        for key, other in (("shoulders", "head"), ("rigid", "head"), ("rigid", "shoulders")):
+            if both := sorted({*(getattr(self, key) or ())} & {*(getattr(self, other) or ())}):
+                raise ValueError(f"{key}: joint {both[0]!r} is also in {other}; expected one key")
+        if both := sorted(self.zero.keys() & self.posture.keys()):
+            raise ValueError(f"posture.{both[0]}: also in zero; expected one key")
         return self
 
 
@@ -218,25 +280,8 @@ def checked(data: dict[str, Any], source: str) -> RobotDescription:
     try:
         return RobotDescription.model_validate_json(json.dumps(data, default=str))
     except ValidationError as error:
-        lines = [
-            f"  {_dotted(e['loc'])}: {_reason(e)}"
-            for e in error.errors(include_url=False, include_context=False)
-        ]
-        raise ModelError("\n".join([f"{source}: invalid robot description", *lines])) from error
-
-
-def _reason(error: ErrorDetails) -> str:
-    """Return what is wrong with a key, and its value."""
-    match error["type"]:
-        case "missing":
-            return "missing; expected a value"
-        case "extra_forbidden" if len(error["loc"]) == 1:
-            hint = suggestion(str(error["loc"][0]), list(RobotDescription.model_fields))
-            return f"unknown key{hint}"
-        case "extra_forbidden":
-            return "unknown key"
-    return f"{error['msg'].removeprefix('Value error, ')}, got {error['input']!r}"
-
-
-def _dotted(location: tuple[int | str, ...]) -> str:
-    return ".".join(map(str, location)) or "robot"
+        mistakes = mistakes_of(error, RobotDescription)
+        if len(mistakes) == 1:
+            raise ModelError(f"{source}: {mistakes[0]}") from error
+        lines = [f"{source}: {len(mistakes)} mistakes", *mistakes]
+        raise ModelError("\n  ".join(lines)) from error

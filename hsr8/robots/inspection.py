@@ -15,6 +15,7 @@ from hsr8.robots.description import (
 )
 from hsr8.robots.flat_feet import flat_feet
 from hsr8.robots.guess import Finding, Guess, guess, guess_roles
+from hsr8.robots.key_mistake import reading_keys
 from hsr8.robots.locate import find_description, find_model
 from hsr8.robots.mjcf import read_mjcf
 from hsr8.robots.models import reading_models
@@ -32,7 +33,7 @@ class Inspection:
 
     Attributes:
         model: MJCF or URDF file.
-        file: of the description; for a model without one, where it would be next to the model.
+        file: of the description, or the model without one.
         description: stated or guessed; None where no feet were found.
         findings: guesses, one per role.
         stated: whether the description exists.
@@ -68,15 +69,16 @@ def inspect(name_or_file: str) -> Inspection:
     file = find_description(name_or_file).absolute()
     if file.suffix.lower() not in MODEL_SUFFIXES:
         description = read_description(file)
-        model_file = find_model(description, file.parent)
-        raw = read_model(model_file, description, file.parent)
-        return Inspection(
-            model_file, file, description, guess(raw.spec.compile()).findings, stated=True
-        )
+        model_file = find_model(description, file)
+        with reading_keys(file):
+            raw = read_model(model_file, description, file.parent)
+        with reading_models(str(model_file)):
+            guessed = guess(raw.spec.compile())
+        return Inspection(model_file, file, description, guessed.findings, stated=True)
     guessed, model = _guess_in(file)
-    findings, target = guessed.findings, file.with_suffix(".toml")
+    findings = guessed.findings
     if guessed.feet is None:
-        return Inspection(file, target, None, findings, stated=False)
+        return Inspection(file, file, None, findings, stated=False)
     description = checked({"model": str(file), **guessed.keys()}, str(file))
     zero = _flat_feet(file, description, guessed, model)
     if zero:
@@ -84,7 +86,7 @@ def inspect(name_or_file: str) -> Inspection:
         reason = "the soles are tilted at zero angles"
         findings = (*findings, Finding("zero", angles, "likely", reason))
         description = description.model_copy(update={"zero": zero})
-    return Inspection(file, target, description, findings, stated=False)
+    return Inspection(file, file, description, findings, stated=False)
 
 
 def _guess_in(file: Path) -> tuple[Guess, mujoco.MjModel | None]:

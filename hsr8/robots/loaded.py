@@ -1,5 +1,6 @@
 """Loaded robot: its model in normal form, its kinematics, and its walking parameters."""
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import lru_cache
 from pathlib import Path
@@ -11,6 +12,7 @@ from numpy.typing import NDArray
 from hsr8.errors import ModelError
 from hsr8.robots.arms import arm_spheres, robot_height, robot_radius
 from hsr8.robots.description import TRUNK, RobotDescription, read_description
+from hsr8.robots.key_mistake import KeyMistake, reading_keys
 from hsr8.robots.locate import find_description, find_model
 from hsr8.robots.models import reading_models
 from hsr8.robots.normal_form import normalise
@@ -102,21 +104,27 @@ def build_robot(description: RobotDescription, file: Path) -> LoadedRobot:
 
     Args:
         description: of the robot.
-        file: of the description, which need not exist; relative paths begin at its folder.
+        file: of the description, or the model of a guessed one; relative paths begin at its folder.
 
     Raises:
         ModelError: as `load_robot`.
     """
-    model_file = find_model(description, file.parent)
+    model_file = find_model(description, file)
+    with reading_keys(file):
+        return _built(description, file, model_file)
+
+
+def _built(description: RobotDescription, file: Path, model_file: Path) -> LoadedRobot:
     source = str(model_file)
-    raw = read_model(model_file, description, file.parent)
+    stated, raw = description, read_model(model_file, description, file.parent)
     description = raw.description
     with reading_models(source):
         model = raw.spec.copy().compile()  # a compiled specification is slow to change
     roles = find_roles(model, description, source)
+    description = _without_walking(description, stated.posture, roles)
     zero = Posed.at(model, description.zero)
     check_roles(model, roles, description, source)
-    soles, sole_notes = soles_of(zero, roles.feet, description.sole, source)
+    soles, sole_notes = soles_of(zero, roles.feet, description.sole)
     servo_notes = choose_servos(raw.spec, model, roles, description, soles[0].height)
     normal = normalise(raw.spec, zero, roles, soles, description)
     with reading_models(source):
@@ -130,9 +138,9 @@ def build_robot(description: RobotDescription, file: Path) -> LoadedRobot:
     parameters, walk_notes = _fitted(robot, description)
     height = parameters.pattern.pelvis_height
     if robot.stand(height, parameters.gait.half_stance) > STANDING:
-        raise ModelError(
-            f"{source}: ready posture: the legs do not reach the floor with the hips at "
-            f"{height:.3f} m; expected another zero posture"
+        raise KeyMistake(
+            f"zero: the legs do not reach the floor in the ready posture, got hips at "
+            f"{height:.3f} m; expected angles of straight legs"
         )
     walk_notes += _strength(robot, parameters, source)
     driven = set(tree.names)
@@ -157,6 +165,15 @@ def build_robot(description: RobotDescription, file: Path) -> LoadedRobot:
         stature=robot_height(standing),
         notes=(*raw.notes, *sole_notes, *servo_notes, *normal.notes, *collision_notes, *walk_notes),
     )
+
+
+def _without_walking(
+    description: RobotDescription, stated: Mapping[str, float], roles: Roles
+) -> RobotDescription:
+    """Return a description without the angles of legs and head that only its SRDF file states."""
+    moved = {*roles.legs[0], *roles.legs[1], *(roles.head or ())}
+    posture = {n: a for n, a in description.posture.items() if n in stated or n not in moved}
+    return description.model_copy(update={"posture": posture})
 
 
 def _fitted(

@@ -51,39 +51,46 @@ def find_description(name_or_file: str) -> Path:
         return _robots_dir() / f"{name_or_file}.toml"
     file = Path(name_or_file).expanduser()
     suffixes = (".toml", *MODEL_SUFFIXES)
+    if file.is_file() and file.suffix.lower() in suffixes:
+        return file
+    if file.exists() and name_or_file:
+        kind = "a folder" if file.is_dir() else f"the suffix {file.suffix!r}"
+        raise ModelError(
+            f"robot {name_or_file!r}: not the file of a robot, got {kind}; expected a .toml, .xml "
+            ".mjcf or .urdf file"
+        )
     if file.suffix.lower() in suffixes:
-        if file.is_file():
-            return file
         files = (f for f in file.parent.glob("*") if f.is_file())
         siblings = [f.name for f in files if f.suffix.lower() in suffixes]
         hint = suggestion(file.name, sorted(siblings))
         raise ModelError(f"robot file {str(file)!r} does not exist{hint}")
     raise ModelError(
-        f"unknown robot {name_or_file!r}{suggestion(name_or_file, names)}; expected a .toml, .xml "
-        f"or .urdf file or one of {', '.join(names)}"
+        f"unknown robot {name_or_file!r}{suggestion(name_or_file, names)}; expected a .toml, "
+        f".xml, .mjcf or .urdf file or one of {', '.join(names)}"
     )
 
 
-def find_model(description: RobotDescription, folder: Path) -> Path:
+def find_model(description: RobotDescription, described: Path) -> Path:
     """Return the model file of a description; fetch it where only `robot_descriptions` has it.
 
     Args:
         description: names the model.
-        folder: folder of the description file.
+        described: file of the description, or the model of a guessed one.
 
     Raises:
         ModelError: the model is missing; the message lists the folders and how to get the model.
     """
-    file = installed_model(description, folder) or _fetched(description)
+    folder = described.parent
+    file = installed_model(description, folder) or _fetched(description, described)
     if file is not None:
         return file
     model = Path(description.model).expanduser()
     if model.is_absolute():
-        raise ModelError(f"{folder}: model: {str(model)!r} does not exist; expected a file")
+        raise ModelError(f"{described}: model: {str(model)!r} does not exist; expected a file")
     lines = [f"  {source.label}: {source.folder or source.remedy}" for source in _sources(folder)]
     lines.append(f"  robot_descriptions: {_fetch_remedy(description)}")
     raise ModelError(
-        "\n".join([f"{folder}: model: {description.model!r} does not exist in", *lines])
+        "\n".join([f"{described}: model: {description.model!r} does not exist in", *lines])
     )
 
 
@@ -109,7 +116,7 @@ def digest(name_or_file: str) -> dict[str, str]:
     if name_or_file == DEFAULT_ROBOT:
         return {}
     file = find_description(name_or_file)
-    model = find_model(read_description(file), file.parent)
+    model = find_model(read_description(file), file)
     content = file.read_bytes() + model.read_bytes()
     return {f"robot {file.stem}": hashlib.sha256(content).hexdigest()[:12]}
 
@@ -165,7 +172,7 @@ def _icub_robots() -> Path | None:
     return next((folder for folder in folders if folder.is_dir()), folders[-1])
 
 
-def _fetched(description: RobotDescription) -> Path | None:
+def _fetched(description: RobotDescription, described: Path) -> Path | None:
     """Return the model from the package `robot_descriptions`, which fetches it at first use."""
     name = description.robot_descriptions
     if name is None or find_spec("robot_descriptions") is None:
@@ -174,7 +181,9 @@ def _fetched(description: RobotDescription) -> Path | None:
         module = importlib.import_module(f"robot_descriptions.{name}")
     except Exception as error:  # an unknown module, or any error of Git or the network
         reason = " ".join(str(error).split())
-        raise ModelError(f"robot_descriptions: {name!r} cannot be fetched: {reason}") from error
+        raise ModelError(
+            f"{described}: robot_descriptions: {name!r} cannot be fetched: {reason}"
+        ) from error
     main = Path(getattr(module, "MJCF_PATH", None) or module.URDF_PATH)
     file = main.parents[1] / description.model
     return file if file.is_file() else None

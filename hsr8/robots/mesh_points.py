@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from hsr8.errors import ModelError
+from hsr8.robots.key_mistake import KeyMistake
 
 Array = NDArray[np.float64]
 Triangles = NDArray[np.int32]
@@ -18,12 +19,14 @@ def package_folders(packages: Mapping[str, str], folder: Path) -> dict[str, Path
     """Folder of each package of a description; relative ones are next to its file.
 
     Raises:
-        ModelError: a folder does not exist.
+        KeyMistake: a folder does not exist.
     """
     folders = {name: folder / Path(text).expanduser() for name, text in packages.items()}
     for name, path in folders.items():
         if not path.is_dir():
-            raise ModelError(f"packages.{name}: no folder '{path}'; expected the package's folder")
+            raise KeyMistake(
+                f"packages.{name}: not a folder, got '{path}'; expected the package's folder"
+            )
     return folders
 
 

@@ -1,13 +1,13 @@
 """Posture of the joints that neither walk nor look: from a description and its SRDF file."""
 
-from collections.abc import Collection
+from collections.abc import Sequence
 from math import isfinite
 from pathlib import Path
 from xml.etree import ElementTree
 
 from hsr8.errors import ModelError
 from hsr8.robots.description import RobotDescription
-from hsr8.suggestion import suggestion
+from hsr8.robots.key_mistake import KeyMistake, require_name
 
 LIMIT_MARGIN = 0.02  # distance of a clipped angle from its limit, by the range [1]
 
@@ -20,24 +20,22 @@ def stated_posture(description: RobotDescription, folder: Path) -> dict[str, flo
         folder: of the description file, to which the SRDF file is relative.
 
     Raises:
-        ModelError: the SRDF file cannot be read, or has no such group state.
+        KeyMistake: the SRDF file cannot be read, or has no such group state.
+        ModelError: an angle of the SRDF file is not a number.
     """
-    if description.srdf is None:
+    if description.srdf is None or description.state is None:
         return dict(description.posture)
     file = folder / description.srdf
     try:
         robot = ElementTree.fromstring(file.read_bytes())
-    except (OSError, ElementTree.ParseError) as error:
-        raise ModelError(f"{file}: cannot be read: {error}; expected an SRDF file") from error
+    except (OSError, ValueError, ElementTree.ParseError) as error:
+        raise KeyMistake(
+            f"srdf: {str(file)!r} cannot be read: {error}; expected an SRDF file"
+        ) from error
     states = {state.get("name", ""): state for state in robot.iter("group_state")}
-    if description.state not in states:
-        raise ModelError(
-            f"{file}: no group state '{description.state}'"
-            f"{suggestion(str(description.state), list(states))}; the file has: "
-            f"{', '.join(states) or 'none'}"
-        )
+    require_name("state", "group state", description.state, list(states), str(file))
     angles = {}
-    for joint in states[str(description.state)].iter("joint"):
+    for joint in states[description.state].iter("joint"):
         try:
             values = [float(word) for word in joint.get("value", "").split()]
         except ValueError:
@@ -60,31 +58,21 @@ def clip_to_range(angle: float, lower: float, upper: float) -> float:
     return min(max(angle, lower + margin), upper - margin)
 
 
-def check_joint_names(description: RobotDescription, names: Collection[str], file: Path) -> None:
+def check_joint_names(description: RobotDescription, names: Sequence[str]) -> None:
     """Check that every joint of a description is one of the model.
 
     Args:
         description: of the robot.
         names: joints of the model.
-        file: the model, for the message.
 
     Raises:
-        ModelError: a key names a joint that the model lacks.
+        KeyMistake: a key names a joint that the model lacks.
     """
-    keys = {
-        "head": description.head or (),
-        "shoulders": description.shoulders or (),
-        "zero": description.zero,
-        "posture": description.posture,
-        "effort": description.effort,
-        "range": description.range,
-        "speed": description.speed,
-        "rigid": description.rigid,
-    }
-    for key, joints in keys.items():
-        for joint in joints:
-            if joint not in names:
-                raise ModelError(
-                    f"{file}: {key}: no joint '{joint}'{suggestion(joint, list(names))}; expected "
-                    "a joint of the model"
+    for key in ("head", "shoulders", "zero", "posture", "effort", "range", "speed", "rigid"):
+        for joint in getattr(description, key) or ():
+            if joint not in names and joint in RobotDescription.model_fields:
+                raise KeyMistake(
+                    f"{key}.{joint}: not a joint but a key of the description; expected it above "
+                    "the first [table]"
                 )
+            require_name(key, "hinge joint", joint, names)

@@ -9,9 +9,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from hsr8.robots.description import RobotDescription
+from hsr8.robots.key_mistake import KeyMistake
 from hsr8.robots.mjcf import read_mjcf
 from hsr8.robots.models import reading_models
-from hsr8.robots.posture import stated_posture
+from hsr8.robots.posture import check_joint_names, stated_posture
+from hsr8.robots.skeleton import HINGE
 from hsr8.robots.urdf import convert
 
 Array = NDArray[np.float64]
@@ -41,6 +43,7 @@ def read_model(file: Path, description: RobotDescription, folder: Path) -> RawMo
         folder: of the description file.
 
     Raises:
+        KeyMistake: a key of the description is wrong.
         ModelError: the file is wrong, or the robot cannot be converted.
     """
     if file.suffix.lower() == ".urdf":
@@ -49,18 +52,22 @@ def read_model(file: Path, description: RobotDescription, folder: Path) -> RawMo
             _check_joints(converted.spec)
         _set_ranges(converted.spec, converted.description.range)
         return RawModel(converted.spec, converted.description, converted.notes)
-    posture = stated_posture(description, folder)
+    if description.packages:
+        raise KeyMistake("packages: got an MJCF file, which has none; expected a URDF file")
+    angles = stated_posture(description, folder)
     with reading_models(str(file)):
         spec = read_mjcf(file, description.feet[0])
         _check_joints(spec)
-        for name in description.rigid:
-            _make_rigid(spec, name, posture.get(name, 0.0))
-        _set_ranges(spec, description.range)
+    check_joint_names(description, [j.name for j in spec.joints if j.type == HINGE])
+    for name in dict.fromkeys(description.rigid):
+        _make_rigid(spec, name, (angles | description.zero).get(name, 0.0))
+    _set_ranges(spec, description.range)
     names = {joint.name for joint in spec.joints}
-    known = {name: angle for name, angle in posture.items() if name in names}
-    stated = description.model_copy(update={"posture": known, "rigid": ()})
+    known = {"posture": angles, "zero": description.zero}
+    known |= {"effort": description.effort, "speed": description.speed}
+    stated = {key: {n: v for n, v in table.items() if n in names} for key, table in known.items()}
     notes = [f"{len(description.rigid)} joints made rigid"] if description.rigid else []
-    return RawModel(spec, stated, tuple(notes))
+    return RawModel(spec, description.model_copy(update={**stated, "rigid": ()}), tuple(notes))
 
 
 def _check_joints(spec: mujoco.MjSpec) -> None:
@@ -73,7 +80,7 @@ def _check_joints(spec: mujoco.MjSpec) -> None:
 
 
 def _set_ranges(spec: mujoco.MjSpec, ranges: Mapping[str, tuple[float, float]]) -> None:
-    """Set joint limits [rad]; unknown joints are reported with the other names."""
+    """Set the limits of joints that are not rigid [rad]."""
     for name, limits in ranges.items():
         joint = spec.joint(name)
         if joint is not None:
@@ -84,8 +91,6 @@ def _set_ranges(spec: mujoco.MjSpec, ranges: Mapping[str, tuple[float, float]]) 
 def _make_rigid(spec: mujoco.MjSpec, name: str, angle: float) -> None:
     """Remove a hinge joint and its actuators; its body keeps the place of an angle [rad]."""
     joint = spec.joint(name)
-    if joint is None:
-        raise ValueError(f"rigid: the model has no joint {name!r}")
     body = joint.parent
     turned, carried, moved = np.empty(4), np.empty(4), np.empty(3)
     mujoco.mju_axisAngle2Quat(turned, np.asarray(joint.axis, float), angle)

@@ -3,7 +3,7 @@
 Every check raises one `ModelError` with the element, the reason and the remedy.
 """
 
-from collections.abc import Collection, Sequence
+from collections.abc import Sequence
 from math import degrees
 
 import mujoco
@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 
 from hsr8.errors import ModelError
 from hsr8.robots.description import RobotDescription
+from hsr8.robots.key_mistake import KeyMistake
 from hsr8.robots.mechanism_checks import check_mechanism
 from hsr8.robots.mirror import mirrored_pairs
 from hsr8.robots.roles import Roles
@@ -31,11 +32,7 @@ SLACK = 1e-6  # of limits [rad]
 
 
 def check_roles(
-    model: mujoco.MjModel,
-    roles: Roles,
-    description: RobotDescription,
-    source: str,
-    held: Collection[str] = (),
+    model: mujoco.MjModel, roles: Roles, description: RobotDescription, source: str
 ) -> None:
     """Refuse a robot that cannot walk.
 
@@ -43,15 +40,15 @@ def check_roles(
         model: compiled.
         roles: of its parts.
         description: of the robot.
-        source: description file, which begins the messages.
-        held: joints of the description that the model lacks because they became rigid.
+        source: model file, which begins the messages about its elements.
 
     Raises:
-        ModelError: a check failed.
+        KeyMistake: a key of the description is wrong.
+        ModelError: an element of the model is wrong.
     """
     check = _Checks(model, roles, description, source)
     check_mechanism(model, roles, description, source)
-    check.ranges(held)
+    check.ranges()
     check.base()
     check.sides()
     check.pitching()
@@ -87,24 +84,22 @@ class _Checks:
     def _error(self, reason: str) -> ModelError:
         return ModelError(f"{self._source}: {reason}")
 
-    def ranges(self, held: Collection[str]) -> None:
+    def ranges(self) -> None:
         """Stated angles must lie within the limits; `posture` excludes legs and head."""
         robot, index = self._description, {n: k for k, n in enumerate(self._skeleton.joints)}
         leg = {name for leg in self._roles.legs for name in leg}
         for key, other in ((robot.zero, "zero"), (robot.posture, "posture")):
             for name, angle in key.items():
-                if name in held or name not in index:
-                    continue
                 lower, upper = self._skeleton.ranges[index[name]]
                 if not lower - SLACK <= angle <= upper + SLACK:
-                    raise self._error(
+                    raise KeyMistake(
                         f"{other}.{name}: outside the range of the joint, got {angle:g} rad; "
                         f"expected {lower:.3g} to {upper:.3g}"
                     )
         for name in robot.posture:
             if name in leg or name in (robot.head or ()):
                 part = "leg" if name in leg else "head"
-                raise self._error(
+                raise KeyMistake(
                     f"posture.{name}: a joint of the {part}, which moves while walking; expected "
                     "joints other than legs and head: leave it out"
                 )
@@ -114,18 +109,18 @@ class _Checks:
         base = f"base: body {self._roles.base!r}"
         up = self._hips_above_feet.mean(axis=0)
         if np.linalg.norm(self._across) < 1e-6 or np.linalg.norm(up) < 1e-6:
-            raise self._error(
+            raise KeyMistake(
                 "feet: at zero angles the feet are at one point or at the hips; expected straight "
                 "legs: state other angles as zero"
             )
         remedy = "turn its frame in the model, or state angles of straight legs as zero"
         if up[2] < UPRIGHT * np.linalg.norm(up):
-            raise self._error(
+            raise KeyMistake(
                 f"{base}: z is not up at zero angles, got the hips in direction {_text(up)} from "
                 f"the feet; expected (0, 0, 1): {remedy}"
             )
         if abs(self._across[1]) < ABREAST * np.linalg.norm(self._across):
-            raise self._error(
+            raise KeyMistake(
                 f"{base}: x is not forward at zero angles, got the left foot in direction "
                 f"{_text(self._across)} from the right one; expected (0, 1, 0): {remedy}"
             )
@@ -140,10 +135,10 @@ class _Checks:
         where = f"{left!r}, the first, is to the right of {right!r} in the base"
         bend = [_bend(self._skeleton, leg) for leg in self._legs]
         if min(bend) > 0.0:
-            raise self._error(f"feet: {where}: {exchanged}")
+            raise KeyMistake(f"feet: {where}: {exchanged}")
         if max(bend) < 0.0:
-            raise self._error(f"base: {where}, and the knees bend backward: {backward}")
-        raise self._error(f"feet: {where}: {exchanged}, or {backward}")
+            raise KeyMistake(f"base: {where}, and the knees bend backward: {backward}")
+        raise KeyMistake(f"feet: {where}: {exchanged}, or {backward}")
 
     def pitching(self) -> None:
         """A leg must have three joints that pitch at zero angles."""
@@ -151,7 +146,7 @@ class _Checks:
             pitching = [self._skeleton.joints[j] for j in leg if self._skeleton.is_pitch(j)]
             if len(pitching) != len(PITCHING):
                 got = ", ".join(pitching) or "none"
-                raise self._error(
+                raise KeyMistake(
                     f"feet: of the leg {names[0]!r} to {names[-1]!r}, {len(pitching)} joints pitch "
                     f"at zero angles, got {got}; expected hip, knee and ankle"
                 )
@@ -216,7 +211,7 @@ class _Checks:
             jacobian = np.hstack([axes, np.cross(axes, arms) / size])
             values = np.linalg.svd(jacobian, compute_uv=False)
             if values[-1] < MIN_FREEDOM * values[0]:
-                raise self._error(
+                raise KeyMistake(
                     f"feet: the leg {names[0]!r} to {names[-1]!r} cannot move its foot in all "
                     "directions: two of its joints have equal effects; expected joints that yaw, "
                     "roll and pitch the hip, pitch the knee, and pitch and roll the ankle"
@@ -232,17 +227,28 @@ class _Checks:
             self._require_axis(f"head: {part} joint", name, expected, axis)
 
     def shoulders(self) -> None:
-        """Shoulder joints must pitch."""
-        for name in self._roles.shoulders or ():
+        """Shoulder joints must pitch, and move the arm of their side."""
+        if self._roles.shoulders is None:
+            return
+        for name in self._roles.shoulders:
             self._require_axis("shoulders: joint", name, "pitch", 1)
+        left, right = self._roles.shoulders
+        index = self._skeleton.joints.index
+        if self._skeleton.com_below(index(left))[1] < self._skeleton.com_below(index(right))[1]:
+            raise KeyMistake(
+                f"shoulders: the arm of {left!r}, the first, is to the right of that of {right!r}: "
+                "left and right are exchanged; expected the left shoulder first"
+            )
 
     def _require_axis(self, key: str, name: str, expected: str, axis: int) -> None:
+        if any(name in leg for leg in self._roles.legs):
+            raise KeyMistake(f"{key} {name!r} belongs to a leg; expected a joint above the legs")
         joint = self._skeleton.joints.index(name)
         got = self._skeleton.axes[joint]
         fits = self._skeleton.is_pitch if axis == 1 else self._skeleton.is_yaw
         if not fits(joint):
             unit = ("(1, 0, 0)", "(0, 1, 0)", "(0, 0, 1)")[axis]
-            raise self._error(
+            raise KeyMistake(
                 f"{key} {name!r} does not {expected}, got the axis {_text(got)} in the base; "
                 f"expected {unit} or its opposite: name the joint that does, or leave the key out"
             )

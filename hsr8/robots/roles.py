@@ -1,19 +1,18 @@
 """Roles of the parts of a robot: base, legs, soles, head, shoulders and camera."""
 
-from collections.abc import Collection, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import mujoco
 
 from hsr8.errors import ModelError
 from hsr8.robots.description import CameraMount, RobotDescription
-from hsr8.robots.skeleton import FREE, HINGE, label
-from hsr8.suggestion import suggestion
+from hsr8.robots.key_mistake import KeyMistake, require_name
+from hsr8.robots.skeleton import FREE, HINGE
 
 Leg = tuple[str, str, str, str, str, str]
 
 LEG_JOINTS = 6
-MAX_LISTED = 12  # names in a message
 
 
 @dataclass(frozen=True, slots=True)
@@ -37,32 +36,27 @@ class Roles:
     trunk: str
 
 
-def find_roles(
-    model: mujoco.MjModel,
-    description: RobotDescription,
-    source: str,
-    held: Collection[str] = (),
-) -> Roles:
+def find_roles(model: mujoco.MjModel, description: RobotDescription, source: str) -> Roles:
     """Return the roles that a description states or that follow from the kinematic tree.
 
     Args:
         model: compiled.
-        description: of the robot.
-        source: description file, which begins the messages.
-        held: joints of the description that the model lacks because they became rigid.
+        description: of the robot; its joints are those of the model.
+        source: model file, which begins the messages about it.
 
     Raises:
-        ModelError: a name is unknown, the base is not free, or a leg lacks six hinge joints.
+        KeyMistake: a name is unknown, or a leg lacks six hinge joints.
+        ModelError: the base is not free.
     """
     tree = _Tree(model, description, source)
-    tree.require_names(held)
+    tree.require_names()
     feet = description.feet
     base = tree.base(feet)
     left, right = (tree.leg(foot, base) for foot in feet)
     if common := [name for name in left if name in right]:
         left_own, right_own = (tuple(n for n in leg if n not in common) for leg in (left, right))
         own = left_own if len(left_own) < len(right_own) else right_own
-        raise tree.error(
+        raise KeyMistake(
             f"feet: a leg has {_count(own)} that it does not have in common with the other leg, "
             f"got {', '.join(own) or 'none'}; expected {LEG_JOINTS} hinge joints per leg: three "
             "at the hip, a knee, two at the ankle"
@@ -88,36 +82,21 @@ class _Tree:
         self._bodies = {model.body(b).name: b for b in range(1, model.nbody)}
         self._joints = {model.joint(j).name: j for j in range(model.njnt)}
 
-    def error(self, reason: str) -> ModelError:
-        return ModelError(f"{self._source}: {reason}")
-
     def body(self, name: str) -> int:
         return self._bodies[name]
 
-    def require_names(self, held: Collection[str]) -> None:
-        """Refuse names that the model lacks."""
-        robot = self._description
+    def require_names(self) -> None:
+        """Refuse names of bodies and cameras that the model lacks."""
+        robot, bodies = self._description, list(self._bodies)
         for side, foot in zip(("left", "right"), robot.feet, strict=True):
-            self._require(f"feet: {side} foot", "body", foot, list(self._bodies))
+            require_name(f"feet: {side} foot", "body", foot, bodies)
         if robot.base is not None:
-            self._require("base", "body", robot.base, list(self._bodies))
-        hinges = [n for n, j in self._joints.items() if self._model.jnt_type[j] == HINGE]
-        for key in ("head", "shoulders", "zero", "posture", "effort", "range", "speed", "rigid"):
-            for name in getattr(robot, key) or ():
-                if name not in held and name not in robot.rigid:
-                    self._require(key, "hinge joint", name, hinges)
+            require_name("base", "body", robot.base, bodies)
         if isinstance(robot.camera, CameraMount):
-            self._require("camera.body", "body", robot.camera.body, list(self._bodies))
+            require_name("camera.body", "body", robot.camera.body, bodies)
         elif robot.camera is not None:
             cameras = [self._model.camera(i).name for i in range(self._model.ncam)]
-            self._require("camera", "camera", robot.camera, cameras)
-
-    def _require(self, key: str, kind: str, name: str, names: Sequence[str]) -> None:
-        if name not in names:
-            raise self.error(
-                f"{key}: the model has no {kind} {name!r}{suggestion(name, names)}; expected one "
-                f"of {_listed(names)}"
-            )
+            require_name("camera", "camera", robot.camera, cameras)
 
     def base(self, feet: tuple[str, str]) -> str:
         """Return the name of the body with the free joint above both feet."""
@@ -125,16 +104,16 @@ class _Tree:
         stated = self._description.base
         if not free[0] or not free[1]:
             top = self._path(self.body(feet[0]))[-1]
-            name = stated or label(self._model.body(top).name, top)
-            raise self.error(
-                f"base: body {name!r} has no free joint, so the robot is fixed to the world; "
-                "expected a free base: add <freejoint/> to that <body> of the model"
+            fixed = stated or self._model.body(top).name
+            raise ModelError(
+                f"{self._source}: base: body {fixed!r} has no free joint, so the robot is fixed to "
+                "the world; expected a free base: add <freejoint/> to that <body> of the model"
             )
         if free[0] != free[1]:
-            raise self.error("feet: belong to two robots; expected both feet below one base")
-        name = self._named(free[0][0])
+            raise KeyMistake("feet: belong to two robots; expected both feet below one base")
+        name: str = self._model.body(free[0][0]).name
         if stated not in (None, name):
-            raise self.error(
+            raise KeyMistake(
                 f"base: body {stated!r} has no free joint; expected {name!r}, which has one"
             )
         return name
@@ -147,20 +126,15 @@ class _Tree:
                 break
             first = int(model.body_jntadr[body])
             for j in reversed(range(first, first + int(model.body_jntnum[body]))):
-                name = label(model.joint(j).name, j)
+                name = model.joint(j).name
                 if model.jnt_type[j] != HINGE and len(names) < LEG_JOINTS:
-                    raise self.error(
+                    raise KeyMistake(
                         f"feet: joint {name!r} between foot {foot!r} and base is a slide or ball "
                         f"joint; expected {LEG_JOINTS} hinge joints per leg"
                     )
-                if not model.joint(j).name:
-                    raise self.error(
-                        f"feet: joint {name} of body {self._named(body)!r} above foot {foot!r} "
-                        "has no name; expected a name for every joint of a leg"
-                    )
                 names.insert(0, name)
         if len(names) < LEG_JOINTS:
-            raise self.error(
+            raise KeyMistake(
                 f"feet: the leg above foot {foot!r} has {_count(names)}, got "
                 f"{', '.join(names) or 'none'}; expected {LEG_JOINTS} hinge joints per leg: three "
                 "at the hip, a knee, two at the ankle"
@@ -189,22 +163,6 @@ class _Tree:
         first, n = int(self._model.body_jntadr[body]), int(self._model.body_jntnum[body])
         return n > 0 and bool(self._model.jnt_type[first] == FREE)
 
-    def _named(self, body: int) -> str:
-        name: str = self._model.body(body).name
-        if not name:
-            raise self.error(
-                f"body #{body} has no name; expected a name for the base and the bodies of the legs"
-            )
-        return name
-
 
 def _count(joints: Sequence[str]) -> str:
     return f"{len(joints)} hinge joint{'s' if len(joints) != 1 else ''}"
-
-
-def _listed(names: Sequence[str]) -> str:
-    """Return names for a message, shortened."""
-    if not names:
-        return "none, the model has none"
-    more = f" and {len(names) - MAX_LISTED} more" if len(names) > MAX_LISTED else ""
-    return ", ".join(names[:MAX_LISTED]) + more

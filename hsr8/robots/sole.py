@@ -7,8 +7,8 @@ import mujoco
 import numpy as np
 from numpy.typing import NDArray
 
-from hsr8.errors import ModelError
 from hsr8.robots.description import SoleRectangle
+from hsr8.robots.key_mistake import KeyMistake, require_name
 from hsr8.robots.posed import Posed
 
 Array = NDArray[np.float64]
@@ -50,7 +50,6 @@ def soles_of(
     zero: Posed,
     feet: tuple[str, str],
     stated: SoleRectangle | tuple[str, str] | None,
-    source: str,
 ) -> tuple[tuple[Rectangle, Rectangle], list[str]]:
     """Return the left and the right sole, mirror images, and notes for people.
 
@@ -70,17 +69,17 @@ def soles_of(
         else:
             groups = _shapes(zero, foot, None if stated is None else stated[side])
             if not groups:
-                raise ModelError(
-                    f"{source}: foot {foot!r}: has no shape; expected the key sole with front, "
-                    "back, left, right and height [m]"
+                raise KeyMistake(
+                    f"sole: missing, and foot {foot!r} has no shape; expected {{front, back, left, "
+                    "right, height}} [m]"
                 )
             sole = _lowest(groups)
         both.append(sole)
     left, right = both
     off = float(np.abs(left.edges - right.mirrored().edges).max())
     if off > MAX_DIFFERENCE:
-        raise ModelError(
-            f"{source}: soles: the right sole is not the mirror image of the left one, got a "
+        raise KeyMistake(
+            f"sole: the right sole is not the mirror image of the left one, got a "
             f"difference of {1e3 * off:.0f} mm; expected less than {1e3 * MAX_DIFFERENCE:.0f} mm: "
             "state sole, or the zero posture in which both feet are flat"
         )
@@ -89,8 +88,8 @@ def soles_of(
     mean = Rectangle(*(0.5 * (left.edges + right.mirrored().edges)).tolist())
     length, width = mean.front - mean.back, mean.left - mean.right
     if min(length, width) < MIN_SIDE:
-        raise ModelError(
-            f"{source}: foot {feet[0]!r}: its sole is too small to stand on, got "
+        raise KeyMistake(
+            f"sole: that of foot {feet[0]!r} is too small to stand on, got "
             f"{1e3 * length:.0f} x {1e3 * width:.0f} mm; expected at least "
             f"{1e3 * MIN_SIDE:.0f} mm: state sole, or the zero posture in which the feet are flat"
         )
@@ -129,9 +128,11 @@ def _lowest(groups: Sequence[Array]) -> Rectangle:
 def _shapes(zero: Posed, foot: str, geom: str | None) -> list[Array]:
     """Return points of the shapes of a foot in the base frame: colliding ones, else all."""
     model = zero.model
-    if geom is not None:
-        return [_points(zero, model.geom(geom).id)]
     geoms = [g for body in _rigid(model, model.body(foot).id) for g in _geoms(model, body)]
+    if geom is not None:
+        names = [name for g in geoms if (name := model.geom(g).name)]
+        require_name("sole", "geom", geom, names, f"foot {foot!r}")
+        return [_points(zero, model.geom(geom).id)]
     solid = [g for g in geoms if model.geom_contype[g] or model.geom_conaffinity[g]]
     return [_points(zero, g) for g in solid or geoms]
 

@@ -8,8 +8,8 @@ import mujoco
 import numpy as np
 from numpy.typing import NDArray
 
-from hsr8.errors import ModelError
 from hsr8.robots.description import CameraMount, RobotDescription
+from hsr8.robots.key_mistake import KeyMistake, require_name
 from hsr8.robots.mesh_points import package_folders
 from hsr8.robots.posture import check_joint_names, clip_to_range, stated_posture
 from hsr8.robots.urdf_base import find_base
@@ -19,7 +19,6 @@ from hsr8.robots.urdf_joints import MAX_EFFORT, MAX_SPEED, Joints, joint_range, 
 from hsr8.robots.urdf_model import ModelBuilder
 from hsr8.robots.urdf_shapes import GeomBuilder
 from hsr8.robots.urdf_soles import Sole, find_soles
-from hsr8.suggestion import suggestion
 
 Array = NDArray[np.float64]
 
@@ -57,16 +56,17 @@ def convert(file: Path, description: RobotDescription, folder: Path) -> Converte
         folder: of the description file; SRDF file and package folders are relative to it.
 
     Raises:
+        KeyMistake: a key of the description is wrong.
         ModelError: the robot cannot be converted; the message has the element, the reason and the
             remedy.
     """
     if description.servo == "own":
-        raise ModelError(
-            f"{file}: servo, got 'own', but a URDF file has no servos; expected 'rule', the default"
+        raise KeyMistake(
+            "servo: a URDF file has no servos, got 'own'; expected 'rule', the default"
         )
     urdf = read_urdf(file).with_ranges(description.range)
     moving = [j.name for j in urdf.joints.values() if j.type != "fixed"]
-    check_joint_names(description, moving, file)
+    check_joint_names(description, moving)
     packages = package_folders(description.packages, folder)
     stated_angles = stated_posture(description, folder)
     joints = sort_joints(urdf, description, stated_angles)
@@ -121,16 +121,14 @@ def _camera(
     mount, tree = description.camera, joints.tree
     if mount is None:
         return None
-    link = mount if isinstance(mount, str) else mount.body
-    if isinstance(mount, str) or link not in positions:
-        kind = "camera" if isinstance(mount, str) else "link"
-        raise ModelError(
-            f"{tree.urdf.file}: camera: no {kind} '{link}'"
-            f"{suggestion(link, list(positions))}; expected a link of the URDF file as "
+    if isinstance(mount, str):
+        raise KeyMistake(
+            f"camera: a URDF file has no cameras, got {mount!r}; expected a link as "
             "{body, position, tilt_deg}"
         )
-    carrier = tree.carrier(link)
-    at = positions[link] - positions[carrier] + mount.position
+    require_name("camera.body", "link", mount.body, list(positions))
+    carrier = tree.carrier(mount.body)
+    at = positions[mount.body] - positions[carrier] + mount.position
     x, y, z = at.tolist()
     return mount.model_copy(update={"body": carrier, "position": (x, y, z)})
 

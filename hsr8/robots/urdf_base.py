@@ -6,8 +6,8 @@ from math import acos, degrees
 import numpy as np
 from numpy.typing import NDArray
 
-from hsr8.errors import ModelError
 from hsr8.robots.description import RobotDescription
+from hsr8.robots.key_mistake import KeyMistake
 from hsr8.robots.urdf_joints import Joints
 
 Array = NDArray[np.float64]
@@ -41,15 +41,15 @@ def find_base(joints: Joints, description: RobotDescription) -> Base:
     is from the right to the left foot, up from the feet to the hips, at the angles `zero`.
 
     Raises:
-        ModelError: the stated base is not fixed to the root, or the robot does not stand with its
+        KeyMistake: the stated base is not fixed to the root, or the robot does not stand with its
             feet side by side below the hips.
     """
     tree, urdf = joints.tree, joints.tree.urdf
     link = description.base or _common_link(joints, description)
     if link not in urdf.links or tree.carrier(link) != urdf.root:
-        raise ModelError(
-            f"{urdf.file}: base, got '{link}'; expected the root link '{urdf.root}' or one fixed "
-            "to it: leave the key out, joints between base and hips are held"
+        raise KeyMistake(
+            f"base: not fixed to the root, got '{link}'; expected the root link '{urdf.root}' or "
+            "one fixed to it: leave the key out, joints between base and hips are held"
         )
     poses = tree.poses(description.zero)
     to_link = np.linalg.inv(poses[link])
@@ -57,16 +57,16 @@ def find_base(joints: Joints, description: RobotDescription) -> Base:
     hips = [(to_link @ poses[urdf.joints[leg[0]].child])[:3, 3] for leg in joints.legs]
     across, upward = feet[0] - feet[1], 0.5 * (hips[0] + hips[1] - feet[0] - feet[1])
     if np.linalg.norm(across) < MIN_STANCE:
-        raise ModelError(
-            f"{urdf.file}: feet '{description.feet[0]}' and '{description.feet[1]}' have the same "
+        raise KeyMistake(
+            f"feet: '{description.feet[0]}' and '{description.feet[1]}' have the same "
             "position at zero angles; expected feet side by side: state `zero`"
         )
     left = _axis(joints, across, "from the right to the left foot", link, MAX_LEFT_ANGLE)
     up = _axis(joints, upward, "from the feet to the hips", link, MAX_UP_ANGLE)
     forward = np.cross(left, up)
     if not forward.any():
-        raise ModelError(
-            f"{urdf.file}: zero posture: the feet are not side by side below the hips; expected a "
+        raise KeyMistake(
+            "zero: the feet are not side by side below the hips; expected a "
             "robot that stands: state `zero`"
         )
     rotation = np.array([forward, left, up])
@@ -101,8 +101,8 @@ def _axis(joints: Joints, vector: Array, meaning: str, link: str, max_angle: flo
     axis[k] = np.sign(vector[k])
     angle = degrees(acos(min(1.0, float(vector @ axis) / float(np.linalg.norm(vector)))))
     if angle > max_angle:
-        raise ModelError(
-            f"{joints.tree.urdf.file}: zero posture: the direction {meaning} is "
+        raise KeyMistake(
+            f"zero: the direction {meaning} is "
             f"{np.round(vector, 3).tolist()} m in link '{link}', {angle:.0f} deg from its axes; "
             f"expected at most {max_angle:.0f} deg: state in `zero` the angles at which the robot "
             "stands with straight legs"

@@ -6,12 +6,12 @@ from math import inf, pi
 
 from hsr8.errors import ModelError
 from hsr8.robots.description import RobotDescription
+from hsr8.robots.key_mistake import KeyMistake, require_name
 from hsr8.robots.posture import clip_to_range
 from hsr8.robots.roles import Leg
 from hsr8.robots.urdf_elements import TURNING, Joint
 from hsr8.robots.urdf_file import Urdf
 from hsr8.robots.urdf_tree import Tree
-from hsr8.suggestion import suggestion
 
 MAX_EFFORT = 1e4  # a larger number is a placeholder [N m]
 MAX_SPEED = 1e3  # [rad/s]
@@ -55,15 +55,11 @@ def sort_joints(urdf: Urdf, description: RobotDescription, posture: Mapping[str,
     shoulders are exempt from the rule of the effort, because many files state none.
 
     Raises:
-        ModelError: a foot is not a link, a leg has fewer than six joints, the legs share joints,
+        KeyMistake: a foot is not a link, a leg has fewer than six joints, the legs share joints,
             or a joint of head or shoulders does not move.
     """
-    for foot in description.feet:
-        if foot not in urdf.links:
-            raise ModelError(
-                f"{urdf.file}: feet: no link '{foot}'{suggestion(foot, list(urdf.links))}; "
-                f"expected a link of the file: {', '.join(_near(foot, urdf))}"
-            )
+    for side, foot in zip(("left", "right"), description.feet, strict=True):
+        require_name(f"feet: {side} foot", "link", foot, list(urdf.links))
     roles = {*(description.head or ()), *(description.shoulders or ())}
     exempt = roles | set(description.effort)
     reasons = _reasons(urdf, description, exempt)
@@ -78,21 +74,23 @@ def sort_joints(urdf: Urdf, description: RobotDescription, posture: Mapping[str,
             path = Tree(urdf, {}).path(foot)
             held = [f"{j.name}: {reasons[j.name]}" for j in path if j.name in reasons]
             extra = f" and {len(held)} that are held ({', '.join(held)})" if held else ""
-            raise ModelError(
-                f"{urdf.file}: leg of '{foot}': {len(leg)} joints{extra}, got "
+            raise KeyMistake(
+                f"feet: leg of '{foot}': {len(leg)} joints{extra}, got "
                 f"{', '.join(leg) or 'none'}; expected six driven joints between base and foot"
             )
     common = [name for name in legs[0] if name in legs[1]]
     if common:
-        raise ModelError(
-            f"{urdf.file}: feet: the legs share {len(common)} joints, got {', '.join(common)}; "
+        raise KeyMistake(
+            f"feet: the legs share {len(common)} joints, got {', '.join(common)}; "
             "expected six separate joints above each foot: name the last link of each leg"
         )
-    for name in roles & set(reasons):
-        raise ModelError(
-            f"{urdf.file}: joint '{name}' of head or shoulders cannot move: {reasons[name]}; "
-            "expected a driven joint: leave the key out"
-        )
+    for key in ("head", "shoulders"):
+        for name in getattr(description, key) or ():
+            if name in reasons:
+                raise KeyMistake(
+                    f"{key}: joint '{name}' cannot move: {reasons[name]}; expected a driven "
+                    "joint: leave the key out"
+                )
     angles = {name: _held_angle(urdf, name, posture) for name in reasons}
     return Joints(Tree(urdf, angles), (_six(legs[0]), _six(legs[1])), _notes(reasons))
 
@@ -100,14 +98,6 @@ def sort_joints(urdf: Urdf, description: RobotDescription, posture: Mapping[str,
 def joint_range(joint: Joint) -> tuple[float, float]:
     """Lower and upper limit, one turn for a continuous joint [rad]."""
     return (-pi, pi) if joint.range[1] == inf else joint.range
-
-
-def _near(foot: str, urdf: Urdf) -> list[str]:
-    """Links whose names look like a foot's, else the last links of the chains."""
-    words = ("foot", "sole", "ankle", "toe")
-    names = [n for n in urdf.links if any(word in n.lower() for word in words)]
-    ends = [n for n in urdf.links if not urdf.below(n)]
-    return (names or ends)[:8]
 
 
 def immovable(urdf: Urdf) -> list[str]:

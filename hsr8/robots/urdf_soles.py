@@ -8,6 +8,7 @@ from numpy.typing import NDArray
 
 from hsr8.errors import ModelError
 from hsr8.robots.description import RobotDescription, SoleRectangle
+from hsr8.robots.key_mistake import KeyMistake
 from hsr8.robots.urdf_base import Base
 from hsr8.robots.urdf_elements import Shape
 from hsr8.robots.urdf_joints import Joints
@@ -79,29 +80,28 @@ def find_soles(
         finder = _SoleFinder(joints, poses, geoms)
         pair = finder.sole(feet[0], names[0]), finder.sole(feet[1], names[1])
         notes = finder.notes
-    soles, mirror_notes = mirror_soles(*pair, tree.urdf.file, feet)
+    soles, mirror_notes = mirror_soles(*pair, feet)
     return soles, [*notes, *mirror_notes]
 
 
 def mirror_soles(
-    left: Sole, right: Sole, file: object, feet: tuple[str, str]
+    left: Sole, right: Sole, feet: tuple[str, str]
 ) -> tuple[tuple[Sole, Sole], list[str]]:
     """Return the two soles as exact mirror images, with notes on how they differed.
 
     Args:
         left: left sole, relative to the base.
         right: right sole, relative to the base.
-        file: model, for the message.
         feet: names, for the message.
 
     Raises:
-        ModelError: a sole is too narrow, or they differ by more than 2 cm.
+        KeyMistake: a sole is too narrow, or they differ by more than 2 cm.
     """
     for foot, sole in zip(feet, (left, right), strict=True):
         if min(sole.size) < MIN_EDGE:
             length, width = sole.size
-            raise ModelError(
-                f"{file}: sole of '{foot}': {100 * length:.1f} x {100 * width:.1f} cm, from the "
+            raise KeyMistake(
+                f"sole: foot '{foot}' has {100 * length:.1f} x {100 * width:.1f} cm, from the "
                 f"lowest {1e3 * THICKNESS:.0f} mm of its shapes at zero angles; expected a flat "
                 "sole: state `zero` if the feet are not flat there, else `sole`"
             )
@@ -111,8 +111,8 @@ def mirror_soles(
         return (left, left.mirrored()), []
     if difference > MAX_DIFFERENCE:
         edge = Sole._fields[int(np.abs(np.subtract(left, image)).argmax())]
-        raise ModelError(
-            f"{file}: soles of '{feet[0]}' and '{feet[1]}' are not mirror images: {edge} differs "
+        raise KeyMistake(
+            f"sole: those of '{feet[0]}' and '{feet[1]}' are not mirror images: {edge} differs "
             f"by {1e3 * difference:.1f} mm, got {_text(left)} and mirrored {_text(image)}; "
             f"expected at most {1e3 * MAX_DIFFERENCE:.0f} mm: state `sole`, or check `feet` and "
             "`zero`"
@@ -176,19 +176,18 @@ class _SoleFinder:
         return shape_points(shape, pose, self._geoms.file(shape))
 
     def _shapeless(self, foot: str, name: str | None) -> ModelError:
-        file = self._tree.urdf.file
         shapes = [s for k in ("collision", "visual") for s, _ in self._shapes(foot, k, None)]
         if name is not None:
             choices = sorted({shape.name for shape in shapes if shape.name})
-            return ModelError(
-                f"{file}: sole: foot '{foot}' has no shape or link '{name}'; its named shapes: "
-                f"{', '.join(choices) or 'none'}"
+            return KeyMistake(
+                f"sole: foot '{foot}' has no shape or link '{name}'; expected one of its named "
+                f"shapes: {', '.join(choices) or 'none, it has none'}"
             )
         meshes = [shape.mesh for shape in shapes if shape.mesh]
         remedy = "state `sole` = {front, back, left, right, height}"
         if meshes:
             return ModelError(
-                f"{file}: foot '{foot}': mesh not found, got '{meshes[0]}'; expected the file: "
-                f"state the folder of its package under `packages`, or {remedy}"
+                f"{self._tree.urdf.file}: foot '{foot}': mesh not found, got '{meshes[0]}'; "
+                f"expected the file: state the folder of its package under `packages`, or {remedy}"
             )
-        return ModelError(f"{file}: foot '{foot}': no shape, its sole is unknown: {remedy}")
+        return KeyMistake(f"sole: foot '{foot}' has no shape, so its sole is unknown: {remedy}")

@@ -57,6 +57,8 @@ def _problem(details: ErrorDetails, data: Mapping[str, Any]) -> Problem:
         return Problem(path, _unknown(path, data))
     if kind == "missing":
         return Problem(path, f"is missing{meaning}")
+    if kind == "string_pattern_mismatch":
+        return Problem(path, f"has a wrong form, got {shown(value)}{meaning}")
     if kind == "value_error":
         return Problem(path, f"{context['error']}, got {shown(value)}{meaning}")
     if kind in ("union_tag_invalid", "union_tag_not_found"):

@@ -78,6 +78,8 @@ class StartedJob:
     def result(self, exit_code: int, *, timed_out: bool = False) -> RunResult:
         """Return the result of the run, and remove the files that are not kept.
 
+        A folder with a traceback is always kept, because the result names it.
+
         Args:
             exit_code: of the process, negative for a signal.
             timed_out: whether the process was killed at its wall-clock limit.
@@ -109,7 +111,7 @@ class StartedJob:
         else:
             result["error"] = ": ".join(filter(None, (_ending(exit_code), message)))
         kept = job.keep == "all" or (job.keep == "failed" and result["outcome"] != OUTCOMES[0])
-        if new is not None and not kept:
+        if new is not None and not kept and not (new / run_folder.CRASH).exists():
             shutil.rmtree(new, ignore_errors=True)
             result["run"] = None
         return result

@@ -20,7 +20,7 @@ MENAGERIE = pytest.mark.skipif(
     reason="needs the wheel of the Menagerie",
 )
 ICUB = pytest.mark.skipif(find_spec("icub_models") is None, reason="needs the wheel of iCub")
-SOURCE = "robot.toml"
+SOURCE = "robot.xml"
 Change = Callable[[Element], None]
 
 
@@ -54,7 +54,7 @@ def shipped(name: str) -> tuple[mujoco.MjModel, RobotDescription]:
 
 def model_file(name: str) -> Path:
     file = find_description(name)
-    return find_model(read_description(file), file.parent)
+    return find_model(read_description(file), file)
 
 
 def part(root: Element, tag: str, name: str) -> Element:

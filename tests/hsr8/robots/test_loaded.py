@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from hsr8.robots.loaded import load_robot
-from tests.hsr8.robots.robot_parts import adding
+from tests.hsr8.robots.robot_parts import adding, part
 from tests.hsr8.robots.small_humanoid import SmallHumanoid
 
 ROBOTS = {
@@ -56,13 +56,13 @@ def test_kinematics_and_centre_of_mass_are_those_of_mujoco(load, name):
     com = turned @ (data.subtree_com[model.body(robot.roles.base).id] - base.xpos)
     np.testing.assert_allclose(robot.model.com(angles), com, rtol=0.0, atol=1e-12)
     assert robot.model.mass == pytest.approx(model.body_subtreemass[1], rel=1e-12)
-    for leg, part, side in zip(robot.model.legs, (slice(0, 6), slice(6, 12)), "lr", strict=True):
-        foot = leg.pose(angles[part])
+    for leg, six, side in zip(robot.model.legs, (slice(0, 6), slice(6, 12)), "lr", strict=True):
+        foot = leg.pose(angles[six])
         place = turned @ (data.site(f"hsr8/{side}_foot").xpos - base.xpos)
         np.testing.assert_allclose((foot.x, foot.y, foot.z), place, rtol=0.0, atol=1e-12)
         solved, error = leg.angles(foot)
         assert error < 1e-9
-        np.testing.assert_allclose(solved, angles[part], atol=1e-8)
+        np.testing.assert_allclose(solved, angles[six], atol=1e-8)
 
 
 def test_tendons_of_the_arms_are_no_servos_of_the_legs(load):
@@ -84,6 +84,17 @@ def test_tendons_of_the_arms_are_no_servos_of_the_legs(load):
 
     with_tendons = load(SmallHumanoid(), tendons, motors)
     np.testing.assert_array_equal(with_tendons.model.stiffness, plain.model.stiffness)
+
+
+def test_neighbours_that_overlap_in_the_ready_posture_do_not_collide(load):
+    def solid(root):
+        for body in ("base", "l_hip_pitch_link", "r_hip_pitch_link"):
+            part(root, "body", body).find("geom").attrib.update(contype="1", conaffinity="1")
+
+    excluded = load(SmallHumanoid(), solid).spec.excludes
+    pairs = {frozenset((pair.bodyname1, pair.bodyname2)) for pair in excluded}
+    assert pairs == {frozenset(("base", f"{side}_hip_pitch_link")) for side in "lr"}
+    assert not load(SmallHumanoid()).spec.excludes
 
 
 def test_a_larger_mass_makes_the_walk_no_different_in_shape(load):

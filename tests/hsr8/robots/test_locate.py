@@ -55,7 +55,7 @@ def test_shipped_descriptions_contain_text_only():
 
 def test_the_model_of_the_default_robot_is_always_there():
     file = locate.find_description("hsr8")
-    model = locate.find_model(read_description(file), file.parent)
+    model = locate.find_model(read_description(file), file)
     assert model == models_dir() / "hsr8" / "hsr8.xml"
 
 
@@ -70,7 +70,7 @@ def test_a_file_is_its_own_description(tmp_path, name):
     [
         ("hsr9", "did you mean 'hsr8'"),
         ("zebra", "apollo, berkeley, g1, hsr8, icub, op3, t1"),
-        ("robot.xlm", "expected a .toml, .xml or .urdf file"),
+        ("robot.xlm", "expected a .toml, .xml, .mjcf or .urdf file"),
         ("", "unknown robot ''"),
     ],
 )
@@ -78,6 +78,21 @@ def test_an_unknown_name_is_refused_with_the_list(name, reason):
     with pytest.raises(ModelError) as caught:
         locate.find_description(name)
     assert reason in str(caught.value)
+
+
+@pytest.mark.parametrize(
+    ("name", "got"),
+    [("folder", "a folder"), ("folder.xml", "a folder"), ("README.md", "the suffix '.md'")],
+)
+def test_a_folder_or_another_file_is_refused_as_such(tmp_path, name, got):
+    if got == "a folder":
+        (tmp_path / name).mkdir()
+    else:
+        (tmp_path / name).touch()
+    (tmp_path / "bin.xml").touch()
+    with pytest.raises(ModelError, match=f"not the file of a robot, got {got}; expected") as caught:
+        locate.find_description(str(tmp_path / name))
+    assert "did you mean" not in str(caught.value)
 
 
 def test_a_missing_file_is_refused_with_a_similar_one(tmp_path):
@@ -106,29 +121,32 @@ def test_the_nearest_source_wins(tmp_path, monkeypatch):
     for folder in folders:
         file = put(folder)
         assert locate.installed_model(description(), tmp_path / "mine") == file
-        assert locate.find_model(description(), tmp_path / "mine") == file
+        assert locate.find_model(description(), tmp_path / "mine" / "robot.toml") == file
     assert not packages.keys() & sys.modules.keys()
 
 
 def test_data_files_of_an_unpacked_wheel_are_next_to_its_package(tmp_path, monkeypatch):
     install(monkeypatch, {"icub_models": tmp_path / "icub_models"})
     file = put(tmp_path / "share" / "iCub" / "robots")
-    assert locate.find_model(description(), tmp_path / "mine") == file
+    assert locate.find_model(description(), tmp_path / "mine" / "robot.toml") == file
 
 
 def test_an_absolute_path_is_not_searched(tmp_path):
     file = put(tmp_path)
     here = description().model_copy(update={"model": str(file)})
-    assert locate.find_model(here, tmp_path) == file
+    assert locate.find_model(here, tmp_path / "robot.toml") == file
     file.unlink()
     with pytest.raises(ModelError, match=r"robot.xml' does not exist"):
-        locate.find_model(here, tmp_path)
+        locate.find_model(here, tmp_path / "robot.toml")
 
 
 def test_a_missing_model_is_refused_with_every_remedy(tmp_path):
     with pytest.raises(ModelError) as caught:
-        locate.find_model(description(robot_descriptions="some_mj_description"), tmp_path)
+        locate.find_model(
+            description(robot_descriptions="some_mj_description"), tmp_path / "robot.toml"
+        )
     message = str(caught.value)
+    assert message.startswith(f"{tmp_path / 'robot.toml'}: model: ")
     for part in (
         MODEL,
         str(tmp_path),
@@ -163,9 +181,9 @@ def test_a_model_is_fetched_where_it_is_not_installed(fetching, module):
     file = put(fetching / "menagerie")
     wanted = description(robot_descriptions=module)
     assert locate.installed_model(wanted, fetching) is None
-    assert locate.find_model(wanted, fetching) == file
+    assert locate.find_model(wanted, fetching / "robot.toml") == file
     mine = put(fetching)
-    assert locate.find_model(wanted, fetching) == mine
+    assert locate.find_model(wanted, fetching / "robot.toml") == mine
 
 
 @pytest.mark.parametrize(
@@ -179,5 +197,5 @@ def test_a_model_is_fetched_where_it_is_not_installed(fetching, module):
 )
 def test_a_failed_fetch_is_refused_with_its_reason(fetching, module, reason):
     with pytest.raises(ModelError) as caught:
-        locate.find_model(description(robot_descriptions=module), fetching)
+        locate.find_model(description(robot_descriptions=module), fetching / "robot.toml")
     assert reason in str(caught.value)

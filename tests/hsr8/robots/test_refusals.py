@@ -3,7 +3,9 @@
 import pytest
 
 from hsr8.errors import ModelError
+from hsr8.robots.key_mistake import KeyMistake
 from tests.hsr8.robots.robot_parts import (
+    SOURCE,
     adding,
     checked_roles,
     compiled,
@@ -46,7 +48,7 @@ def refused(robot, description, *changes):
     with pytest.raises(ModelError) as caught:
         checked_roles(model, description)
     message = str(caught.value)
-    assert message.startswith("robot.toml: ")
+    assert isinstance(caught.value, KeyMistake) != message.startswith(f"{SOURCE}: ")
     assert "\n" not in message
     return message
 
@@ -108,6 +110,21 @@ EXCHANGED = {"feet": ("r_ankle_roll_link", "l_ankle_roll_link")}
             {"shoulders": ("l_shoulder_roll", "r_shoulder_roll")},
             [],
             ["shoulders: joint 'l_shoulder_roll' does not pitch", "name the joint that does"],
+        ),
+        (
+            {"shoulders": ("r_shoulder_pitch", "l_shoulder_pitch")},
+            [],
+            ["shoulders: the arm of 'r_shoulder_pitch', the first, is to the right", "exchanged"],
+        ),
+        (
+            {"shoulders": ("l_hip_pitch", "r_hip_pitch")},
+            [],
+            ["shoulders: joint 'l_hip_pitch' belongs to a leg; expected a joint above the legs"],
+        ),
+        (
+            {"head": ("l_hip_yaw", "head_pitch")},
+            [],
+            ["head: pan joint 'l_hip_yaw' belongs to a leg"],
         ),
         (
             {"posture": {"l_shoulder_roll": 2.5}},

@@ -66,6 +66,18 @@ def test_run_folders_are_kept_as_requested(job, tmp_path, keep, code, kept):
     assert result["success"] is True
 
 
+def test_a_folder_with_the_traceback_that_its_result_names_is_always_kept(job, tmp_path):
+    started = StartedJob(replace(job, keep="none"))
+    file = tmp_path / "sweep" / "runs" / "quick" / "3-abc" / "crash.txt"
+    file.parent.mkdir(parents=True)
+    file.write_text("Traceback")
+    started.messages.write_text(f"internal error\n  traceback: {file}")
+    result = started.result(3)
+    assert str(file) in result["error"]
+    assert file.exists()
+    assert result["run"] == "runs/quick/3-abc"
+
+
 def test_the_folder_of_an_earlier_attempt_is_not_this_run_s(job):
     _end(job, -9)
     assert StartedJob(job).result(0)["run"] is None

@@ -1,0 +1,54 @@
+"""Mistakes in the keys of a robot description."""
+
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
+from pathlib import Path
+
+from hsr8.errors import ModelError
+from hsr8.suggestion import suggestion
+
+MAX_LISTED = 12  # names in a message
+
+
+class KeyMistake(ModelError):
+    """Wrong value of a key; the message begins with the key, without the file."""
+
+
+@contextmanager
+def reading_keys(file: Path) -> Iterator[None]:
+    """Context in which mistakes in keys receive the name of their file.
+
+    Args:
+        file: of the description, or the model of a guessed one.
+
+    Raises:
+        ModelError: a key is wrong.
+    """
+    try:
+        yield
+    except KeyMistake as mistake:
+        raise ModelError(f"{file}: {mistake}") from mistake
+
+
+def require_name(
+    key: str, kind: str, name: str, names: Sequence[str], owner: str = "the model"
+) -> None:
+    """Require that a key names a part of the model.
+
+    Args:
+        key: of the description.
+        kind: of the part, such as ``body``.
+        name: value of the key.
+        names: of all parts of this kind.
+        owner: of these parts, for the message.
+
+    Raises:
+        KeyMistake: it has no such part.
+    """
+    if name in names:
+        return
+    more = f" and {len(names) - MAX_LISTED} more" if len(names) > MAX_LISTED else ""
+    listed = f"one of {', '.join(names[:MAX_LISTED])}{more}" if names else "no name: it has none"
+    raise KeyMistake(
+        f"{key}: {owner} has no {kind} {name!r}{suggestion(name, names)}; expected {listed}"
+    )

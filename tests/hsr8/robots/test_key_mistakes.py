@@ -1,0 +1,172 @@
+"""Each mistake in a description file is one message that begins with the file and the key."""
+
+from xml.etree import ElementTree
+
+import pytest
+
+from hsr8.errors import ModelError
+from hsr8.robots.description import read_description
+from hsr8.robots.inspection import inspect
+from hsr8.robots.loaded import load_robot
+from tests.hsr8.robots.small_humanoid import SmallHumanoid
+from tests.hsr8.robots.small_urdf import FEET, SmallUrdf, write
+
+SMALL = SmallHumanoid()
+ANYWHERE = [  # also of a model that does not exist
+    ("feet = 3", "feet: wrong value, got 3; expected a list"),
+    ('feet = ["l"]', "feet: too short, got ['l']; expected more elements"),
+    ('feet = ["l", "l"]', "feet: equal names, got ['l', 'l']; expected two parts"),
+    ('feet = ["l", 3]', "feet.1: wrong value, got 3; expected a text in quotes"),
+    ('feets = ["l", "r"]', "feets: unknown key; did you mean 'feet'?"),
+    (
+        'robot_descriptions = "OP-3"',
+        "got 'OP-3'; expected lower-case letters, digits and underscor",
+    ),
+    ('sole = "x"', "sole: wrong type, got 'x'; expected a list of two names or a table"),
+    ("sole = 3", "sole: wrong type, got 3; expected a list of two names or a table"),
+    ("sole = {front = 1, back = -1, left = 1, right = -1}", "sole.height: missing; expected"),
+    (
+        "sole = {front = -1, back = 1, left = 1, right = -1, height = 0}",
+        "sole: front edge not beyond the back edge, got front = -1, back = 1; expected front",
+    ),
+    ("camera = true", "camera: wrong type, got True; expected a name or a table"),
+    ('camera = {body = "x", position = [1, 2]}', "camera.position: too short, got [1, 2]"),
+    ('servo = "ruler"', "servo: wrong value, got 'ruler'; expected 'own' or 'rule'"),
+    ("servo.lag = 0", "servo.lag: wrong value, got 0; expected more than 0 s"),
+    ("servo.lagg = 0.1", "servo.lagg: unknown key; did you mean 'lag'?"),
+    ("zero = {l_knee = 90}", "zero.l_knee: wrong value, got 90; expected at most 7 rad"),
+    ("zero = {l_knee = nan}", "zero.l_knee: wrong value, got nan; expected a finite number"),
+    ("range = {l_knee = [2, 1]}", "range.l_knee: empty range, got [2.0, 1.0]; expected lower < up"),
+    ("range = {l_knee = [0, 0]}", "range.l_knee: empty range, got [0.0, 0.0]; expected lower < up"),
+    ('state = "home"', "srdf: missing, got state alone; expected both or neither"),
+    ('srdf = "a.srdf"', "state: missing, got srdf alone; expected both or neither"),
+    ("head_rate = 3.0", "head_rate: the description has no head; expected the key head"),
+    ('head = ["a", "b"]\nrigid = ["b"]', "rigid: joint 'b' is also in head; expected one key"),
+    ("zero = {a = 1}\nposture = {a = 2}", "posture.a: also in zero; expected one key"),
+    ('[posture]\nservo = "rule"', "'servo' is a key of the description: move it above the first ["),
+    (
+        'camera = {body = "x", position = [0, 0, 0], radius = 1}',
+        "camera.radius: unknown key; 'radius' is a key of the description: move it above",
+    ),
+]
+IN_THE_MODEL = [
+    ('head = ["head_yaw", "nod"]', "head: the model has no hinge joint 'nod'"),
+    ('shoulders = ["a", "b"]', "shoulders: the model has no hinge joint 'a'"),
+    ("zero = {l_kne = 0.1}", "zero: the model has no hinge joint 'l_kne'; did you mean 'l_knee'?"),
+    (
+        "posture = {heda_yaw = 0.1}",
+        "posture: the model has no hinge joint 'heda_yaw'; did you mean",
+    ),
+    ("[posture]\nradius = 0.3", "posture.radius: not a joint but a key of the description; expect"),
+    ("effort = {x = 1}", "effort: the model has no hinge joint 'x'"),
+    ("speed = {x = 1}", "speed: the model has no hinge joint 'x'"),
+    ("range = {x = [0, 1]}", "range: the model has no hinge joint 'x'"),
+    ('rigid = ["l_kne"]', "rigid: the model has no hinge joint 'l_kne'; did you mean 'l_knee'?"),
+    ('base = "x"', "base: "),
+    ('camera = {body = "x", position = [0, 0, 0]}', "camera.body: the model has no "),
+    ('camera = "x"', "camera: "),
+    ('sole = ["x", "y"]', "sole: foot "),
+    ('srdf = "none.srdf"\nstate = "home"', "srdf: "),
+]
+
+
+def mjcf(folder):
+    text = ElementTree.tostring(SMALL.element(), encoding="unicode")
+    (folder / "robot.xml").write_text(text)
+    return "robot.xml", SMALL.feet()
+
+
+def urdf(folder):
+    return write(SmallUrdf().element(), folder).name, FEET
+
+
+@pytest.fixture
+def described(tmp_path):
+    """Writes a description of a small robot with further lines."""
+
+    def make(lines, kind=mjcf):
+        model, (left, right) = kind(tmp_path)
+        file = tmp_path / "robot.toml"
+        feet = "" if lines.startswith("feet =") else f'feet = ["{left}", "{right}"]\n'
+        file.write_text(f'model = "{model}"\n{feet}{lines}\n')
+        return file
+
+    return make
+
+
+def message_of(action, file):
+    with pytest.raises(ModelError) as caught:
+        action(file)
+    message = str(caught.value)
+    assert caught.value.exit_code == 2
+    assert message.startswith(f"{file}: ")
+    assert "\n" not in message
+    return message.removeprefix(f"{file}: ")
+
+
+@pytest.mark.parametrize(("lines", "expected"), ANYWHERE)
+def test_a_wrong_value_is_one_message(described, lines, expected):
+    assert expected in message_of(read_description, described(lines))
+
+
+@pytest.mark.parametrize("kind", [mjcf, urdf])
+@pytest.mark.parametrize(("lines", "expected"), IN_THE_MODEL)
+def test_a_name_that_the_model_lacks_is_one_message(described, lines, expected, kind):
+    file = described(lines, kind)
+    assert message_of(lambda f: load_robot(str(f)), file).startswith(expected)
+
+
+def test_several_mistakes_are_listed(described):
+    file = described('servo = {lag = 0, delay = 1}\nfeets = ["l"]')
+    with pytest.raises(ModelError) as caught:
+        read_description(file)
+    first, *others = str(caught.value).splitlines()
+    assert first == f"{file}: 3 mistakes"
+    assert {line.split(":")[0] for line in others} == {"  servo.lag", "  servo.delay", "  feets"}
+
+
+def test_an_inspected_model_is_named_itself_although_a_description_is_next_to_it(described):
+    file = described("")
+    element = SmallHumanoid(free=False).element()
+    model = file.with_suffix(".xml")
+    model.write_text(ElementTree.tostring(element, encoding="unicode"))
+    assert inspect(str(model)).file == model
+
+
+def test_geoms_of_the_other_foot_are_refused(described):
+    file = described('sole = ["r_sole", "l_sole"]')
+    model = file.with_suffix(".xml")
+    root = ElementTree.fromstring(model.read_text())
+    for side, foot in zip("lr", SMALL.feet(), strict=True):
+        body = next(e for e in root.iter("body") if e.get("name") == foot)
+        body.find("geom").set("name", f"{side}_sole")
+    model.write_text(ElementTree.tostring(root, encoding="unicode"))
+    message = message_of(lambda f: load_robot(str(f)), file)
+    assert message.startswith("sole: foot 'l_ankle_roll_link' has no geom 'r_sole'; did you mean")
+
+
+def test_rigid_joints_keep_the_angle_of_the_posture_and_lose_their_limits(described):
+    lines = 'rigid = ["l_elbow_pitch", "l_elbow_pitch"]\n[effort]\nl_elbow_pitch = 3.0\n'
+    names = SMALL.element().iter("joint")
+    elbow = next(e.get("name") for e in names if e.get("name", "").startswith("l_elbow"))
+    robot = load_robot(str(described(lines.replace("l_elbow_pitch", elbow))))
+    assert elbow not in robot.model.names
+    assert robot.spec.joint(elbow) is None
+
+
+@pytest.mark.parametrize("kind", [mjcf, urdf])
+def test_a_state_of_the_whole_body_completes_the_posture(described, tmp_path, kind):
+    joints = "".join(f'<joint name="{name}" value="0.1"/>' for name in ("l_knee", "head_yaw"))
+    (tmp_path / "a.srdf").write_text(
+        f'<robot><group_state name="home" group="all">{joints}'
+        '<joint name="finger" value="1"/></group_state></robot>'
+    )
+    lines = 'srdf = "a.srdf"\nstate = "home"\n'
+    assert load_robot(str(described(lines, kind))).description.posture == {"head_yaw": 0.1}
+    lines += 'head = ["head_yaw", "head_pitch"]\n'
+    assert load_robot(str(described(lines, kind))).description.posture == {}
+
+
+def test_package_folders_of_an_mjcf_file_are_refused(described):
+    message = message_of(lambda f: load_robot(str(f)), described('packages = {a = "."}'))
+    assert message == "packages: got an MJCF file, which has none; expected a URDF file"
