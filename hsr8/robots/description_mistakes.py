@@ -11,7 +11,7 @@ from hsr8.docstrings import docstrings
 from hsr8.suggestion import suggestion
 
 NAME, NAMES, TABLE = "a name", "a list of two names", "a table"
-"""Forms of the keys that have several; pydantic puts them into the place of a mistake."""
+"""Forms of the keys that have several; pydantic puts them into the path of a mistake."""
 EXPECTED = {
     "string_type": "a text in quotes",
     "string_too_short": "at least one character",
@@ -32,7 +32,7 @@ EXPECTED = {
 }
 MAX_SHOWN = 60  # characters of a wrong value
 
-Place = tuple[int | str, ...]
+KeyPath = tuple[int | str, ...]
 
 
 def mistakes_of(error: ValidationError, kind: type[BaseModel]) -> list[str]:
@@ -46,24 +46,24 @@ def mistakes_of(error: ValidationError, kind: type[BaseModel]) -> list[str]:
 
 
 def _mistake(details: ErrorDetails, kind: type[BaseModel]) -> str:
-    place: Place = tuple(part for part in details["loc"] if part not in (NAME, NAMES, TABLE))
+    path: KeyPath = tuple(part for part in details["loc"] if part not in (NAME, NAMES, TABLE))
     context, what = details.get("ctx", {}), details["type"]
     got = f"got {_short(details['input'])}"
-    key = ".".join(map(str, place))
+    key = ".".join(map(str, path))
     if what == "value_error":
         return f"{key}: {context['error']}" if key else str(context["error"])
     if what == "extra_forbidden":
-        return f"{key}: unknown key{_hint(place, kind)}"
-    if what == "missing" and isinstance(place[-1], str):
-        return f"{key}: missing; expected a value: {_meaning(place, kind)}"
+        return f"{key}: unknown key{_hint(path, kind)}"
+    if what == "missing" and isinstance(path[-1], str):
+        return f"{key}: missing; expected a value: {_meaning(path, kind)}"
     if what == "missing":
-        return f"{'.'.join(map(str, place[:-1]))}: too short, {got}; expected more elements"
+        return f"{'.'.join(map(str, path[:-1]))}: too short, {got}; expected more elements"
     if what == "union_tag_invalid":
         forms = re.findall(r"'([^']*)'", context["expected_tags"])
         return f"{key}: wrong type, {got}; expected {' or '.join(forms)}"
-    unit = re.search(r"\[([^\]]+)\]\.?$", _meaning(place, kind))
+    unit = re.search(r"\[([^\]]+)\]\.?$", _meaning(path, kind))
     expected = EXPECTED[what].format(**context, unit=f" {unit[1]}" if unit else "")
-    return f"{key}: wrong value, {got}; expected {expected}{_misplaced(place, kind)}"
+    return f"{key}: wrong value, {got}; expected {expected}{_misplaced(path, kind)}"
 
 
 def _short(value: Any) -> str:
@@ -71,32 +71,32 @@ def _short(value: Any) -> str:
     return text if len(text) <= MAX_SHOWN else f"{text[: MAX_SHOWN - 3]}..."
 
 
-def _hint(place: Place, kind: type[BaseModel]) -> str:
-    """Return the hint for an unknown key: its place, or a similar key."""
-    table = _table(place[:-1], kind)
+def _hint(path: KeyPath, kind: type[BaseModel]) -> str:
+    """Return the hint for an unknown key: where it belongs, or a similar key."""
+    table = _table(path[:-1], kind)
     assert table is not None  # a table with names as keys has no unknown ones
-    return _misplaced(place, kind) or suggestion(str(place[-1]), list(table.model_fields))
+    return _misplaced(path, kind) or suggestion(str(path[-1]), list(table.model_fields))
 
 
-def _misplaced(place: Place, kind: type[BaseModel]) -> str:
+def _misplaced(path: KeyPath, kind: type[BaseModel]) -> str:
     """Return the remedy for a key of the description that is within a table."""
-    if len(place) > 1 and place[-1] in kind.model_fields:
-        return f"; {place[-1]!r} is a key of the description: move it above the first [table]"
+    if len(path) > 1 and path[-1] in kind.model_fields:
+        return f"; {path[-1]!r} is a key of the description: move it above the first [table]"
     return ""
 
 
-def _meaning(place: Place, kind: type[BaseModel]) -> str:
+def _meaning(path: KeyPath, kind: type[BaseModel]) -> str:
     """Return the docstring of the innermost key that has one."""
-    for depth in range(len(place), 0, -1):
-        table = _table(place[: depth - 1], kind)
-        if table is not None and place[depth - 1] in table.model_fields:
-            return docstrings(table)[str(place[depth - 1])].replace("\n", " ").rstrip(".")
+    for depth in range(len(path), 0, -1):
+        table = _table(path[: depth - 1], kind)
+        if table is not None and path[depth - 1] in table.model_fields:
+            return docstrings(table)[str(path[depth - 1])].replace("\n", " ").rstrip(".")
     return ""
 
 
-def _table(place: Place, kind: type[BaseModel]) -> type[BaseModel] | None:
-    """Return the kind of the table at a place, None where keys are names."""
-    for part in place:
+def _table(path: KeyPath, kind: type[BaseModel]) -> type[BaseModel] | None:
+    """Return the kind of the table at a path, None where keys are names."""
+    for part in path:
         field = kind.model_fields.get(str(part))
         kinds = [] if field is None else list(_kinds(field.annotation))
         if not kinds:
