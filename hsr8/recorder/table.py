@@ -22,15 +22,19 @@ class Table(Mapping[str, Any]):
     Args:
         name: of the table, for messages.
         arrow: the columns.
-
-    Attributes:
-        arrow: the columns as an Arrow table, for other libraries.
+        chosen: indices of the rows of `arrow` that this table has; None for all.
     """
 
-    def __init__(self, name: str, arrow: pa.Table) -> None:
+    def __init__(self, name: str, arrow: pa.Table, chosen: NDArray[np.intp] | None = None) -> None:
         self.name = name
-        self.arrow = arrow
+        self._whole = arrow
+        self._chosen = chosen
         self._columns: dict[str, Any] = {}
+
+    @property
+    def arrow(self) -> pa.Table:
+        """The columns as an Arrow table, for other libraries."""
+        return self._whole if self._chosen is None else self._whole.take(pa.array(self._chosen))
 
     @staticmethod
     def from_objects(name: str, rows: type, objects: Sequence[Any]) -> "Table":
@@ -46,15 +50,15 @@ class Table(Mapping[str, Any]):
 
     def __len__(self) -> int:
         """Return the number of rows."""
-        return int(self.arrow.num_rows)
+        return self._whole.num_rows if self._chosen is None else len(self._chosen)
 
     def __iter__(self) -> Iterator[str]:
         """Yield the names of the columns."""
-        return iter(self.arrow.schema.names)
+        return iter(self._whole.schema.names)
 
     def __contains__(self, column: object) -> bool:
         """Return whether there is a column of this name."""
-        return column in self.arrow.schema.names
+        return column in self._whole.schema.names
 
     def __getitem__(self, column: str) -> Any:
         """Return a column.
@@ -64,7 +68,7 @@ class Table(Mapping[str, Any]):
         """
         if column not in self._columns:
             field = self._field(column)
-            array = self.arrow.column(column).combine_chunks()
+            array = self._chunks(column).combine_chunks()
             array = pa.concat_arrays(array.chunks) if isinstance(array, pa.ChunkedArray) else array
             self._columns[column] = _decoded(f"{self.name}.{column}", array, field)
         return self._columns[column]
@@ -83,7 +87,7 @@ class Table(Mapping[str, Any]):
 
     def present(self, column: str) -> tuple[NDArray[np.intp], NDArray[Any]]:
         """Return the rows (k,) that have a value of a column and these values (k, ...)."""
-        valid = np.asarray(self.arrow.column(column).is_valid(), dtype=bool)
+        valid = np.asarray(self._chunks(column).is_valid(), dtype=bool)
         rows = np.flatnonzero(valid)
         values = self[column]
         return rows, np.array([values[row] for row in rows.tolist()])
@@ -99,8 +103,9 @@ class Table(Mapping[str, Any]):
         return Table(self.name, self.arrow.slice(first, max(0, last - first)))
 
     def take(self, rows: NDArray[np.intp]) -> "Table":
-        """Return the rows with these indices."""
-        return Table(self.name, self.arrow.take(pa.array(rows)))
+        """Return the rows with these indices; a column is copied when it is read."""
+        chosen = rows if self._chosen is None else self._chosen[rows]
+        return Table(self.name, self._whole, chosen)
 
     def at(self, times: Any) -> NDArray[np.intp]:
         """Return the index of the last row not after each of the times (m,) [s], at least 0."""
@@ -116,7 +121,11 @@ class Table(Mapping[str, Any]):
             raise UsageError(
                 f"{self.name}: unknown column {column!r}{suggestion(column, list(self))}"
             )
-        return self.arrow.schema.field(column)
+        return self._whole.schema.field(column)
+
+    def _chunks(self, column: str) -> pa.ChunkedArray:
+        chunks = self._whole.column(column)
+        return chunks if self._chosen is None else chunks.take(pa.array(self._chosen))
 
     def _text(self, column: str, key: bytes) -> str:
         text: bytes = (self._field(column).metadata or {}).get(key, b"")

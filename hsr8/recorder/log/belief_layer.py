@@ -77,7 +77,7 @@ class BeliefLayer:
         )
         covariances = shown["pose_covariance"][:, :2, :2]
         self._ellipses(self._uncertainty, times, ones, centres, covariances)
-        self._view.add_rows(times, ones, strips=list(_wedges(shown, self._scale)))
+        self._view.add_rows(times, ones, strips=_wedges(shown, self._scale))
         self._add_tracks(times, shown["tracks"])
         self._add_virtual(frames.take(np.flatnonzero(frames["planned"])))
         for time, target in zip(frames["time"].tolist(), frames["target"].tolist(), strict=True):

@@ -12,7 +12,6 @@ from numpy.typing import NDArray
 from hsr8.recorder import palette
 from hsr8.recorder.log.block_stream import BlockStream
 from hsr8.recorder.log.channel import Channel
-from hsr8.recorder.log.geometry import quaternions
 from hsr8.recorder.table import Table
 from hsr8.robots.normal_form import HEAD_CAMERA
 from navigation.parameters.gaze import GazeParameters
@@ -75,12 +74,10 @@ class CameraLayer:
         self._choice = Channel(stream, "/gaze/choice", rr.Points2D, radii=[0.5])
 
     def add_poses(self, times: Sequence[float], positions: Array, rotations: Array) -> None:
-        """Add true poses: positions (n, 3) [m] and MuJoCo's rotations (n, 9)."""
-        # MuJoCo's camera looks along -z with y up, Rerun's along z with y down.
-        turned = rotations * np.tile((1.0, -1.0, -1.0), 3)
-        self._pose.add_rows(
-            times, [1] * len(times), translation=positions, quaternion=quaternions(turned)
-        )
+        """Add true poses: positions (n, 3) [m] and MuJoCo's quaternions x-y-z-w (n, 4)."""
+        # MuJoCo's camera looks along -z with y up, Rerun's along z with y down: half a turn.
+        turned = rotations[:, [3, 2, 1, 0]] * (1.0, 1.0, -1.0, -1.0)
+        self._pose.add_rows(times, [1] * len(times), translation=positions, quaternion=turned)
 
     def add_frames(self, frames: Table, shown: Table, images: Table | None) -> None:
         """Take camera frames.
@@ -106,7 +103,8 @@ class CameraLayer:
         windows = _windows(shown, self._box)
         for time, (pan, tilt), window in zip(times, shown["head"].tolist(), windows, strict=True):
             outline = image_points((pan, tilt), window, self._focal, self._size)
-            self._image_window.add(time, strips=[] if outline is None else [outline])
+            strips = np.empty((0, *window.shape)) if outline is None else outline[None]
+            self._image_window.add(time, strips=strips)
         self._add_maps(frames)
 
     def _add_maps(self, frames: Table) -> None:
@@ -123,7 +121,8 @@ class CameraLayer:
                 positions=map_points(gaze[None], shades.shape, self._parameters),
                 colors=palette.packed_all([palette.BELIEF]),
             )
-            self._window.add(time, strips=[map_points(window, shades.shape, self._parameters)])
+            strips = map_points(window, shades.shape, self._parameters)[None]
+            self._window.add(time, strips=strips)
 
 
 def _windows(frames: Table, box: float) -> Array:

@@ -112,27 +112,28 @@ def poses(
         model: compiled world.
         batch: the geoms.
         positions: of all geoms (n, ngeom, 3) [m].
-        rotations: of all geoms (n, ngeom, 9).
+        rotations: quaternions w-x-y-z of all bodies (n, nbody, 4).
     """
     position = positions[:, batch.geoms]
-    rotation = rotations[:, batch.geoms]
+    w, x, y, z = np.moveaxis(rotations[:, model.geom_bodyid[batch.geoms]], 2, 0)
+    a, b, c, d = model.geom_quat[batch.geoms].T
+    quaternion = np.stack(
+        [
+            w * b + x * a + y * d - z * c,
+            w * c - x * d + y * a + z * b,
+            w * d + x * c - y * b + z * a,
+            w * a - x * b - y * c - z * d,
+        ],
+        axis=-1,
+    )
     name = "centers"
     if batch.kind == "capsules":
         # Rerun's capsule starts at its origin, MuJoCo's is centred there.
-        position = position - model.geom_size[batch.geoms, 1, None] * rotation[..., 2::3]
+        x, y, z, w = np.moveaxis(quaternion, 2, 0)
+        axis = np.stack([2 * (x * z + w * y), 2 * (y * z - w * x), 1 - 2 * (x * x + y * y)], -1)
+        position = position - model.geom_size[batch.geoms, 1, None] * axis
         name = "translations"
-    return {
-        name: position.reshape(-1, 3),
-        "quaternions": quaternions(rotation.reshape(-1, 9)),
-    }
-
-
-def quaternions(rotations: Array) -> Array:
-    """Return quaternions in Rerun's order x-y-z-w (n, 4) of rotations (n, 9)."""
-    result = np.empty((len(rotations), 4))
-    for quaternion, rotation in zip(result, rotations, strict=True):
-        mujoco.mju_mat2Quat(quaternion, rotation)
-    return result[:, [1, 2, 3, 0]]
+    return {name: position.reshape(-1, 3), "quaternions": quaternion.reshape(-1, 4)}
 
 
 class Scene:
@@ -172,30 +173,28 @@ class Scene:
 
     def _log_static(self, stream: BlockStream, path: str, chosen: NDArray[np.bool_]) -> None:
         for batch in batches_of(self._model, chosen):
-            positions, rotations = self._data.geom_xpos[None], self._data.geom_xmat[None]
-            pose = poses(self._model, batch, positions, rotations)
+            pose = poses(self._model, batch, self._data.geom_xpos[None], self._data.xquat[None])
             stream.log(f"{path}/{batch.kind}", shapes(self._model, batch, **pose), static=True)
 
     def add(self, times: Sequence[float], qpos: Array, movers: Array) -> tuple[Array, Array]:
         """Add n rows: times [s], configurations (n, nq), mover positions in W (n, m, 2) [m].
 
         Returns:
-            True positions (n, 3) [m] and rotations (n, 9) of the head camera.
+            True positions (n, 3) [m] and quaternions x-y-z-w (n, 4) of the head camera.
         """
         data = self._data
-        cameras = []
-        for configuration in qpos:
+        positions, rotations = np.empty((len(qpos), 3)), np.empty((len(qpos), 4))
+        for position, rotation, configuration in zip(positions, rotations, qpos, strict=True):
             data.qpos[:] = configuration
             mujoco.mj_kinematics(self._model, data)
             mujoco.mj_comPos(self._model, data)
             mujoco.mj_camlight(self._model, data)
-            pose = data.cam_xpos[self._camera].copy(), data.cam_xmat[self._camera].copy()
-            cameras.append(pose)
+            position[:] = data.cam_xpos[self._camera]
+            mujoco.mju_mat2Quat(rotation, data.cam_xmat[self._camera])
         for batch in self._movers:
             centres = np.concatenate(movers)
             heights = np.full(len(centres), self._model.geom_size[batch.geoms[0], 1])
             self._mover_channel.add_rows(
                 times, list(map(len, movers)), centers=np.column_stack([centres, heights])
             )
-        positions, rotations = map(np.array, zip(*cameras, strict=True))
-        return positions, rotations
+        return positions, rotations[:, [1, 2, 3, 0]]

@@ -39,7 +39,7 @@ SOLE_HEIGHT = 0.004  # height of drawn footsteps [m]
 MAX_LABELS = 12  # more waypoints than this are shown without numbers
 WRITE_TIMEOUT = 20.0  # wall time until a batch must be written [s]
 TRAIL, TRAIL_PERIOD = 60.0, 0.12  # length of the path shown, interval between its points [s]
-BATCHES = 4  # logged together: the cost of Rerun is by call
+BATCHES = 10  # logged together: the cost of Rerun is by call
 MAX_INDEXED = 600.0  # logs of longer runs have no index, which is held in memory [s]
 LEVELS = {"fall": "ERROR", "diverged": "ERROR"} | dict.fromkeys(
     ("collision", "fault", "lost", "push"), "WARN"
@@ -99,7 +99,7 @@ class RerunLog:
         width, depth = (side + APRON * layout.scale for side in layout.field_size)
         self._scene = Scene(self._stream, model, (width, depth))
         self._robot = RobotLayer(self._stream, robot)
-        self._soles = (sole_outline(robot.model.sole),) * 2
+        self._sole = sole_outline(robot.model.sole)
         self._camera: CameraLayer | None = None
         self._belief: BeliefLayer | None = None
         self._plan: PlanLayer | None = None
@@ -205,28 +205,21 @@ class RerunLog:
     def _add_footsteps(self, records: Table, times: list[float]) -> None:
         """Log planned footsteps, transformed with the true pose."""
         steps, frame = records["footsteps"], WorldFrame(records)
-        rows, left = steps.parents, steps["left"].tolist()
-        positions = frame.point(np.column_stack([steps["x"], steps["y"]]), rows)
+        rows, left = steps.parents, steps["left"]
         yaws = steps["yaw"] + frame.turn[rows]
+        c, s = np.cos(yaws), np.sin(yaws)
+        outlines = np.full((len(steps), len(self._sole), 3), SOLE_HEIGHT)
+        outlines[..., :2] = self._sole @ np.moveaxis(np.array([[c, s], [-s, c]]), 2, 0)
+        positions = frame.point(np.column_stack([steps["x"], steps["y"]]), rows)
+        outlines[..., :2] += positions[:, None]
+        colors = palette.packed_all((palette.RIGHT_FOOT, palette.LEFT_FOOT))
         self._footsteps.add_rows(
             times,
             steps.counts.tolist(),
-            strips=[
-                self._sole(is_left, position, yaw)
-                for is_left, position, yaw in zip(left, positions, yaws.tolist(), strict=True)
-            ],
-            colors=palette.packed_all(
-                palette.LEFT_FOOT if is_left else palette.RIGHT_FOOT for is_left in left
-            ),
+            strips=outlines,
+            colors=colors[left.astype(np.intp)],
             radii=np.full(len(steps), 0.004),
         )
-
-    def _sole(self, left: bool, position: Array, yaw: float) -> Array:
-        """Return the outline of a foot on the floor (5, 3) [m]."""
-        c, s = cos(yaw), sin(yaw)
-        outline = np.full((5, 3), SOLE_HEIGHT)
-        outline[:, :2] = self._soles[not left] @ np.array([[c, s], [-s, c]]) + position
-        return outline
 
     def _send(self) -> None:
         """Send all rows; Rerun's threads write them while the run goes on."""

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from hsr8.recorder.log.block_stream import BlockStream
 from hsr8.recorder.log.channel import Channel
-from hsr8.recorder.log.geometry import batches_of, colors, poses, quaternions, shapes
+from hsr8.recorder.log.geometry import batches_of, colors, poses, shapes
 from hsr8.robots.loaded import LoadedRobot
 from hsr8.robots.shown import VISUAL_GROUPS, visual_model
 
@@ -55,20 +55,18 @@ class RobotLayer:
         for configuration in qpos:
             data.qpos[:] = configuration
             mujoco.mj_kinematics(self._model, data)
-            part = data.xpos[self._parts], data.xmat[self._parts]
-            copies.append((data.geom_xpos.copy(), data.geom_xmat.copy(), *part))
-        positions, rotations, part_positions, part_rotations = map(
-            np.array, zip(*copies, strict=True)
-        )
+            copies.append((data.geom_xpos.copy(), data.xpos[self._parts], data.xquat.copy()))
+        positions, part_positions, rotations = map(np.array, zip(*copies, strict=True))
         for batch, channel in zip(self._batches, self._batch_channels, strict=True):
             rows = poses(self._model, batch, positions, rotations)
             channel.add_rows(times, [len(batch.geoms)] * len(times), **rows)
+        part_rotations = rotations[:, self._parts][..., [1, 2, 3, 0]]
         for k, channel in enumerate(self._part_channels):
             channel.add_rows(
                 times,
                 [1] * len(times),
                 translation=part_positions[:, k],
-                quaternion=quaternions(part_rotations[:, k]),
+                quaternion=part_rotations[:, k],
             )
 
 
