@@ -52,6 +52,8 @@ Positive = Annotated[float, Interval(gt=0.0, le=1e6)]
 Length = Annotated[float, Interval(ge=-5.0, le=5.0)]
 Size = Annotated[float, Interval(gt=0.0, le=5.0)]
 Limits = Annotated[tuple[Angle, Angle], AfterValidator(_rising)]
+Rate = Annotated[float, Interval(ge=0.01, le=1e4)]
+Speed = Annotated[float, Interval(ge=0.012, le=50.0)]
 Sigma = Annotated[float, Interval(ge=0.0, le=1.0)]
 
 TRUNK = "trunk"
@@ -104,11 +106,11 @@ class CameraMount(Table):
 class ServoRule(Table):
     """Position servos by rule, for models without usable servos."""
 
-    compliance: Annotated[float, Interval(gt=0.0, le=10.0)] = 0.1
+    compliance: Annotated[float, Interval(ge=0.005, le=10.0)] = 0.1
     """Relative compliance of a leg servo: weight times height over stiffness [rad/rad]."""
-    lag: Annotated[float, Interval(gt=0.0, le=1.0)] = 0.05
+    lag: Annotated[float, Interval(ge=0.001, le=1.0)] = 0.05
     """Maximum ratio of damping to stiffness of a leg servo [s]."""
-    upper_hz: Annotated[float, Interval(gt=0.0, le=1000.0)] = 6.0
+    upper_hz: Annotated[float, Interval(ge=0.5, le=200.0)] = 6.0
     """Natural frequency of the other servos [Hz]."""
 
 
@@ -127,13 +129,13 @@ Servo = Annotated[
 class SpeedEnvelope(Table):
     """Speeds that the robot walks at without falling, measured by ``hsr8 robot calibrate``."""
 
-    vx: Positive
+    vx: Speed
     """Forward [m/s]."""
-    vx_backward: Positive
+    vx_backward: Speed
     """Backward [m/s]."""
-    vy: Positive
+    vy: Speed
     """Sideways [m/s]."""
-    wz: Positive
+    wz: Speed
     """Turn rate [rad/s]."""
 
 
@@ -212,7 +214,7 @@ class RobotDescription(Table):
     of the head or the upper trunk."""
     vertical_fov_deg: Annotated[float, Interval(ge=10.0, le=120.0)] | None = None
     """Vertical field of view of the camera; default: that of the scenario [deg]."""
-    radius: Size | None = None
+    radius: Annotated[float, Interval(ge=0.01, le=2.0)] | None = None
     """Radius of the walking robot for navigation; default: from its shapes in the ready posture
     [m]."""
     servo: Servo | None = None
@@ -227,9 +229,9 @@ class RobotDescription(Table):
     """Joints to fix at their angle in the ready posture."""
     packages: dict[Name, Name] = {}
     """Folder of each package named in a ``package://`` path of a URDF file."""
-    head_rate: Positive | None = None
+    head_rate: Rate | None = None
     """Maximum rate of the head joints; default: from their speed limits [rad/s]."""
-    head_acceleration: Positive | None = None
+    head_acceleration: Rate | None = None
     """Maximum angular acceleration of the head joints [rad/s²]."""
     about: About | None = None
     """Facts of a shipped robot."""

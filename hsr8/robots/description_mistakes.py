@@ -58,6 +58,8 @@ def _mistake(details: ErrorDetails, kind: type[BaseModel]) -> str:
         return f"{key}: missing; expected a value: {_meaning(path, kind)}"
     if what == "missing":
         return f"{'.'.join(map(str, path[:-1]))}: too short, {got}; expected more elements"
+    if what == "json_invalid":
+        return "too many tables within each other; expected those of docs/robots.md"
     if what == "union_tag_invalid":
         forms = re.findall(r"'([^']*)'", context["expected_tags"])
         return f"{key}: wrong type, {got}; expected {' or '.join(forms)}"

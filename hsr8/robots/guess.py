@@ -112,7 +112,10 @@ def guess_roles(skeleton: Skeleton, cameras: Sequence[CameraView] = ()) -> Guess
     head, head_finding = _head(stance)
     arms = _arms(stance, head)
     shoulders, shoulders_finding = _shoulders(stance, arms)
-    camera, camera_finding = _camera(stance, head, cameras)
+    limbs = {*stance.legs.left, *stance.legs.right}
+    limbs |= set() if arms is None else {*arms.left, *arms.right}
+    fixed = [c for c in cameras if not limbs & {*stance.skeleton.chain(c.group)}]
+    camera, camera_finding = _camera(stance, head, fixed)
     posture = {} if arms is None else dict(_hanging(stance.skeleton, arms))
     findings = [forward, feet_finding, head_finding, shoulders_finding, camera_finding]
     if posture:

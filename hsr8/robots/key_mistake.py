@@ -5,6 +5,7 @@ from contextlib import contextmanager
 from pathlib import Path
 
 from hsr8.errors import ModelError
+from hsr8.robots.description import RobotDescription
 from hsr8.suggestion import suggestion
 
 MAX_LISTED = 12  # names in a message
@@ -28,6 +29,23 @@ def reading_keys(file: Path) -> Iterator[None]:
         yield
     except KeyMistake as mistake:
         raise ModelError(f"{file}: {mistake}") from mistake
+
+
+def joint_error(
+    joint: str, key: str, description: RobotDescription, source: str, reason: str
+) -> ModelError:
+    """Return the error of a joint: of a key that states its value, else of the model.
+
+    Args:
+        joint: its name.
+        key: `range` or `effort`.
+        description: of the robot.
+        source: model file.
+        reason: value and expected value.
+    """
+    if joint in getattr(description, key):
+        return KeyMistake(f"{key}.{joint}: {reason}")
+    return ModelError(f"{source}: joint {joint!r}: {reason}")
 
 
 def require_name(

@@ -1,6 +1,5 @@
 """Loaded robot: its model in normal form, its kinematics, and its walking parameters."""
 
-from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import lru_cache
 from pathlib import Path
@@ -12,14 +11,15 @@ from numpy.typing import NDArray
 from hsr8.errors import ModelError
 from hsr8.robots.arms import arm_spheres, robot_height, robot_radius
 from hsr8.robots.description import TRUNK, RobotDescription, read_description
-from hsr8.robots.key_mistake import KeyMistake, reading_keys
+from hsr8.robots.key_mistake import KeyMistake, joint_error, reading_keys
 from hsr8.robots.locate import find_description, find_model
 from hsr8.robots.models import reading_models
 from hsr8.robots.normal_form import normalise
 from hsr8.robots.posed import Posed
+from hsr8.robots.posture import completed_posture
 from hsr8.robots.read_model import read_model
 from hsr8.robots.refusals import check_roles
-from hsr8.robots.roles import Roles, find_roles
+from hsr8.robots.roles import LEG_JOINTS, Roles, find_roles
 from hsr8.robots.self_collision import exclude_neighbours
 from hsr8.robots.servos import choose_servos
 from hsr8.robots.sole import soles_of
@@ -36,6 +36,7 @@ Array = NDArray[np.float64]
 PRECISION = 1e-9  # of masses [kg] and places [m] in the normal form
 HEAVY = 0.8  # torque on one leg that is worth a note, of its maximum [1]
 STANDING = 1e-9  # maximum error of the legs in the ready posture [rad]
+SLACK = 1e-6  # of joint limits [rad]
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -121,10 +122,11 @@ def _built(description: RobotDescription, file: Path, model_file: Path) -> Loade
     with reading_models(source):
         model = raw.spec.copy().compile()  # a compiled specification is slow to change
     roles = find_roles(model, description, source)
-    description = _without_walking(description, stated.posture, roles)
+    completed, posture_notes = completed_posture(model, description, stated.posture, roles)
+    description = description.model_copy(update={"posture": completed})
     zero = Posed.at(model, description.zero)
     check_roles(model, roles, description, source)
-    soles, sole_notes = soles_of(zero, roles.feet, description.sole)
+    soles, sole_notes = soles_of(zero, roles, description.sole)
     servo_notes = choose_servos(raw.spec, model, roles, description, soles[0].height)
     normal = normalise(raw.spec, zero, roles, soles, description)
     with reading_models(source):
@@ -140,9 +142,10 @@ def _built(description: RobotDescription, file: Path, model_file: Path) -> Loade
     if robot.stand(height, parameters.gait.half_stance) > STANDING:
         raise KeyMistake(
             f"zero: the legs do not reach the floor in the ready posture, got hips at "
-            f"{height:.3f} m; expected angles of straight legs"
+            f"{height:.3f} m; expected angles of straight legs, and soles below the ankles"
         )
-    walk_notes += _strength(robot, parameters, source)
+    _require_ready(robot, description, source)
+    walk_notes += _strength(robot, parameters, description, source)
     driven = set(tree.names)
     held = {name: angle for name, angle in posture.items() if name not in driven}
     base = height - robot.legs[0].hip[2]
@@ -163,17 +166,16 @@ def _built(description: RobotDescription, file: Path, model_file: Path) -> Loade
         held=held,
         height=base,
         stature=robot_height(standing),
-        notes=(*raw.notes, *sole_notes, *servo_notes, *normal.notes, *collision_notes, *walk_notes),
+        notes=(
+            *raw.notes,
+            *posture_notes,
+            *sole_notes,
+            *servo_notes,
+            *normal.notes,
+            *collision_notes,
+            *walk_notes,
+        ),
     )
-
-
-def _without_walking(
-    description: RobotDescription, stated: Mapping[str, float], roles: Roles
-) -> RobotDescription:
-    """Return a description without the angles of legs and head that only its SRDF file states."""
-    moved = {*roles.legs[0], *roles.legs[1], *(roles.head or ())}
-    posture = {n: a for n, a in description.posture.items() if n in stated or n not in moved}
-    return description.model_copy(update={"posture": posture})
 
 
 def _fitted(
@@ -196,7 +198,28 @@ def _fitted(
     return parameters, notes
 
 
-def _strength(robot: RobotModel, parameters: WalkingParameters, source: str) -> list[str]:
+def _require_ready(robot: RobotModel, description: RobotDescription, source: str) -> None:
+    """Check that the legs are within their limits in the ready posture.
+
+    Raises:
+        ModelError: a joint is not.
+    """
+    limits = zip(robot.names, robot.ready.tolist(), robot.tree.lower, robot.tree.upper, strict=True)
+    for name, angle, lower, upper in list(limits)[: 2 * LEG_JOINTS]:
+        if not lower - SLACK <= angle <= upper + SLACK:
+            raise joint_error(
+                name,
+                "range",
+                description,
+                source,
+                f"the ready posture is outside, got {angle:.3f} rad; expected {lower:.3g} to "
+                f"{upper:.3g}",
+            )
+
+
+def _strength(
+    robot: RobotModel, parameters: WalkingParameters, description: RobotDescription, source: str
+) -> list[str]:
     """Check that each leg can carry the robot alone; return notes.
 
     Raises:
@@ -206,10 +229,13 @@ def _strength(robot: RobotModel, parameters: WalkingParameters, source: str) -> 
     worst = int(loads.argmax())
     load, name, effort = float(loads[worst]), robot.names[worst], robot.tree.effort[worst]
     if load > 1.0:
-        raise ModelError(
-            f"{source}: joint {name!r}: too weak to carry the robot on one leg, got a maximum "
-            f"torque of {effort:.3g} N m; expected at least {load * effort:.3g}: state effort, if "
-            "that of the model is wrong"
+        raise joint_error(
+            name,
+            "effort",
+            description,
+            source,
+            f"too weak to carry the robot on one leg, got a maximum torque of {effort:.3g} N m; "
+            f"expected at least {load * effort:.3g}: state effort, if that of the model is wrong",
         )
     return [f"{load:.0%} of the torque of {name} on one leg"] if load > HEAVY else []
 

@@ -1,13 +1,18 @@
 """Posture of the joints that neither walk nor look: from a description and its SRDF file."""
 
-from collections.abc import Sequence
+from collections.abc import Collection, Sequence
 from math import isfinite
 from pathlib import Path
 from xml.etree import ElementTree
 
+import mujoco
+import numpy as np
+
 from hsr8.errors import ModelError
 from hsr8.robots.description import RobotDescription
 from hsr8.robots.key_mistake import KeyMistake, require_name
+from hsr8.robots.roles import Roles
+from hsr8.robots.skeleton import HINGE
 
 LIMIT_MARGIN = 0.02  # distance of a clipped angle from its limit, by the range [1]
 
@@ -56,6 +61,32 @@ def clip_to_range(angle: float, lower: float, upper: float) -> float:
         return angle
     margin = LIMIT_MARGIN * (upper - lower)
     return min(max(angle, lower + margin), upper - margin)
+
+
+def completed_posture(
+    model: mujoco.MjModel, description: RobotDescription, stated: Collection[str], roles: Roles
+) -> tuple[dict[str, float], list[str]]:
+    """Return the posture of the joints that neither walk nor look, within their limits, and notes.
+
+    Args:
+        model: compiled.
+        description: of the robot in terms of the model, with the angles of its SRDF file.
+        stated: joints of the key `posture`, whose angles remain.
+        roles: of the robot's parts.
+    """
+    posture, notes = dict(description.posture), []
+    moving = {*roles.legs[0], *roles.legs[1], *(roles.head or ())}
+    for name in moving - {*stated}:
+        posture.pop(name, None)
+    for joint in (model.joint(int(j)) for j in np.flatnonzero(model.jnt_limited)):
+        name, angle = joint.name, posture.get(joint.name, 0.0)
+        if joint.type[0] != HINGE or name in moving | {*stated, *description.zero}:
+            continue
+        inside = clip_to_range(angle, *joint.range.tolist())
+        if inside != angle:
+            posture[name] = inside
+            notes.append(f"posture: {name!r} {angle:.3f} -> {inside:.3f} rad, within its range")
+    return posture, notes
 
 
 def check_joint_names(description: RobotDescription, names: Sequence[str]) -> None:

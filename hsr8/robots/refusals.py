@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from hsr8.errors import ModelError
 from hsr8.robots.description import RobotDescription
-from hsr8.robots.key_mistake import KeyMistake
+from hsr8.robots.key_mistake import KeyMistake, joint_error
 from hsr8.robots.mechanism_checks import check_mechanism
 from hsr8.robots.mirror import mirrored_pairs
 from hsr8.robots.roles import Roles
@@ -29,6 +29,7 @@ PITCHING = ("hip", "knee", "ankle")
 BENT = (-0.4, 0.8, -0.35)  # pitch of hip, knee and ankle in a bent leg, about the left axis [rad]
 MIN_FREEDOM = 0.01  # singular value of the scaled Jacobian of a bent leg, minimum over maximum [1]
 SLACK = 1e-6  # of limits [rad]
+MAX_CAMERA = 2.0  # distance of a camera from the origin of its body, in lengths of the leg [1]
 
 
 def check_roles(
@@ -57,6 +58,7 @@ def check_roles(
     check.freedom()
     check.head()
     check.shoulders()
+    check.camera()
 
 
 class _Checks:
@@ -81,8 +83,8 @@ class _Checks:
         base = self._model.body(self._roles.base).id
         return skeleton_of(self._model, base, {**self._description.zero, **more})
 
-    def _error(self, reason: str) -> ModelError:
-        return ModelError(f"{self._source}: {reason}")
+    def _range_error(self, joint: str, reason: str) -> ModelError:
+        return joint_error(joint, "range", self._description, self._source, reason)
 
     def ranges(self) -> None:
         """Stated angles must lie within the limits; `posture` excludes legs and head."""
@@ -160,11 +162,12 @@ class _Checks:
                 zero = self._zero(joint) * np.sign(self._skeleton.axes[joint, 1])
                 if not lower - SLACK <= zero + angle <= upper + SLACK:
                     name = self._skeleton.joints[joint]
-                    raise self._error(
-                        f"joint {name!r}: the {part} cannot bend, got a range of "
+                    raise self._range_error(
+                        name,
+                        f"the {part} cannot bend, got a range of "
                         f"{lower - zero:.2f} to {upper - zero:.2f} rad about the left axis; "
                         f"expected {angle:g} in it: are left and right exchanged, x of the base "
-                        "backward, or the limits wrong?"
+                        "backward, or the limits wrong?",
                     )
 
     def mirror(self) -> None:
@@ -190,10 +193,12 @@ class _Checks:
                 ),
             ):
                 if wrong:
-                    raise self._error(
-                        f"joint {right!r}: not the mirror image of {left!r} in the plane y = 0 of "
+                    one, other = (left, right) if left in self._description.range else (right, left)
+                    raise self._range_error(
+                        one,
+                        f"not the mirror image of {other!r} in the plane y = 0 of "
                         f"the base at zero angles: {reason}: correct the model, or state angles "
-                        "at which the legs are alike as zero, or the range"
+                        "at which the legs are alike as zero, or the range",
                     )
 
     def freedom(self) -> None:
@@ -218,26 +223,70 @@ class _Checks:
                 )
 
     def head(self) -> None:
-        """The head must yaw, then pitch."""
+        """The head must yaw and pitch one part, and be able to look ahead."""
         if self._roles.head is None:
             return
         for name, (part, expected, axis) in zip(
             self._roles.head, (("pan", "yaw", 2), ("tilt", "pitch", 1)), strict=True
         ):
             self._require_axis(f"head: {part} joint", name, expected, axis)
+            lower, upper = self._skeleton.ranges[self._skeleton.joints.index(name)]
+            if not lower <= 0.0 <= upper:
+                raise self._range_error(
+                    name,
+                    f"the head cannot look ahead, got a range of {lower:.3g} to {upper:.3g} rad; "
+                    "expected 0 in it: name other joints as head, or leave the key out",
+                )
+        pan, tilt = (self._skeleton.joints.index(name) for name in self._roles.head)
+        if pan not in self._skeleton.chain(tilt) and tilt not in self._skeleton.chain(pan):
+            raise KeyMistake(
+                f"head: joints {self._roles.head[0]!r} and {self._roles.head[1]!r} move different "
+                "parts; expected a pan and a tilt joint of one head"
+            )
 
     def shoulders(self) -> None:
         """Shoulder joints must pitch, and move the arm of their side."""
-        if self._roles.shoulders is None:
+        both = self._roles.shoulders
+        if both is None:
             return
-        for name in self._roles.shoulders:
+        for name in both:
             self._require_axis("shoulders: joint", name, "pitch", 1)
-        left, right = self._roles.shoulders
-        index = self._skeleton.joints.index
-        if self._skeleton.com_below(index(left))[1] < self._skeleton.com_below(index(right))[1]:
+        sides = [self._skeleton.com_below(self._skeleton.joints.index(name))[1] for name in both]
+        if not sides[0] > 0.0 > sides[1]:
+            exchanged = ": left and right are exchanged" if sides[0] < 0.0 < sides[1] else ""
             raise KeyMistake(
-                f"shoulders: the arm of {left!r}, the first, is to the right of that of {right!r}: "
-                "left and right are exchanged; expected the left shoulder first"
+                f"shoulders: joints {both[0]!r} and {both[1]!r} do not move a left and a right "
+                f"arm, got masses {sides[0]:.2f} and {sides[1]:.2f} m to the left of the "
+                f"base{exchanged}; expected the left shoulder first"
+            )
+
+    def camera(self) -> None:
+        """The camera must move with the head or the trunk, near the robot."""
+        model, camera = self._model, self._description.camera
+        if camera is None:
+            return
+        if isinstance(camera, str):
+            body = model.body(int(model.cam_bodyid[model.camera(camera).id])).name
+        else:
+            body, leg = camera.body, float(np.linalg.norm(self._hips_above_feet[0]))
+            distance = float(np.linalg.norm(camera.position))
+            if distance > MAX_CAMERA * leg:
+                raise KeyMistake(
+                    f"camera.position: far from the body, got {distance:.2f} m; expected at most "
+                    f"{MAX_CAMERA * leg:.2f}, twice the length of a leg"
+                )
+        if body not in self._skeleton.group:
+            raise KeyMistake(
+                f"camera: body {body!r} is not part of the robot; expected one that is"
+            )
+        above = self._skeleton.chain(self._skeleton.group[body])
+        limbs = {name for leg in self._roles.legs for name in leg} | {
+            *(self._roles.shoulders or ())
+        }
+        if moving := [n for j in above if (n := self._skeleton.joints[j]) in limbs]:
+            raise KeyMistake(
+                f"camera: body {body!r} moves with joint {moving[0]!r} of a leg or an arm; "
+                "expected a camera on head or trunk"
             )
 
     def _require_axis(self, key: str, name: str, expected: str, axis: int) -> None:

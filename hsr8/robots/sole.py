@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 from hsr8.robots.description import SoleRectangle
 from hsr8.robots.key_mistake import KeyMistake, require_name
 from hsr8.robots.posed import Posed
+from hsr8.robots.roles import Roles
 
 Array = NDArray[np.float64]
 
@@ -48,21 +49,21 @@ class Rectangle:
 
 def soles_of(
     zero: Posed,
-    feet: tuple[str, str],
+    roles: Roles,
     stated: SoleRectangle | tuple[str, str] | None,
 ) -> tuple[tuple[Rectangle, Rectangle], list[str]]:
     """Return the left and the right sole, mirror images, and notes for people.
 
     Args:
         zero: the robot in the zero posture.
-        feet: bodies of the left and the right foot.
+        roles: of the robot's parts.
         stated: by the description.
-        source: named in errors.
 
     Raises:
-        ModelError: a foot has no shape, its sole is too small, or the soles differ.
+        KeyMistake: a foot has no shape, its sole is too small or above the ankle, or the soles
+            differ.
     """
-    both, notes = [], []
+    feet, both, notes = roles.feet, [], []
     for side, foot in enumerate(feet):
         if isinstance(stated, SoleRectangle):
             sole = _stated(zero.data.xpos[zero.model.body(foot).id], stated, side)
@@ -92,6 +93,13 @@ def soles_of(
             f"sole: that of foot {feet[0]!r} is too small to stand on, got "
             f"{1e3 * length:.0f} x {1e3 * width:.0f} mm; expected at least "
             f"{1e3 * MIN_SIDE:.0f} mm: state sole, or the zero posture in which the feet are flat"
+        )
+    ankle = min(float(zero.data.joint(name).xanchor[2]) for name in roles.legs[0][-2:])
+    if mean.height >= ankle:
+        raise KeyMistake(
+            f"sole: that of foot {feet[0]!r} is not below its ankle, got "
+            f"{1e3 * (mean.height - ankle):.0f} mm above it; expected less than 0: height is "
+            "usually negative"
         )
     notes.append(f"sole {1e3 * length:.0f} x {1e3 * width:.0f} mm")
     return (mean, mean.mirrored()), notes

@@ -32,7 +32,9 @@ ANYWHERE = [  # also of a model that does not exist
     ("camera = true", "camera: wrong type, got True; expected a name or a table"),
     ('camera = {body = "x", position = [1, 2]}', "camera.position: too short, got [1, 2]"),
     ('servo = "ruler"', "servo: wrong value, got 'ruler'; expected 'own' or 'rule'"),
-    ("servo.lag = 0", "servo.lag: wrong value, got 0; expected more than 0 s"),
+    ("servo.lag = 0", "servo.lag: wrong value, got 0; expected at least 0.001 s"),
+    ("zero" + "={a" * 300 + "=1" + "}" * 300, "too many tables within each other"),
+    ("radius = 0.001", "radius: wrong value, got 0.001; expected at least 0.01 m"),
     ("servo.lagg = 0.1", "servo.lagg: unknown key; did you mean 'lag'?"),
     ("zero = {l_knee = 90}", "zero.l_knee: wrong value, got 90; expected at most 7 rad"),
     ("zero = {l_knee = nan}", "zero.l_knee: wrong value, got nan; expected a finite number"),
@@ -67,6 +69,19 @@ IN_THE_MODEL = [
     ('camera = "x"', "camera: "),
     ('sole = ["x", "y"]', "sole: foot "),
     ('srdf = "none.srdf"\nstate = "home"', "srdf: "),
+    (
+        "range = {l_knee = [0.0, 1.0]}",
+        "range.l_knee: not the mirror image of 'r_knee' in the plane y = 0",
+    ),
+    (
+        "range = {l_hip_roll = [0.1, 0.7], r_hip_roll = [-0.7, -0.1]}",
+        "range.l_hip_roll: the ready posture is outside, got 0.0",
+    ),
+    ("effort = {l_knee = 0.1}", "effort.l_knee: too weak to carry the robot on one leg"),
+    (
+        "sole = {front = 0.1, back = -0.1, left = 0.05, right = -0.05, height = 0.1}",
+        "sole: that of foot ",
+    ),
 ]
 
 
@@ -165,6 +180,12 @@ def test_a_state_of_the_whole_body_completes_the_posture(described, tmp_path, ki
     assert load_robot(str(described(lines, kind))).description.posture == {"head_yaw": 0.1}
     lines += 'head = ["head_yaw", "head_pitch"]\n'
     assert load_robot(str(described(lines, kind))).description.posture == {}
+
+
+def test_joints_whose_range_excludes_zero_are_held_inside_it(described):
+    robot = load_robot(str(described("range = {l_shoulder_pitch = [1.0, 2.0]}")))
+    assert robot.description.posture == {"l_shoulder_pitch": pytest.approx(1.02)}
+    assert "posture: 'l_shoulder_pitch' 0.000 -> 1.020 rad, within its range" in robot.notes
 
 
 def test_package_folders_of_an_mjcf_file_are_refused(described):

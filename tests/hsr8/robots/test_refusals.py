@@ -114,7 +114,32 @@ EXCHANGED = {"feet": ("r_ankle_roll_link", "l_ankle_roll_link")}
         (
             {"shoulders": ("r_shoulder_pitch", "l_shoulder_pitch")},
             [],
-            ["shoulders: the arm of 'r_shoulder_pitch', the first, is to the right", "exchanged"],
+            ["shoulders: joints 'r_shoulder_pitch' and 'l_shoulder_pitch' do not", "exchanged"],
+        ),
+        (
+            {"shoulders": ("head_pitch", "r_shoulder_pitch")},
+            [],
+            ["shoulders: joints 'head_pitch' and", "got masses 0.00 and -0.11 m to the left of th"],
+        ),
+        (
+            {"head": ("head_yaw", "l_shoulder_pitch")},
+            [],
+            ["head: joints 'head_yaw' and 'l_shoulder_pitch' move different parts; expected"],
+        ),
+        (
+            {"head": ("head_yaw", "head_pitch")},
+            [setting("joint", "head_pitch", range="0.2 1")],
+            ["joint 'head_pitch': the head cannot look ahead, got a range of 0.2 to 1 rad"],
+        ),
+        (
+            {"camera": {"body": "l_knee_link", "position": (0.0, 0.0, 0.0)}},
+            [],
+            ["camera: body 'l_knee_link' moves with joint 'l_hip_yaw' of a leg or an arm"],
+        ),
+        (
+            {"camera": {"body": "torso", "position": (0.0, 0.0, 1.0)}},
+            [],
+            ["camera.position: far from the body, got 1.00 m; expected at most 0.80"],
         ),
         (
             {"shoulders": ("l_hip_pitch", "r_hip_pitch")},
