@@ -126,8 +126,8 @@ def _sheets(name: str, table: Table, times: NDArray[np.float64] | None) -> Itera
 
 def _texts(values: Any) -> Any:
     """Return bytes as hexadecimal digits, other values as they are."""
-    if len(values) and isinstance(values[0], bytes):
-        return [value.hex() for value in values]
+    if any(isinstance(value, bytes) for value in values[:1]):
+        return [value.hex() if value else None for value in values]
     return values
 
 
