@@ -6,7 +6,7 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-from hsr8.frame_record import FrameRecord, Image
+from hsr8.frame_record import FrameRecord
 from hsr8.recorder.rows import ImageRow, ParticleRow
 from hsr8.recorder.sampled_field import NO_FIELD, SampledField, sampled
 from hsr8.recorder.throttle import Throttle
@@ -85,9 +85,10 @@ class FrameSampler:
         return sampled(frame.motion.field, frame.belief.pose[:2], frame.task.target, self._scale)
 
 
-def image_row(frame: FrameRecord, image: Image, quality: int) -> ImageRow:
-    """Return the row of an image, compressed with a `quality` [%]."""
-    bgr = cv2.cvtColor(image, cv2.COLOR_RGB2BGR)
+def image_row(frame: FrameRecord, quality: int) -> ImageRow:
+    """Return the row of the image of a frame, compressed with a `quality` [%]."""
+    assert frame.image is not None
+    bgr = cv2.cvtColor(frame.image, cv2.COLOR_RGB2BGR)
     jpeg = cv2.imencode(".jpg", bgr, [cv2.IMWRITE_JPEG_QUALITY, quality])[1].tobytes()
     return ImageRow(frame.index, frame.time, frame.measured.time, jpeg)
 

@@ -1,8 +1,10 @@
 """Recorder: writes the tables of a run as it happens, one batch per second."""
 
 import errno
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterable, Sequence
+from concurrent.futures import ThreadPoolExecutor
 from contextlib import ExitStack
+from functools import partial
 from pathlib import Path
 from typing import Any, Self
 
@@ -11,7 +13,7 @@ from hsr8.record import Tick
 from hsr8.recorder.files.writing import GrowingFile, writing
 from hsr8.recorder.log_level import LogRates
 from hsr8.recorder.recorded import FrameSampler, image_row
-from hsr8.recorder.rows import TABLES
+from hsr8.recorder.rows import TABLES, ImageRow
 from hsr8.recorder.stream import CHECKSUMS, TableWriter
 from hsr8.recorder.table import Table
 from hsr8.recorder.throttle import Throttle
@@ -63,6 +65,7 @@ class Recorder:
             for name, rows in TABLES.items()
         }
         self._ticks: list[Tick] = []
+        self._encoder = ThreadPoolExecutor(1)  # of images, while the other tables are written
 
     def __enter__(self) -> Self:
         return self
@@ -71,6 +74,7 @@ class Recorder:
         """Write the remaining rows and close the files."""
         with ExitStack() as stack:
             stack.callback(self._checksums.close)
+            stack.callback(self._encoder.shutdown)
             for writer in self._writers.values():
                 stack.callback(writer.close)
             self._write()
@@ -94,32 +98,30 @@ class Recorder:
             if not self._folder.exists():  # open files outlive their folder
                 raise FileNotFoundError(errno.ENOENT, "the folder was removed")
         tables = {
-            name: self._writers[name].write(objects)
+            name: self._writers[name].write(rows)
             for name, objects in self._objects_of(ticks).items()
-            if objects
+            if (rows := [*objects])
         }
         for listener in self._listeners:
             listener(tables)
 
-    def _objects_of(self, ticks: Sequence[Tick]) -> dict[str, Sequence[Any]]:
+    def _objects_of(self, ticks: Sequence[Tick]) -> dict[str, Iterable[Any]]:
         """Return the recorded objects of each table."""
         records = [tick.record for tick in ticks if tick.record is not None]
         frames = [record.frame for record in records if record.frame is not None]
+        images = self._image_rows(frames)
         return {
             "ticks": ticks,
             "records": records,
             "frames": [*map(self._sampler.sample, frames)],
             "seconds": [second for tick in ticks for second in tick.seconds],
             "events": [event for tick in ticks for event in tick.events],
-            "images": self._image_rows(frames),
+            "images": images,
         }
 
-    def _image_rows(self, frames: Sequence[FrameRecord]) -> list[Any]:
+    def _image_rows(self, frames: Sequence[FrameRecord]) -> Iterable[ImageRow]:
+        """Return the rows of images, which are compressed in another thread."""
         if self._images is None or not self._images.jpeg:
-            return []
-        quality = self._images.jpeg
-        return [
-            image_row(frame, frame.image, quality)
-            for frame in frames
-            if frame.image is not None and self._throttle.due(frame.time)
-        ]
+            return ()
+        due = [f for f in frames if f.image is not None and self._throttle.due(f.time)]
+        return self._encoder.map(partial(image_row, quality=self._images.jpeg), due)

@@ -17,7 +17,7 @@ def batch_of(records, events=(), level=LogLevel.STANDARD):
         "records": records,
         "frames": [*map(sampler.sample, frames)],
         "events": [Event(*event) for event in events],
-        "images": [image_row(frame, frame.image, 75) for frame in images],
+        "images": [image_row(frame, 75) for frame in images],
     }
     return {
         name: Table.from_objects(name, TABLES[name], content)
