@@ -1,10 +1,11 @@
 """Rerun recording whose channels are sent together."""
 
 from collections.abc import Sequence
+from pathlib import Path
+from tempfile import TemporaryDirectory
 
 import rerun as rr
 import rerun.blueprint as rrb
-import rerun_bindings
 
 from hsr8.recorder.log.channel import Channel
 
@@ -26,29 +27,17 @@ class BlockStream(rr.RecordingStream):  # type: ignore[misc]  # Rerun is not typ
     def begin(self, sinks: Sequence[rr.FileSink | rr.GrpcSink], arrangement: rrb.Blueprint) -> None:
         """Send everything to `sinks` from now on, the viewer's `arrangement` first.
 
-        Rerun's `set_sinks` packs the arrangement with a stream that references itself, whose two
-        threads and one megabyte are never freed.
+        The arrangement takes the detour of a file: `set_sinks` and `send_blueprint` pack it with a
+        stream that references itself, whose two threads and two megabytes are never freed.
 
         Raises:
-            RuntimeError: a file cannot be written.
+            OSError, RuntimeError: a file cannot be written.
         """
-        packing = rr.RecordingStream._from_native(
-            rerun_bindings.new_blueprint(
-                application_id=APPLICATION,
-                make_default=False,
-                make_thread_default=False,
-                default_enabled=True,
-            )
-        )
-        packing.set_time("blueprint", sequence=0)
-        arrangement._log_to_stream(packing)
-        packed = packing.memory_recording().storage
-        try:
-            rerun_bindings.set_sinks(
-                list(sinks), default_blueprint=packed, recording=self.to_native()
-            )
-        finally:
-            packing.disconnect()
+        self.set_sinks(*sinks)
+        with TemporaryDirectory() as folder:
+            file = Path(folder, "arrangement.rbl")
+            arrangement.save(APPLICATION, file)
+            self.log_file_from_path(file)
 
     def add_channel(self, channel: Channel) -> None:
         """Send the rows of `channel` with every `send`."""

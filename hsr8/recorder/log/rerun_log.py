@@ -6,13 +6,12 @@ from pathlib import Path
 import mujoco
 import numpy as np
 import rerun as rr
-import rerun_bindings
 from numpy.typing import NDArray
 
 from hsr8.recorder import palette
 from hsr8.recorder.files.writing import failure
 from hsr8.recorder.log.belief_layer import BeliefLayer
-from hsr8.recorder.log.block_stream import BlockStream
+from hsr8.recorder.log.block_stream import APPLICATION, BlockStream
 from hsr8.recorder.log.blueprint import RobotView, blueprint
 from hsr8.recorder.log.camera_layer import CameraLayer
 from hsr8.recorder.log.channel import TIMELINE, Channel
@@ -74,7 +73,7 @@ class RerunLog:
         self._pose_throttle, self._frame_throttle = Throttle(rates.pose), Throttle(rates.frame)
         self._trail_throttle, self._path_throttle = Throttle(TRAIL_PERIOD), Throttle(1.0)
         # Without this call Rerun keeps the threads of streams that are no longer used.
-        rerun_bindings.flush_and_cleanup_orphaned_recordings()
+        rr.init(APPLICATION, init_logging=False)
         self._stream = BlockStream(path.parent.name)
         self._stream.set_log_time_enabled(False)
         sinks = [rr.FileSink(str(path), write_footer=scenario.duration <= MAX_INDEXED)]
@@ -91,7 +90,7 @@ class RerunLog:
         )
         try:
             self._stream.begin(sinks, shown)
-        except RuntimeError as error:
+        except (OSError, RuntimeError) as error:
             raise failure(self._folder, f"the log: {error}") from error
         self._stream.send_recording_name(f"{scenario.name} {scenario.seed}")
         self._stream.log("/", rr.ViewCoordinates.RIGHT_HAND_Z_UP, static=True)
