@@ -19,18 +19,16 @@ class LogRates:
     Attributes:
         pose: between two poses and points of curves [s].
         frame: between two camera frames [s].
-        map: between two local maps, particle clouds and planner fields [s].
         jpeg: quality of the images, 0 for neither images nor beliefs [%].
     """
 
     pose: float
     frame: float
-    map: float
     jpeg: int
 
 
 RATES = {
-    LogLevel.MINIMAL: LogRates(pose=0.06, frame=0.18, map=0.0, jpeg=0),
-    LogLevel.STANDARD: LogRates(pose=0.06, frame=0.18, map=1.0, jpeg=75),
-    LogLevel.FULL: LogRates(pose=0.0, frame=0.0, map=0.0, jpeg=90),
+    LogLevel.MINIMAL: LogRates(pose=0.06, frame=0.18, jpeg=0),
+    LogLevel.STANDARD: LogRates(pose=0.06, frame=0.18, jpeg=75),
+    LogLevel.FULL: LogRates(pose=0.0, frame=0.0, jpeg=90),
 }

@@ -10,7 +10,7 @@ from typing import Any, Self
 
 from hsr8.frame_record import FrameRecord
 from hsr8.record import Tick
-from hsr8.recorder.files.writing import GrowingFile, writing
+from hsr8.recorder.files.writing import writing
 from hsr8.recorder.log_level import LogRates
 from hsr8.recorder.recorded import FrameSampler, image_row
 from hsr8.recorder.rows import TABLES, ImageRow
@@ -58,7 +58,8 @@ class Recorder:
         self._sampler = FrameSampler(scale)
         self._images = images
         self._throttle = Throttle(images.frame if images else 0.0)
-        self._checksums = GrowingFile(folder / CHECKSUMS)
+        with writing(folder):
+            self._checksums = (folder / CHECKSUMS).open("wb")
         labels = {"joints": joints}
         self._writers = {
             name: TableWriter(folder, name, rows, labels, self._checksums)
@@ -72,7 +73,7 @@ class Recorder:
 
     def __exit__(self, *_: object) -> None:
         """Write the remaining rows and close the files."""
-        with ExitStack() as stack:
+        with writing(self._folder), ExitStack() as stack:
             stack.callback(self._checksums.close)
             stack.callback(self._encoder.shutdown)
             for writer in self._writers.values():

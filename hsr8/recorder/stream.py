@@ -10,19 +10,18 @@ import io
 import zlib
 from collections.abc import Mapping, Sequence
 from pathlib import Path
-from typing import Any
+from typing import Any, BinaryIO
 
 import pyarrow as pa
 
 from hsr8.errors import UsageError
 from hsr8.recorder.columns import batch_of, schema_of
-from hsr8.recorder.files.writing import GrowingFile, writing
+from hsr8.recorder.files.writing import writing
 from hsr8.recorder.table import Table
 
 SUFFIX = ".arrows"
 CHECKSUMS = "checksums.txt"
 OPTIONS = pa.ipc.IpcWriteOptions(compression="lz4", use_threads=False)  # zstd: 7 % less, 6x as slow
-BUFFER = 1 << 20  # joins the many small pieces that Arrow writes [byte]
 
 
 class TableWriter:
@@ -48,84 +47,54 @@ class TableWriter:
         name: str,
         rows: type,
         labels: Mapping[str, Sequence[str]],
-        checksums: GrowingFile,
+        checksums: BinaryIO,
     ) -> None:
         self._folder = folder
         self._name = name
         self._rows = rows
         self._labels = labels
         self._checksums = checksums
-        self._file: _CheckedFile | None = None
-        self._writer: pa.RecordBatchStreamWriter | None = None
+        self._sink = io.BytesIO()  # joins the many small pieces that Arrow writes
+        self._file: io.FileIO | None = None
+        self._size = 0
         self.count = 0
 
     def write(self, objects: Sequence[Any]) -> Table:
         """Append recorded objects, at least one, and return their rows as a table."""
         with writing(self._folder):
-            if self._writer is None:
+            if self._file is None:
                 self._schema = schema_of(self._rows, objects, self._labels)
-                self._file = _CheckedFile(self._folder / f"{self._name}{SUFFIX}")
-                self._buffer = pa.BufferedOutputStream(pa.PythonFile(self._file, "w"), BUFFER)
-                self._writer = pa.ipc.new_stream(self._buffer, self._schema, options=OPTIONS)
+                self._file = io.FileIO(self._folder / f"{self._name}{SUFFIX}", "w")
+                self._writer = pa.ipc.new_stream(self._sink, self._schema, options=OPTIONS)
             batch = batch_of(self._rows, objects, self._schema)
             self._writer.write_batch(batch)
-        self.count += len(objects)
-        self._end_part()
+            self.count += len(objects)
+            self._write_part(self._file)
         return Table(self._name, pa.Table.from_batches([batch]))
 
     def close(self) -> None:
         """End the stream and close the file."""
-        if self._file is None or self._writer is None or self._file.closed:
+        if self._file is None or self._file.closed:
             return
-        try:
-            with writing(self._folder):
-                self._writer.close()
-            self._end_part()
-        finally:
-            self._file.close()
+        with writing(self._folder), self._file:
+            self._writer.close()
+            self._write_part(self._file)
 
-    def _end_part(self) -> None:
+    def _write_part(self, file: io.FileIO) -> None:
         """Write the bytes since the last call and their checksum."""
-        assert self._file is not None
-        with writing(self._folder):
-            self._buffer.flush()
-            size, checksum = self._file.end_part()
-        line = f"{self._name} {self.count} {size} {checksum:08x}\n"
-        self._checksums.write(line.encode())
-        self._checksums.flush()
-
-
-class _CheckedFile(io.RawIOBase):
-    """File that is written with a checksum of each part."""
-
-    def __init__(self, path: Path) -> None:
-        self._file = path.open("wb", buffering=0)
-        self._pieces: list[bytes] = []
-        self._size = 0
-
-    def writable(self) -> bool:
-        return True
-
-    def write(self, piece: Any) -> int:
-        self._pieces.append(bytes(piece))
-        return len(piece)
-
-    def close(self) -> None:
-        self._file.close()
-        super().close()
-
-    def end_part(self) -> tuple[int, int]:
-        """Write the pieces; return the size of the file and the checksum of the part."""
-        part, self._pieces = b"".join(self._pieces), []
-        rest = part
+        part = rest = self._sink.getvalue()
+        self._sink.seek(0)
+        self._sink.truncate()
         try:
             while rest:  # a disk that is nearly full takes some of the bytes
-                rest = rest[self._file.write(rest) :]
+                rest = rest[file.write(rest) :]
         except OSError:
-            self.close()  # nothing follows a part that is cut off
+            file.close()  # nothing follows a part that is cut off
             raise
         self._size += len(part)
-        return self._size, zlib.crc32(part)
+        line = f"{self._name} {self.count} {self._size} {zlib.crc32(part):08x}\n"
+        self._checksums.write(line.encode())
+        self._checksums.flush()
 
 
 def read_table(path: Path, rows: type, *, whole: bool) -> Table:

@@ -9,7 +9,6 @@ from numpy.typing import NDArray
 
 from hsr8.errors import RecordingFailed, UsageError
 from hsr8.recorder.columns import columns_of
-from hsr8.recorder.files.writing import GrowingFile
 from hsr8.recorder.rows import TABLES
 from hsr8.recorder.stream import CHECKSUMS, TableWriter, read_table
 
@@ -80,7 +79,7 @@ def write_all(writer, content, size=7):
 
 
 def written(folder, content):
-    checksums = GrowingFile(folder / CHECKSUMS)
+    checksums = (folder / CHECKSUMS).open("wb")
     writer = TableWriter(folder, "things", Row, {"joints": ("hip", "knee", "ankle")}, checksums)
     write_all(writer, content)
     writer.close()
@@ -149,7 +148,7 @@ def test_checksums_cut_off_at_any_byte_lose_the_last_batches_only(tmp_path):
 
 @pytest.mark.parametrize("size", [100, 3000, 7001])
 def test_a_full_disk_is_one_error_and_the_whole_batches_stay(tmp_path, size):
-    content, lines = rows(70), GrowingFile(tmp_path / CHECKSUMS)
+    content, lines = rows(70), (tmp_path / CHECKSUMS).open("wb")
     writer = TableWriter(tmp_path, "things", Row, {}, lines)
     limits = resource.getrlimit(resource.RLIMIT_FSIZE)
     resource.setrlimit(resource.RLIMIT_FSIZE, (size, limits[1]))
