@@ -128,8 +128,8 @@ def _built(description: RobotDescription, file: Path, model_file: Path) -> Loade
     check_roles(model, roles, description, source)
     soles, sole_notes = soles_of(zero, roles, description.sole)
     servo_notes = choose_servos(raw.spec, model, roles, description, soles[0].height)
-    normal = normalise(raw.spec, zero, roles, soles, description)
     with reading_models(source):
+        normal = normalise(raw.spec, zero, roles, soles, description)
         compiled = normal.spec.copy().compile()
     _compare(model, compiled, description, source)
     posture = {**description.posture, **description.zero}

@@ -110,6 +110,8 @@ class _Mechanism:
         lower, upper = limits.tolist()
         if lower > upper:
             raise self._error(f"{who}: {name}, got {lower:g} {upper:g}; expected lower < upper")
+        if name != "range" and not lower <= 0.0 <= upper:
+            raise self._error(f"{who}: {name}, got {lower:g} {upper:g}; expected 0 in it")
 
     def ties(self) -> None:
         """No constraint may close a chain, hold the robot, or couple joints of the legs."""

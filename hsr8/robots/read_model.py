@@ -48,8 +48,6 @@ def read_model(file: Path, description: RobotDescription, folder: Path) -> RawMo
     """
     if file.suffix.lower() == ".urdf":
         converted = convert(file, description, folder)
-        with reading_models(str(file)):
-            _check_joints(converted.spec)
         _set_ranges(converted.spec, converted.description.range)
         return RawModel(converted.spec, converted.description, converted.notes)
     if description.packages:
@@ -57,7 +55,6 @@ def read_model(file: Path, description: RobotDescription, folder: Path) -> RawMo
     angles = stated_posture(description, folder)
     with reading_models(str(file)):
         spec = read_mjcf(file, description.feet[0])
-        _check_joints(spec)
     check_joint_names(description, [j.name for j in spec.joints if j.type == HINGE])
     for name in dict.fromkeys(description.rigid):
         _make_rigid(spec, name, (angles | description.zero).get(name, 0.0))
@@ -68,15 +65,6 @@ def read_model(file: Path, description: RobotDescription, folder: Path) -> RawMo
     stated = {key: {n: v for n, v in table.items() if n in names} for key, table in known.items()}
     notes = [f"{len(description.rigid)} joints made rigid"] if description.rigid else []
     return RawModel(spec, description.model_copy(update={**stated, "rigid": ()}), tuple(notes))
-
-
-def _check_joints(spec: mujoco.MjSpec) -> None:
-    """Refuse quantities that MuJoCo compiles but that make a robot diverge."""
-    for joint in spec.joints:
-        for name in ("armature", "damping", "frictionloss"):
-            value = float(np.min(getattr(joint, name)))
-            if value < 0.0:
-                raise ValueError(f"joint {joint.name!r}: {name}, got {value:g}; expected >= 0")
 
 
 def _set_ranges(spec: mujoco.MjSpec, ranges: Mapping[str, tuple[float, float]]) -> None:

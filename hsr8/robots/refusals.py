@@ -47,8 +47,8 @@ def check_roles(
         KeyMistake: a key of the description is wrong.
         ModelError: an element of the model is wrong.
     """
-    check = _Checks(model, roles, description, source)
     check_mechanism(model, roles, description, source)
+    check = _Checks(model, roles, description, source)
     check.ranges()
     check.base()
     check.sides()

@@ -72,7 +72,7 @@ def soles_of(
             if not groups:
                 raise KeyMistake(
                     f"sole: missing, and foot {foot!r} has no shape; expected {{front, back, left, "
-                    "right, height}} [m]"
+                    "right, height} [m]"
                 )
             sole = _lowest(groups)
         both.append(sole)

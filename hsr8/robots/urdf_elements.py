@@ -15,6 +15,7 @@ Array = NDArray[np.float64]
 Element = ElementTree.Element
 Color = tuple[float, ...]
 TURNING = ("revolute", "continuous")
+MAX_OFFSET = 5.0  # of a link from its parent [m]
 
 
 @dataclass(frozen=True, slots=True)
@@ -228,7 +229,17 @@ class ElementReader:
         elif limits[0] > limits[1]:
             raise ModelError(
                 f"{self.file}: {owner}: lower limit above the upper one, got {limits[0]:g} .. "
-                f"{limits[1]:g}"
+                f"{limits[1]:g}; expected lower <= upper"
+            )
+        for key in ("damping", "friction"):
+            value = of(key, "0", dynamics)
+            if not 0.0 <= value < inf:
+                raise ModelError(f"{self.file}: {owner}: {key}, got {value:g}; expected >= 0")
+        pose = self._pose(element, owner)
+        if np.abs(pose[:3, 3]).max() > MAX_OFFSET:
+            raise ModelError(
+                f"{self.file}: {owner}: origin, got {pose[:3, 3]} m; expected at most "
+                f"{MAX_OFFSET:g} m from the parent link"
             )
         follows = None
         if mimic is not None:
@@ -239,7 +250,7 @@ class ElementReader:
             type=kind,
             parent=end("parent"),
             child=end("child"),
-            pose=self._pose(element, owner),
+            pose=pose,
             axis=axis / max(length, 1e-9),
             range=limits,
             effort=of("effort", "nan"),

@@ -1,3 +1,4 @@
+import re
 from xml.etree import ElementTree
 
 import mujoco
@@ -6,7 +7,7 @@ import pytest
 from hsr8.errors import ModelError
 from hsr8.robots.loaded import build_robot
 from hsr8.robots.mjcf import read_mjcf
-from tests.hsr8.robots.robot_parts import described, part
+from tests.hsr8.robots.robot_parts import described, part, setting
 from tests.hsr8.robots.small_humanoid import SmallHumanoid
 
 BALL = """
@@ -27,6 +28,40 @@ def read(tmp_path):
         return read_mjcf(file, foot).compile()
 
     return read_changed
+
+
+def option(**values):
+    return lambda root: root.find("option").attrib.update(values)
+
+
+@pytest.mark.parametrize(
+    ("change", "reason"),
+    [
+        (option(timestep="0"), "option: timestep, got 0 s; expected at least 1e-05"),
+        (option(timestep="nan"), "option: timestep, got nan s"),
+        (
+            setting("joint", "l_knee", range="nan nan"),
+            "joint 'l_knee': range, got nan nan; expecte",
+        ),
+        (
+            setting("joint", "l_knee", damping="inf"),
+            "joint 'l_knee': damping, got inf; expected fi",
+        ),
+        (
+            setting("joint", "l_knee", damping="-1"),
+            "joint 'l_knee': damping, got -1; expected >= 0",
+        ),
+        (setting("joint", "l_knee", stiffness="-1"), "'l_knee': stiffness, got -1; expected >= 0"),
+        (
+            setting("body", "torso", pos="inf 0 0"),
+            "body 'torso': pos, got inf 0 0; expected finite",
+        ),
+        (setting("body", "torso", pos="0 0 1e9"), "body 'torso': 1e+09 m from the body that carr"),
+    ],
+)
+def test_numbers_that_are_not_those_of_a_robot_are_refused(read, change, reason):
+    with pytest.raises(ValueError, match=re.escape(reason)):
+        read(change)
 
 
 def names(model):

@@ -36,7 +36,7 @@ ROBOT = "hsr8/hsr8.xml"
             "armature, got -0.005; expected >= 0",
         ),
         (ROBOT, 'kp="120"', 'kp="-120"', "'l_hip_yaw': kp, got -120; expected > 0"),
-        (ROBOT, 'damping="0.1"', 'damping="inf"', "not finite"),
+        (ROBOT, 'damping="0.1"', 'damping="inf"', "damping, got inf; expected finite numbers"),
         ("field/vision.xml", 'name="floor"', 'name="ground"', "'floor'"),
         (None, "", "", "install hsr8 again"),
     ],

@@ -222,6 +222,11 @@ EXCHANGED = {"feet": ("r_ankle_roll_link", "l_ankle_roll_link")}
         ),
         (
             {},
+            [setting("position", "l_knee", forcerange="1 60")],
+            ["actuator 'l_knee': forcerange, got 1 60; expected 0 in it"],
+        ),
+        (
+            {},
             [
                 removing("position", "l_elbow2_pitch"),
                 lambda root: root.find("actuator").append(

@@ -27,6 +27,14 @@ def set_limit(name, **limits):
     return lambda robot: joint(robot, name).find("limit").attrib.update(limits)
 
 
+def set_dynamics(name, **values):
+    return lambda robot: joint(robot, name).find("dynamics").attrib.update(values)
+
+
+def set_origin(name, xyz):
+    return lambda robot: joint(robot, name).find("origin").set("xyz", xyz)
+
+
 def set_inertia(name, **moments):
     return lambda robot: link(robot, name).find("inertial/inertia").attrib.update(moments)
 
@@ -192,6 +200,9 @@ def unchanged(_robot):
             "<inertia>",
         ),
         (set_inertia("l_knee_link", ixx="x"), {}, "link 'l_knee_link': ixx, got 'x'", "a number"),
+        (set_dynamics("l_knee", damping="-1"), {}, "'l_knee': damping, got -1", "expected >= 0"),
+        (set_dynamics("l_knee", friction="inf"), {}, "'l_knee': friction, got inf", "expected >="),
+        (set_origin("l_knee", "0 0 -9"), {}, "joint 'l_knee': origin, got", "at most 5 m"),
         (no_mass, {}, "l_hip_yaw: moves no mass", "six driven joints"),
         (bare_foot, {}, "sole: foot 'l_foot' has no shape", "state `sole`"),
         (mesh_foot, {}, "mesh not found, got 'package://small_description/foot.stl'", "`packages`"),
