@@ -2,7 +2,7 @@
 
 import tomllib
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass
 from math import isfinite
 from pathlib import Path
 from typing import Any
@@ -10,8 +10,7 @@ from typing import Any
 import numpy as np
 
 from hsr8.errors import UsageError
-from hsr8.evaluation.mcnemar import PairedOutcomes
-from hsr8.evaluation.paired import compare_paired
+from hsr8.evaluation.paired import PairedDifference, compare_successes, compare_values
 from hsr8.evaluation.sweep.definition import (
     Definition,
     Differences,
@@ -59,30 +58,16 @@ class Side:
     runs: dict[int, RunResult]
 
 
-@dataclass(frozen=True, slots=True)
-class MetricDifference:
-    """Difference of one metric, B against A.
+@dataclass(frozen=True, kw_only=True, slots=True)
+class MetricDifference(PairedDifference):
+    """Difference of one metric over the seeds that have it on both sides.
 
     Attributes:
         metric: name.
-        test: "McNemar" for proportions, else "Wilcoxon".
-        n: number of seeds with the metric on both sides.
-        a, b: proportion or mean.
-        difference: b - a.
-        low, high: its 95 % interval.
-        p_value: two-sided.
         only_a, only_b: for a proportion, seeds on which only one side succeeded.
     """
 
     metric: str
-    test: str
-    n: int
-    a: float
-    b: float
-    difference: float
-    low: float
-    high: float
-    p_value: float
     only_a: tuple[int, ...] = ()
     only_b: tuple[int, ...] = ()
 
@@ -202,27 +187,14 @@ def _difference(metric: str, a: Side, b: Side, seeds: Sequence[int]) -> MetricDi
     if not pairs:
         return None
     if all(isinstance(value, bool) for pair in pairs.values() for value in pair):
-        return _proportion_difference(metric, pairs)
-    d = compare_paired(*np.array(list(pairs.values()), float).T)
-    return MetricDifference(
-        metric, "Wilcoxon", d.n, d.mean_a, d.mean_b, d.mean, d.low, d.high, d.p_value
-    )
-
-
-def _proportion_difference(metric: str, pairs: dict[int, tuple[bool, bool]]) -> MetricDifference:
-    counts = PairedOutcomes.count([x for x, _ in pairs.values()], [y for _, y in pairs.values()])
-    return MetricDifference(
-        metric,
-        "McNemar",
-        counts.n,
-        (counts.both + counts.only_a) / counts.n,
-        (counts.both + counts.only_b) / counts.n,
-        counts.difference,
-        *counts.interval(),
-        counts.p_value(),
-        tuple(seed for seed, (x, y) in pairs.items() if x and not y),
-        tuple(seed for seed, (x, y) in pairs.items() if y and not x),
-    )
+        return MetricDifference(
+            **asdict(compare_successes(*zip(*pairs.values(), strict=True))),
+            metric=metric,
+            only_a=tuple(seed for seed, (x, y) in pairs.items() if x and not y),
+            only_b=tuple(seed for seed, (x, y) in pairs.items() if y and not x),
+        )
+    difference = compare_values(*np.array(list(pairs.values()), float).T)
+    return MetricDifference(**asdict(difference), metric=metric)
 
 
 def _value(run: RunResult, metric: str) -> Any:

@@ -13,8 +13,7 @@ import numpy as np
 import rerun as rr
 from numpy.typing import NDArray
 
-from hsr8.recorder.log.block_stream import BlockStream
-from hsr8.recorder.log.channel import Channel
+from hsr8.recorder.log.channel import BlockStream, Channel
 from hsr8.robots.normal_form import HEAD_CAMERA
 from hsr8.robots.shown import VISUAL_GROUPS
 from walking.body.sole import Sole

@@ -7,8 +7,7 @@ import rerun as rr
 from numpy.typing import NDArray
 
 from hsr8.recorder import ellipse, palette
-from hsr8.recorder.log.block_stream import BlockStream
-from hsr8.recorder.log.channel import Channel
+from hsr8.recorder.log.channel import BlockStream, Channel
 from hsr8.recorder.table import Table
 from navigation.angles import wrap
 

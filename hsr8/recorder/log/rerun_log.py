@@ -11,10 +11,9 @@ from numpy.typing import NDArray
 from hsr8.recorder import palette
 from hsr8.recorder.files.writing import failure
 from hsr8.recorder.log.belief_layer import BeliefLayer
-from hsr8.recorder.log.block_stream import APPLICATION, BlockStream
 from hsr8.recorder.log.blueprint import RobotView, blueprint
 from hsr8.recorder.log.camera_layer import CameraLayer
-from hsr8.recorder.log.channel import TIMELINE, Channel
+from hsr8.recorder.log.channel import APPLICATION, TIMELINE, BlockStream, Channel
 from hsr8.recorder.log.geometry import Scene, sole_outline
 from hsr8.recorder.log.plan_layer import PlanLayer
 from hsr8.recorder.log.plot_layer import PlotLayer

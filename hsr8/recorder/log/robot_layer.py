@@ -7,8 +7,7 @@ import numpy as np
 import rerun as rr
 from numpy.typing import NDArray
 
-from hsr8.recorder.log.block_stream import BlockStream
-from hsr8.recorder.log.channel import Channel
+from hsr8.recorder.log.channel import BlockStream, Channel
 from hsr8.recorder.log.geometry import batches_of, colors, poses, shapes
 from hsr8.robots.loaded import LoadedRobot
 from hsr8.robots.shown import VISUAL_GROUPS, visual_model

@@ -10,8 +10,7 @@ from numpy.typing import NDArray
 from hsr8.recorder import palette
 from hsr8.recorder.arc import mean_velocity
 from hsr8.recorder.limit_bits import LIMITS, limit_bits
-from hsr8.recorder.log.block_stream import BlockStream
-from hsr8.recorder.log.channel import Channel
+from hsr8.recorder.log.channel import BlockStream, Channel
 from hsr8.recorder.log.plot_layer import BLUE, GREEN, GREY, ORANGE, RED, SAND, VIOLET, Curves, Lane
 from hsr8.recorder.table import Table
 from hsr8.recorder.world_frame import LIGHT, WorldFrame

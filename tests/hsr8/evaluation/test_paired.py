@@ -3,8 +3,9 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from hsr8.evaluation.paired import compare_paired
+from hsr8.evaluation.paired import compare_successes, compare_values
 
+SUCCESSES = st.lists(st.tuples(st.booleans(), st.booleans()), min_size=1, max_size=60)
 VALUES = st.lists(st.floats(-100, 100).map(lambda v: round(v, 3)), min_size=2, max_size=12)
 
 
@@ -12,8 +13,8 @@ VALUES = st.lists(st.floats(-100, 100).map(lambda v: round(v, 3)), min_size=2, m
 @given(VALUES, st.floats(0.5, 10.0))
 def test_a_shift_is_found_exactly(values, shift):
     a = np.array(values)
-    found = compare_paired(a, a + shift)
-    assert found.mean == pytest.approx(shift)
+    found = compare_values(a, a + shift)
+    assert found.difference == pytest.approx(shift)
     assert (found.low, found.high) == pytest.approx((shift, shift))
     assert found.n == len(values)
 
@@ -22,27 +23,56 @@ def test_a_shift_is_found_exactly(values, shift):
 @given(st.lists(st.tuples(st.integers(-9, 9), st.integers(-9, 9)), min_size=1, max_size=6))
 def test_swapping_turns_it_round(pairs):
     a, b = np.array(pairs, float).T
-    one, other = compare_paired(a, b), compare_paired(b, a)
-    assert one.mean == -other.mean
+    one, other = compare_values(a, b), compare_values(b, a)
+    assert one.difference == -other.difference
     assert (one.low, one.high) == pytest.approx((-other.high, -other.low))
     assert one.p_value == pytest.approx(other.p_value)
-    assert one.low <= one.mean <= one.high
+    assert one.low <= one.difference <= one.high
 
 
 def test_the_same_is_no_difference():
     a = np.array([1.0, 2.0, 3.0])
-    found = compare_paired(a, a)
-    assert (found.mean, found.low, found.high, found.p_value) == (0.0, 0.0, 0.0, 1.0)
+    found = compare_values(a, a)
+    assert (found.difference, found.low, found.high, found.p_value) == (0.0, 0.0, 0.0, 1.0)
 
 
 def test_a_clear_difference_is_significant_and_noise_is_not():
     rng = np.random.default_rng(3)
     a, noise = rng.normal(size=(2, 40))
-    assert compare_paired(a, a + 1.0 + 0.3 * noise).p_value < 1e-6
-    assert compare_paired(a, a + noise - noise.mean()).p_value > 0.05
+    assert compare_values(a, a + 1.0 + 0.3 * noise).p_value < 1e-6
+    assert compare_values(a, a + noise - noise.mean()).p_value > 0.05
 
 
 @pytest.mark.parametrize("b", [[1.0], [1.0, np.nan], [[1.0, 2.0]]])
 def test_what_does_not_pair_is_refused(b):
     with pytest.raises(ValueError):
-        compare_paired(np.array([1.0, 2.0]), np.array(b))
+        compare_values(np.array([1.0, 2.0]), np.array(b))
+
+
+def successes(pairs):
+    return compare_successes(*zip(*pairs, strict=True))
+
+
+@settings(max_examples=30, deadline=None)
+@given(SUCCESSES)
+def test_swapping_proportions_negates_the_difference_and_keeps_the_p_value(pairs):
+    one, other = successes(pairs), successes([(b, a) for a, b in pairs])
+    assert one.difference == -other.difference == pytest.approx(one.b - one.a)
+    assert (one.n, one.a, one.b) == (len(pairs), other.b, other.a)
+    assert one.p_value == pytest.approx(other.p_value)
+    assert (one.low, one.high) == pytest.approx((-other.high, -other.low))
+    assert -1.0 <= one.low <= one.difference <= one.high <= 1.0
+    assert 0.0 < one.p_value <= 1.0
+
+
+@settings(max_examples=30, deadline=None)
+@given(SUCCESSES, st.integers(1, 50))
+def test_seeds_with_equal_outcomes_do_not_change_the_p_value(pairs, more):
+    assert successes(pairs + [(True, True)] * more).p_value == successes(pairs).p_value
+
+
+def test_discordant_pairs_are_a_binomial_test():
+    better, equal = [(False, True)] * 5, [(True, True)] * 90
+    assert successes([*equal, *better]).p_value == pytest.approx(2 * 0.5**5)
+    assert successes([(True, False), (False, True)]).p_value == 1.0
+    assert successes(equal).p_value == 1.0

@@ -2,7 +2,7 @@ import mujoco
 import numpy as np
 import pytest
 
-from hsr8.recorder.log.block_stream import BlockStream
+from hsr8.recorder.log.channel import BlockStream
 from hsr8.recorder.log.geometry import (
     Scene,
     batches_of,

@@ -11,7 +11,7 @@ import rerun as rr
 from rerun.chunk import RrdReader
 
 from hsr8.errors import RecordingFailed
-from hsr8.recorder.log.block_stream import BlockStream
+from hsr8.recorder.log.channel import BlockStream
 from hsr8.recorder.log.rerun_log import MAX_INDEXED, WRITE_TIMEOUT, RerunLog
 from hsr8.recorder.log_level import LogLevel
 from hsr8.robots.loaded import load_robot
@@ -199,7 +199,7 @@ def test_a_log_that_cannot_be_written_is_abandoned(log, walk, monkeypatch):
 
     monkeypatch.setattr(BlockStream, "flush", stalled)
     monkeypatch.setattr(BlockStream, "disconnect", lambda stream: pytest.fail("waits for ever"))
-    monkeypatch.setattr("hsr8.recorder.log.block_stream.ABANDONED", left)
+    monkeypatch.setattr("hsr8.recorder.log.channel.ABANDONED", left)
     monkeypatch.setattr(rr, "unregister_shutdown", lambda: left.append("at the end of the process"))
     log.add(batch_of(walk(0.1)))
     with pytest.raises(RecordingFailed, match="timed out"):
@@ -223,8 +223,7 @@ def test_a_killed_run_leaves_a_log_that_opens(tmp_path):
     """The process is ended by the system, without a chance to finish the file."""
     script = """
 import os, sys, rerun as rr
-from hsr8.recorder.log.block_stream import BlockStream
-from hsr8.recorder.log.channel import Channel
+from hsr8.recorder.log.channel import BlockStream, Channel
 stream = BlockStream("killed")
 stream.save(sys.argv[1])
 channel = Channel(stream, "/plots/x", rr.Scalars)

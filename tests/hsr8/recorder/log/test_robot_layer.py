@@ -4,7 +4,7 @@ import mujoco
 import numpy as np
 import pytest
 
-from hsr8.recorder.log.block_stream import BlockStream
+from hsr8.recorder.log.channel import BlockStream
 from hsr8.recorder.log.robot_layer import RobotLayer, followed_entity
 from hsr8.robots.loaded import load_robot
 from hsr8.robots.shown import VISUAL_GROUPS, visual_model
