@@ -8,14 +8,12 @@ from operator import attrgetter
 from typing import Any
 
 import numpy as np
-import pyarrow as pa
 
 from hsr8.body_builder import build_body, build_model
 from hsr8.decisions import DecisionContext
 from hsr8.errors import SimulationDiverged
 from hsr8.frame_record import FrameRecord
 from hsr8.loop import HASH
-from hsr8.recorder.columns import batch_of
 from hsr8.recorder.recorded import FrameSampler, RecordedFrame
 from hsr8.recorder.rows import TABLES, FrameRow
 from hsr8.recorder.run.run_reader import Run
@@ -113,32 +111,21 @@ def replay_decisions(run: Run) -> tuple[Replayed, Replayed]:
 
     The decisions are compared up to the first difference of the estimator.
     """
-    different, count = _first_difference(run), len(run.frames)
-    estimator, decisions = (
-        different
-        if different is not None and different.stage == stage
-        else Replayed(stage, "frames", count)
-        for stage in ("estimator", "decisions")
-    )
-    return estimator, decisions
-
-
-def _first_difference(run: Run) -> Replayed | None:
     frames, computed = run.frames, _computed(run)
+    stages = {name: Replayed(name, "frames", len(frames)) for name in ("estimator", "decisions")}
     for first in range(0, len(frames), CHUNK):
         recorded = frames.rows(first, first + CHUNK)
-        rows = list(islice(computed, len(recorded)))
-        row, stage, channel = len(rows), "estimator", "order"
-        if rows:
-            batch = batch_of(FrameRow, rows, frames.arrow.schema)
-            cell = first_cell(recorded, Table("frames", pa.Table.from_batches([batch])))
-            if cell is not None:
-                row, channel = cell.row, cell.channel
-                stage = "estimator" if cell.column in BELIEF else "decisions"
+        again = list(islice(computed, len(recorded)))
+        row, stage, channel = len(again), "estimator", "order"
+        cell = first_cell(recorded, Table.from_objects("frames", FrameRow, again))
+        if cell is not None:
+            row, channel = cell.row, cell.channel
+            stage = "estimator" if cell.column in BELIEF else "decisions"
         if row < len(recorded):
             time = float(recorded["time"][row])
-            return Replayed(stage, "frames", len(frames), first + row, time, channel)
-    return None
+            stages[stage] = Replayed(stage, "frames", len(frames), first + row, time, channel)
+            break
+    return stages["estimator"], stages["decisions"]
 
 
 def _computed(run: Run) -> Iterator[RecordedFrame]:

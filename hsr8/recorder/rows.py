@@ -24,12 +24,10 @@ Array = NDArray[np.float64]
 Vector = Array | tuple[float, ...]
 Shades = NDArray[np.uint8]
 
-UNKNOWN = np.full(3, np.nan)
-
 
 def _limited_command(record: TickRecord) -> Vector:
     report = record.walking.command_limits
-    return UNKNOWN if report is None else report.commanded.velocity
+    return np.full(3, np.nan) if report is None else report.commanded.velocity
 
 
 def _limits(record: TickRecord) -> int:

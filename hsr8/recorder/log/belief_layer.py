@@ -8,6 +8,7 @@ from numpy.typing import NDArray
 
 from hsr8.recorder import ellipse, palette
 from hsr8.recorder.log.channel import BlockStream, Channel
+from hsr8.recorder.log.geometry import raised
 from hsr8.recorder.table import Items, Table
 from navigation.belief.belief import Motion
 
@@ -69,7 +70,7 @@ class BeliefLayer:
         """
         times, poses = shown["time"].tolist(), shown["pose"]
         ones = [1] * len(times)
-        centres = _flat(poses[:, :2])
+        centres = raised(poses[:, :2], MARK_HEIGHT)
         ahead = np.column_stack([np.cos(poses[:, 2]), np.sin(poses[:, 2]), np.zeros(len(poses))])
         self._pose.add_rows(
             times, ones, origins=centres, vectors=HEADING_LENGTH * self._scale * ahead
@@ -90,7 +91,7 @@ class BeliefLayer:
 
     def _add_tracks(self, times: list[float], tracks: Items) -> None:
         n, rows = len(times), tracks.parents
-        centres = _flat(tracks["position"])
+        centres = raised(tracks["position"], MARK_HEIGHT)
         colors = [
             palette.packed(palette.of_label(label), SEEN if visible else UNSEEN)
             for label, visible in zip(tracks["label"], tracks["visible"], strict=True)
@@ -126,7 +127,7 @@ class BeliefLayer:
         self._particles.add_rows(
             frames["time"].tolist(),
             particles.counts.tolist(),
-            positions=_flat(particles["position"]),
+            positions=raised(particles["position"], MARK_HEIGHT),
             radii=radii,
             colors=np.array(colors, dtype=np.uint32),
         )
@@ -136,7 +137,7 @@ class BeliefLayer:
         self._virtual.add_rows(
             frames["time"].tolist(),
             virtual.counts.tolist(),
-            centers=_flat(virtual["position"]),
+            centers=raised(virtual["position"], MARK_HEIGHT),
             lengths=np.full(len(virtual), FLAT),
             radii=virtual["radius"],
         )
@@ -175,11 +176,6 @@ class BeliefLayer:
             half_sizes=np.column_stack([SIGMAS * half, np.full(n, FLAT)]),
             quaternions=quaternions,
         )
-
-
-def _flat(points: Array) -> Array:
-    """Return points in W (n, 2) at the height of flat drawings (n, 3) [m]."""
-    return np.column_stack([points, np.full(len(points), MARK_HEIGHT)])
 
 
 def _counts(n: int, rows: NDArray[np.intp]) -> list[int]:

@@ -97,6 +97,11 @@ def sole_outline(sole: Sole) -> Array:
     return outline
 
 
+def raised(points: Array, height: float) -> Array:
+    """Return points (n, 2) at a height (n, 3) [m]."""
+    return np.column_stack([points, np.full(len(points), height)])
+
+
 def _belongs(model: mujoco.MjModel, prefix: str) -> NDArray[np.bool_]:
     """Return the mask of geoms whose names begin with `prefix` (ngeom,)."""
     return np.array([model.geom(i).name.startswith(prefix) for i in range(model.ngeom)])

@@ -6,6 +6,7 @@ from numpy.typing import NDArray
 
 from hsr8.recorder import palette
 from hsr8.recorder.log.channel import BlockStream, Channel
+from hsr8.recorder.log.geometry import raised
 from hsr8.recorder.table import Table
 
 Array = NDArray[np.float64]
@@ -47,8 +48,8 @@ class PlanLayer:
         self._decision.add_rows(
             times,
             [1] * len(times),
-            origins=_raised(planned["pose"][:, :2], HEIGHT),
-            vectors=_raised(arrows, 0.0),
+            origins=raised(planned["pose"][:, :2], HEIGHT),
+            vectors=raised(arrows, 0.0),
         )
         fields = zip(
             times,
@@ -60,12 +61,8 @@ class PlanLayer:
         for time, points, directions, path in fields:
             if not len(points):
                 continue
-            vectors = ARROW * self._scale * _raised(directions, 0.0)
+            vectors = ARROW * self._scale * raised(directions, 0.0)
             # Arrows are centred on their points.
-            origins = _raised(points, HEIGHT) - 0.5 * vectors
+            origins = raised(points, HEIGHT) - 0.5 * vectors
             self._field.add(time, origins=origins, vectors=vectors)
-            self._path.add(time, strips=[_raised(path, HEIGHT)])
-
-
-def _raised(points: Array, height: float) -> Array:
-    return np.column_stack([points, np.full(len(points), height)])
+            self._path.add(time, strips=[raised(path, HEIGHT)])

@@ -115,6 +115,10 @@ def test_rows_out_are_rows_in(tmp_path):
     check(table, content)
     check(table.rows(4, 19), content[4:19])
     check(table.window(0.5, 1.2), content[5:13])
+    chosen = [3, 0, 29, 12, 13]
+    check(table.take(np.array(chosen)), [content[k] for k in chosen])
+    check(table.take(np.array(chosen)).take(np.array([4, 1])), [content[13], content[0]])
+    check(table.take(np.array(chosen)).rows(1, 3), [content[0], content[29]])
     assert table.unit("angle") == "rad"
     assert table.names("angle") == ("hip", "knee", "ankle")
     assert table.description("count") == "number of things"
