@@ -11,11 +11,11 @@ from numpy.typing import NDArray
 from hsr8.robots.description import CameraMount, RobotDescription
 from hsr8.robots.key_mistake import KeyMistake, require_name
 from hsr8.robots.mesh_points import package_folders
-from hsr8.robots.posture import check_joint_names, clip_to_range, stated_posture
+from hsr8.robots.posture import check_joint_names, stated_posture
 from hsr8.robots.urdf_base import find_base
 from hsr8.robots.urdf_compare import compare_with_file
 from hsr8.robots.urdf_file import read_urdf
-from hsr8.robots.urdf_joints import MAX_EFFORT, MAX_SPEED, Joints, joint_range, sort_joints, stated
+from hsr8.robots.urdf_joints import MAX_EFFORT, MAX_SPEED, Joints, sort_joints, stated
 from hsr8.robots.urdf_model import ModelBuilder
 from hsr8.robots.urdf_shapes import GeomBuilder
 from hsr8.robots.urdf_soles import Sole, find_soles
@@ -33,7 +33,7 @@ class Converted:
     Attributes:
         spec: the model; the base stands on z = 0 at the angles `zero`.
         description: of the robot, in terms of the model: its feet, base and camera are bodies,
-            posture, effort and speed are complete, and its soles are those of the model.
+            effort and speed are complete, and its soles are those of the model.
         feet: bodies of the left and the right foot.
         soles: left and right sole, relative to the origins of the feet in the directions of the
             base at the angles `zero`.
@@ -74,7 +74,6 @@ def convert(file: Path, description: RobotDescription, folder: Path) -> Converte
     spec = mujoco.MjSpec()
     geoms = GeomBuilder(spec, file, packages)
     soles, sole_notes = find_soles(joints, base, description, geoms)
-    posture, posture_notes = _posture(joints, stated_angles)
     effort, speed, limit_notes = _limits(joints, description)
     builder = ModelBuilder(joints, base, description, soles, effort)
     model = builder.build(spec, geoms)
@@ -88,7 +87,7 @@ def convert(file: Path, description: RobotDescription, folder: Path) -> Converte
             "base": base.link,
             "sole": None,
             "zero": {name: v for name, v in description.zero.items() if name in joints.names},
-            "posture": posture,
+            "posture": {name: v for name, v in stated_angles.items() if name in joints.names},
             "srdf": None,
             "state": None,
             "camera": _camera(joints, description, positions),
@@ -106,7 +105,6 @@ def convert(file: Path, description: RobotDescription, folder: Path) -> Converte
             *joints.notes,
             *base.notes,
             *sole_notes,
-            *posture_notes,
             *limit_notes,
             *builder.notes,
             *geoms.notes(),
@@ -131,27 +129,6 @@ def _camera(
     at = positions[mount.body] - positions[carrier] + mount.position
     x, y, z = at.tolist()
     return mount.model_copy(update={"body": carrier, "position": (x, y, z)})
-
-
-def _posture(
-    joints: Joints, stated_angles: Mapping[str, float]
-) -> tuple[dict[str, float], list[str]]:
-    """Nonzero angles of the moving joints outside the legs, and notes on clipped ones."""
-    angles, notes = {}, []
-    for joint in joints.moving:
-        if joint.name in joints.legs[0] or joint.name in joints.legs[1]:
-            continue
-        lower, upper = joint_range(joint)
-        desired = stated_angles.get(joint.name, 0.0)
-        angle = clip_to_range(desired, lower, upper)
-        if angle != desired:
-            notes.append(
-                f"posture: '{joint.name}' clipped from {desired:.3f} to {angle:.3f} rad, its range "
-                f"is {lower:.3f} .. {upper:.3f}"
-            )
-        if angle != 0.0:
-            angles[joint.name] = angle
-    return angles, notes
 
 
 def _limits(

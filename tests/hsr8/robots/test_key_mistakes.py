@@ -59,6 +59,8 @@ IN_THE_MODEL = [
         "posture = {heda_yaw = 0.1}",
         "posture: the model has no hinge joint 'heda_yaw'; did you mean",
     ),
+    ("posture = {l_knee = 0.5}", "posture.l_knee: a joint of the leg, which moves while walking"),
+    ("posture = {head_yaw = 7.0}", "posture.head_yaw: outside the range of the joint, got 7 rad"),
     ("[posture]\nradius = 0.3", "posture.radius: not a joint but a key of the description; expect"),
     ("effort = {x = 1}", "effort: the model has no hinge joint 'x'"),
     ("speed = {x = 1}", "speed: the model has no hinge joint 'x'"),
@@ -182,10 +184,11 @@ def test_a_state_of_the_whole_body_completes_the_posture(described, tmp_path, ki
     assert load_robot(str(described(lines, kind))).description.posture == {}
 
 
-def test_joints_whose_range_excludes_zero_are_held_inside_it(described):
-    robot = load_robot(str(described("range = {l_shoulder_pitch = [1.0, 2.0]}")))
-    assert robot.description.posture == {"l_shoulder_pitch": pytest.approx(1.02)}
-    assert "posture: 'l_shoulder_pitch' 0.000 -> 1.020 rad, within its range" in robot.notes
+@pytest.mark.parametrize(("kind", "joint"), [(mjcf, "l_shoulder_pitch"), (urdf, "l_shoulder")])
+def test_joints_whose_range_excludes_zero_are_held_inside_it(described, kind, joint):
+    robot = load_robot(str(described(f"range = {{{joint} = [1.0, 2.0]}}", kind)))
+    assert robot.description.posture == {joint: pytest.approx(1.02)}
+    assert f"posture: {joint!r} 0.000 -> 1.020 rad, within its range" in robot.notes
 
 
 def test_package_folders_of_an_mjcf_file_are_refused(described):

@@ -216,14 +216,6 @@ def test_efforts_of_zero_everywhere_do_not_hold_the_legs(tmp_path):
     assert not result.description.effort
 
 
-def test_posture_is_clipped_into_the_range(tmp_path):
-    robot = SmallUrdf().element()
-    joint(robot, "l_elbow").find("limit").set("lower", "0.5")
-    result, _ = converted(robot, tmp_path, posture={"r_elbow": -0.4})
-    assert result.description.posture == {"l_elbow": pytest.approx(0.52), "r_elbow": -0.4}
-    assert any("'l_elbow' clipped from 0.000 to 0.520 rad" in note for note in result.notes)
-
-
 def test_posture_of_an_srdf_file(tmp_path):
     (tmp_path / "small.srdf").write_text(
         '<robot name="small"><group_state name="home" group="all"><joint name="l_elbow" value="1"/>'
