@@ -49,14 +49,18 @@ def find_description(name_or_file: str) -> Path:
     names = robot_names()
     if name_or_file in names:
         return _robots_dir() / f"{name_or_file}.toml"
-    file = Path(name_or_file).expanduser()
+    file = Path(os.path.expanduser(name_or_file))
     suffixes = (".toml", *MODEL_SUFFIXES)
-    if file.is_file() and file.suffix.lower() in suffixes:
+    is_file, is_folder = (
+        os.path.isfile(file),
+        os.path.isdir(file),
+    )  # also of names that are too long
+    if is_file and file.suffix.lower() in suffixes:
         return file
-    if file.exists() and name_or_file:
-        kind = "a folder" if file.is_dir() else f"the suffix {file.suffix!r}"
+    if (is_file or is_folder) and name_or_file:
+        kind = "a folder" if is_folder else f"the suffix {file.suffix!r}"
         raise ModelError(
-            f"robot {name_or_file!r}: not the file of a robot, got {kind}; expected a .toml, .xml "
+            f"robot {name_or_file!r}: not the file of a robot, got {kind}; expected a .toml, .xml, "
             ".mjcf or .urdf file"
         )
     if file.suffix.lower() in suffixes:
@@ -84,7 +88,7 @@ def find_model(description: RobotDescription, described: Path) -> Path:
     file = installed_model(description, folder) or _fetched(description, described)
     if file is not None:
         return file
-    model = Path(description.model).expanduser()
+    model = Path(os.path.expanduser(description.model))
     if model.is_absolute():
         raise ModelError(f"{described}: model: {str(model)!r} does not exist; expected a file")
     lines = [f"  {source.label}: {source.folder or source.remedy}" for source in _sources(folder)]
@@ -96,11 +100,11 @@ def find_model(description: RobotDescription, described: Path) -> Path:
 
 def installed_model(description: RobotDescription, folder: Path) -> Path | None:
     """Return the model file of a description if it is on this machine, else None."""
-    model = Path(description.model).expanduser()
+    model = Path(os.path.expanduser(description.model))
     if model.is_absolute():
-        return model if model.is_file() else None
+        return model if os.path.isfile(model) else None
     for source in _sources(folder):
-        if source.folder is not None and (source.folder / model).is_file():
+        if source.folder is not None and os.path.isfile(source.folder / model):
             return source.folder / model
     return None
 

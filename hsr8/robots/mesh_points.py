@@ -1,5 +1,6 @@
 """Vertices and triangles of mesh files, and the file of a ``package://`` URI."""
 
+import os
 from collections.abc import Mapping
 from pathlib import Path
 from xml.etree import ElementTree
@@ -21,9 +22,9 @@ def package_folders(packages: Mapping[str, str], folder: Path) -> dict[str, Path
     Raises:
         KeyMistake: a folder does not exist.
     """
-    folders = {name: folder / Path(text).expanduser() for name, text in packages.items()}
+    folders = {name: folder / os.path.expanduser(text) for name, text in packages.items()}
     for name, path in folders.items():
-        if not path.is_dir():
+        if not os.path.isdir(path):
             raise KeyMistake(
                 f"packages.{name}: not a folder, got '{path}'; expected the package's folder"
             )

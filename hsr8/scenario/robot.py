@@ -1,5 +1,6 @@
 """Section ``[robot]``: body, initial pose and speed limits."""
 
+import os
 from collections.abc import Mapping
 from pathlib import Path
 from typing import Annotated, Any, Literal
@@ -58,6 +59,6 @@ def located(table: Mapping[str, Any], folder: Path) -> dict[str, Any]:
     if not isinstance(robot, dict) or not str(robot.get("model")).endswith(SUFFIX):
         return dict(table)
     model = str(robot["model"])
-    file = Path(model).expanduser()
-    paths = (path.absolute() for path in (folder / file, file) if path.is_file())
+    file = Path(os.path.expanduser(model))
+    paths = (path.absolute() for path in (folder / file, file) if os.path.isfile(path))
     return {**table, "robot": {**robot, "model": str(next(paths, model))}}

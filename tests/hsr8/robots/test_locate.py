@@ -72,6 +72,9 @@ def test_a_file_is_its_own_description(tmp_path, name):
         ("zebra", "apollo, berkeley, g1, hsr8, icub, op3, t1"),
         ("robot.xlm", "expected a .toml, .xml, .mjcf or .urdf file"),
         ("", "unknown robot ''"),
+        ("x" * 300, "unknown robot"),
+        ("x" * 300 + ".toml", "does not exist"),
+        ("~nobody-of-this-name/robot.toml", "'~nobody-of-this-name/robot.toml' does not exist"),
     ],
 )
 def test_an_unknown_name_is_refused_with_the_list(name, reason):
