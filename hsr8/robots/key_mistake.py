@@ -67,7 +67,7 @@ def require_name(
         return
     more = f" and {len(names) - MAX_LISTED} more" if len(names) > MAX_LISTED else ""
     listed = (
-        f"one of {', '.join(names[:MAX_LISTED])}{more}" if names else "another key: it has none"
+        f"one of {', '.join(names[:MAX_LISTED])}{more}" if names else "no such key: it has none"
     )
     raise KeyMistake(
         f"{key}: {owner} has no {kind} {name!r}{suggestion(name, names)}; expected {listed}"

@@ -51,10 +51,7 @@ def find_description(name_or_file: str) -> Path:
         return _robots_dir() / f"{name_or_file}.toml"
     file = Path(os.path.expanduser(name_or_file))
     suffixes = (".toml", *MODEL_SUFFIXES)
-    is_file, is_folder = (
-        os.path.isfile(file),
-        os.path.isdir(file),
-    )  # also of names that are too long
+    is_file, is_folder = os.path.isfile(file), os.path.isdir(file)  # of any length
     if is_file and file.suffix.lower() in suffixes:
         return file
     if (is_file or is_folder) and name_or_file:

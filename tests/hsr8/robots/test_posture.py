@@ -44,7 +44,7 @@ def test_joints_of_several_values_are_left_out(tmp_path):
         (
             "<robot/>",
             "home",
-            "state: .*small.srdf has no group state 'home'; expected another key: it has none",
+            "state: .*small.srdf has no group state 'home'; expected no such key: it has none",
         ),
         (SRDF.format('<joint name="a" value="x"/>'), "home", "joint 'a' in the group state 'home'"),
         (SRDF.format('<joint name="a" value="nan"/>'), "home", "got 'nan'; expected an angle"),
