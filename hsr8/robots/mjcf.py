@@ -46,7 +46,7 @@ def _check_numbers(model: mujoco.MjModel) -> None:
         (dofs, "dof", ("damping", "armature", "frictionloss")),
     ):
         for key in keys:
-            rows = getattr(model, f"{kind}_{key}").reshape(len(names), -1)
+            rows = np.atleast_2d(getattr(model, f"{kind}_{key}").T).T
             for name, values in zip(names, rows, strict=True):
                 got = " ".join(f"{value:g}" for value in values)
                 if not np.isfinite(values).all():
