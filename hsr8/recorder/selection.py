@@ -4,7 +4,6 @@ from collections.abc import Mapping, Sequence
 
 import pyarrow as pa
 
-from hsr8.recorder.columns import schema_of
 from hsr8.recorder.rows import TABLES
 from hsr8.recorder.table import Table
 
@@ -28,10 +27,8 @@ class Selection:
     def tables(self) -> dict[str, Table]:
         """Return the kept columns of all batches by table."""
         return {
-            name: Table(name, pa.concat_tables(batches) if batches else _empty(name))
+            name: Table(name, pa.concat_tables(batches))
+            if batches
+            else Table.from_objects(name, TABLES[name], ())
             for name, batches in self._batches.items()
         }
-
-
-def _empty(name: str) -> pa.Table:
-    return schema_of(TABLES[name]).empty_table()

@@ -9,13 +9,12 @@ from hsr8.errors import UsageError
 T = TypeVar("T")
 
 
-def read_lines(path: Path, parse: Callable[[str], T], *, whole: bool = False) -> Iterator[T]:
+def read_lines(path: Path, parse: Callable[[str], T]) -> Iterator[T]:
     """Yield the result of `parse` for each complete line.
 
     Args:
         path: the file.
         parse: reads a line.
-        whole: require a complete last line, which a killed run may lack.
 
     Raises:
         UsageError: the file cannot be read, or a line is damaged.
@@ -27,8 +26,6 @@ def read_lines(path: Path, parse: Callable[[str], T], *, whole: bool = False) ->
     with file:
         for number, line in enumerate(file, start=1):
             if not line.endswith(b"\n"):
-                if whole:
-                    raise UsageError(f"{path}:{number}: the line is cut off")
                 return
             try:
                 yield parse(line.decode("utf-8", errors="replace"))
