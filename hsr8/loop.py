@@ -18,7 +18,7 @@ from hsr8.frame_record import FrameRecord
 from hsr8.plugin_walker import CustomWalker
 from hsr8.record import Event, Second, Tick, TickRecord
 from hsr8.robot import Robot, SensorFrame
-from hsr8.robot_builder import build_robot, head_camera
+from hsr8.robot_builder import build_robot, field_of_view, head_camera
 from hsr8.robots.loaded import load_robot
 from hsr8.scenario.schema import Scenario
 from hsr8.seeds import named_rng
@@ -121,7 +121,12 @@ class Simulation:
         if camera.source != "rendered":
             optics = head_camera(scenario)
             self._analytic = AnalyticCamera(
-                self.layout, optics, self._camera_rng, camera, self._camera_faults
+                self.layout,
+                optics,
+                camera,
+                self._camera_rng,
+                self._camera_faults,
+                fov=field_of_view(scenario, optics)[0],
             )
         self._feed = CameraFeed(camera, named_rng(self.seed, "camera_feed"), self._camera_faults)
         self._record_ticks = round(scenario.recorder.period_ms / 1000 / CONTROL_PERIOD)

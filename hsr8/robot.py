@@ -9,6 +9,7 @@ import numpy as np
 
 from hsr8.decisions import DecisionContext, Decisions
 from hsr8.frame_record import FrameRecord, Image
+from navigation.angles import wrap
 from navigation.belief.belief import Belief
 from navigation.observation import CameraView, Frame, Observation
 from vision.camera import CameraPose
@@ -78,6 +79,7 @@ class Robot:
         vision: detector; unused when the frames carry detections.
         pose: uncertainty of the camera pose.
         shutter: exposure time [s].
+        blind_above: rate of the camera above which its images show nothing [rad/s].
         belief: estimator.
         decisions: mission, motion planner and gaze planner.
         schedule: commands that replace those of the motion planner, read every tick.
@@ -91,6 +93,7 @@ class Robot:
         vision: Detector,
         pose: PoseParameters,
         shutter: float,
+        blind_above: float,
         belief: Estimator,
         decisions: Decisions,
         schedule: CommandSource | None = None,
@@ -100,6 +103,7 @@ class Robot:
         self._vision = vision
         self._pose = pose
         self._shutter = shutter
+        self._blind_above = blind_above
         self._belief = belief
         self._decisions = decisions
         self._schedule = schedule
@@ -109,12 +113,15 @@ class Robot:
         self._odometry: Odometry | None = None
         self.command: Command = VelocityCommand()
         self.head = HeadTarget()
+        self._direction: float | None = None  # of a stabilized gaze in the odometry frame [rad]
         self.frame: FrameRecord | None = None
 
     def walk(self, sensed: SensorFrame) -> JointTargets:
         """Run the walking engine for one control tick."""
         if self._schedule is not None:
             self.command = self._schedule.at(sensed.time)
+        if self._direction is not None:
+            self.head = HeadTarget(wrap(self._direction - self.walking.yaw), self.head.tilt)
         targets = self.walking.step(sensed.body, self.command, self.head)
         self._state = None
         if sensed.shutter:
@@ -138,7 +145,9 @@ class Robot:
             self._wait()
             return
         image = None if sensed.image is None else sensed.image()
-        if sensed.detections is not None:
+        if captured_state.camera.turn_rate > self._blind_above:
+            detections: tuple[Detection, ...] = ()
+        elif sensed.detections is not None:
             detections = sensed.detections
         else:
             assert image is not None
@@ -153,7 +162,9 @@ class Robot:
         decision = self._decisions.make(estimate, measured, context)
         if self._schedule is None:
             self.command = VelocityCommand(*decision.motion.velocity.tolist())
-        self.head = HeadTarget(decision.gaze.pan, decision.gaze.tilt)
+        gaze = decision.gaze
+        self.head = HeadTarget(gaze.pan, gaze.tilt)
+        self._direction = self.walking.yaw + gaze.pan if gaze.stabilized else None
         self.frame = FrameRecord(
             index=self._frames,
             time=sensed.time,
@@ -169,7 +180,7 @@ class Robot:
     def _wait(self) -> None:
         """Pause perception and decisions: off its feet the robot does not know its camera pose."""
         self._decisions.forget()
-        self.head = HeadTarget()
+        self.head, self._direction = HeadTarget(), None
         if self._schedule is None:
             self.command = VelocityCommand()
 
@@ -190,6 +201,9 @@ class Robot:
             horizontal_fov=self._fov[0],
             vertical_fov=self._fov[1],
             yaw_sigma=self._pose.yaw_sigma,
+            pan_rate=head.pan_rate,
+            tilt_rate=head.tilt_rate,
+            blind=head.turn_rate > self._blind_above,
         )
 
     def _frame(self, time: float, state: WalkingState, detections: tuple[Detection, ...]) -> Frame:

@@ -1,7 +1,7 @@
 """Builder of the robot side of a scenario."""
 
 from functools import partial
-from math import pi
+from math import inf, pi
 
 import numpy as np
 
@@ -34,7 +34,6 @@ from walking.parameters import WalkingParameters
 from walking.scaling import override
 from walking.walker import Walker
 
-OMNIDIRECTIONAL = (2.0 * pi, pi)  # field of view of an omnidirectional camera [rad]
 MARGINS = (("pattern", "sole_margin"), ("pattern", "plan_margin"), ("stabilizer", "sole_margin"))
 # Standard deviation of the known start position in a world of scale 1 [m] and heading [rad].
 START_SIGMA, START_HEADING_SIGMA = 0.02, 0.02
@@ -42,8 +41,10 @@ START_SIGMA, START_HEADING_SIGMA = 0.02, 0.02
 
 def field_of_view(scenario: Scenario, camera: PinholeCamera) -> tuple[float, float]:
     """Return the horizontal and vertical field of view of the robot's camera [rad]."""
-    if scenario.camera.omnidirectional:
-        return OMNIDIRECTIONAL
+    if scenario.camera.source == "omnidirectional":
+        return 2.0 * pi, pi
+    if scenario.camera.source == "neck-reach":
+        return 2.0 * scenario.navigation.gaze.max_pan + camera.horizontal_fov, pi
     return camera.horizontal_fov, camera.vertical_fov
 
 
@@ -75,6 +76,7 @@ def build_robot(
         vision=Detector(camera, scenario.vision, tuple(BodyPart(*arm) for arm in humanoid.arms)),
         pose=scenario.vision.pose,
         shutter=1e-3 * scenario.camera.shutter_ms,
+        blind_above=inf if scenario.camera.panoramic else scenario.camera.blind_above,
         belief=build_estimator(scenario, layout, named_rng(seed, "belief")),
         decisions=build_decisions(scenario, layout, seed, schedule, planner=planner, gaze=gaze),
         schedule=schedule,
@@ -118,6 +120,15 @@ def walking_parameters(humanoid: LoadedRobot, scenario: Scenario) -> WalkingPara
                 f"got {value:g}; expected less than half the width of the sole, {half:g}"
             )
     return parameters
+
+
+def neck(scenario: Scenario) -> tuple[float, float]:
+    """Return the maximum rate [rad/s] and acceleration [rad/s²] of the camera."""
+    if scenario.navigation.gaze.moved_by == "body":
+        limits = scenario.speed_limits()
+        return limits.wz, limits.wz / limits.footstep
+    head = scenario.walking.head
+    return head.max_rate, head.max_acceleration
 
 
 def head_camera(scenario: Scenario) -> PinholeCamera:
@@ -181,7 +192,7 @@ def build_decisions(
             motion = PluginPlanner(planner)
     if gaze is None:
         fov = field_of_view(scenario, head_camera(scenario))
-        gaze_planner = GazePlanner(navigation, limits, beacons, *fov)
+        gaze_planner = GazePlanner(navigation, limits, beacons, fov, neck(scenario))
     else:
         gaze_planner = PluginGaze(gaze)
     return Decisions(

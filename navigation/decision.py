@@ -78,6 +78,7 @@ class GazeDecision:
         psi_lm, psi_sf, psi_ob, psi_way: partial evaluations in [0, 1]; psi_ob is the
             maximum over the obstacles.
         gaze_map: GM over (tilt, pan) cells (m, n).
+        stabilized: whether the gaze keeps its direction in W while the body turns.
         body_direction: direction in W that the body turns to for a fixed camera; None with a
             head [rad].
     """
@@ -89,6 +90,7 @@ class GazeDecision:
     psi_ob: float = 0.0
     psi_way: float = 0.0
     gaze_map: Array = dataclasses.field(default_factory=lambda: np.zeros((1, 1)))
+    stabilized: bool = False
     body_direction: float | None = None
 
 

@@ -50,9 +50,11 @@ class CameraView:
         rotation: R_RC, columns right, down, forward (3, 3).
         position: p_RC (3,) [m].
         pan, tilt: measured head angles [rad].
+        pan_rate, tilt_rate: measured head rates [rad/s].
         horizontal_fov, vertical_fov: [rad].
         yaw_sigma: standard deviation of the camera's yaw [rad]. All bearings of the frame share
             this error; their covariances include it.
+        blind: whether the camera turned too fast for its image to show anything.
     """
 
     rotation: Array
@@ -62,6 +64,9 @@ class CameraView:
     horizontal_fov: float
     vertical_fov: float
     yaw_sigma: float = 0.0
+    pan_rate: float = 0.0
+    tilt_rate: float = 0.0
+    blind: bool = False
 
 
 @value

@@ -62,7 +62,7 @@ def to_world(pose: Sequence[float], distance: float, bearing: float) -> tuple[fl
     return pose[0] + distance * cos(direction), pose[1] + distance * sin(direction)
 
 
-def points_to_robot(pose: Sequence[float], points: Array) -> Array:
+def points_to_robot(pose: Sequence[float] | Array, points: Array) -> Array:
     """Transform points (n, 2) from W to R of the robot at `pose` [m]."""
     x, y, heading = pose
     c, s = cos(heading), sin(heading)

@@ -20,8 +20,8 @@ OUTLINE = np.array([*_HALF, *_HALF[-2:0:-1]])
 physics: the 99th percentile over a walk with turns [m]."""
 OUTLINE_BEARING = np.radians(np.arange(0.0, 360.0, 15.0))
 TURN_ACCELERATION = 2.0  # [rad/s²]
-SLIP = np.array([0.06, 0.06, 0.04])  # of a footstep, per velocity [1]
-DRIFT = np.array([0.005, 0.005, 0.02])  # of a footstep [m/s, m/s, rad/s]
+SLIP = np.array([0.01, 0.01, 0.01])  # of a footstep, per velocity [1]
+DRIFT = np.array([0.001, 0.001, 0.003])  # of a footstep [m/s, m/s, rad/s]
 
 
 @dataclass
@@ -103,7 +103,6 @@ class Walker:
         self.pose, self.odometry = pose.copy(), np.zeros(3)
         self.command, self.body = np.zeros(3), np.zeros(3)
         self._rng = rng
-        self._scale = np.array([1 + 0.03 * float(rng.standard_normal()), 1.0, 1.0])
         self._slip, self._drift = np.zeros(3), np.zeros(3)
 
     def latch(self, command: Array) -> None:
@@ -116,7 +115,7 @@ class Walker:
         """Advance one tick."""
         change = np.array([self._limits.acceleration] * 2 + [TURN_ACCELERATION]) * TICK
         self.body = self.body + np.clip(self.command - self.body, -change, change)
-        true = self.body * (1.0 + self._slip) * self._scale + self._drift
+        true = self.body * (1.0 + self._slip) + self._drift
         for velocity, pose in ((true, self.pose), (self.body, self.odometry)):
             heading = pose[2] + 0.5 * velocity[2] * TICK
             pose[0] += TICK * (cos(heading) * velocity[0] - sin(heading) * velocity[1])
@@ -126,5 +125,5 @@ class Walker:
     def motion_covariance(self, dt: float) -> Array:
         """Covariance of the odometry's error over `dt`, which lasts for a footstep each."""
         stepping = np.abs(self.command).max() > 1e-6
-        speed = np.square(self.body) * (np.square(SLIP) + 0.03**2) + np.square(DRIFT) * stepping
+        speed = np.square(self.body) * np.square(SLIP) + np.square(DRIFT) * stepping
         return np.diag(speed * dt * self._limits.footstep)

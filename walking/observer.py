@@ -187,6 +187,7 @@ class BodyObserver:
             tilt=asin(min(1.0, max(-1.0, up))),
             pan_rate=pan_rate,
             tilt_rate=tilt_rate,
+            yaw_rate=float(tilt[2] @ sensors.gyro),
         )
 
     @property

@@ -190,9 +190,9 @@ class LimitParameters:
 class HeadParameters:
     """Motion of pan and tilt."""
 
-    max_rate: Annotated[float, Interval(ge=0.01, le=10_000.0), RATE] = 6.0
+    max_rate: Annotated[float, Interval(ge=0.01, le=10_000.0), RATE] = 3.0
     """Maximum rate of each axis [rad/s]."""
-    max_acceleration: Annotated[float, Interval(ge=0.01, le=10_000.0), RATE_CHANGE] = 60.0
+    max_acceleration: Annotated[float, Interval(ge=0.01, le=10_000.0), RATE_CHANGE] = 40.0
     """Maximum angular acceleration of each axis [rad/s²]."""
 
 

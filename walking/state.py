@@ -17,6 +17,7 @@ class HeadCameraPose:
         position: p_RC (3,) [m]; z is the height above the floor.
         pan, tilt: measured head angles [rad].
         pan_rate, tilt_rate: measured head rates [rad/s].
+        yaw_rate: measured yaw rate of the trunk [rad/s].
     """
 
     rotation: Array
@@ -25,6 +26,12 @@ class HeadCameraPose:
     tilt: float
     pan_rate: float = 0.0
     tilt_rate: float = 0.0
+    yaw_rate: float = 0.0
+
+    @property
+    def turn_rate(self) -> float:
+        """Rate of the camera: the larger of those of its pan and its tilt [rad/s]."""
+        return max(abs(self.pan_rate + self.yaw_rate), abs(self.tilt_rate))
 
 
 @value

@@ -101,6 +101,11 @@ class Walker:
         return self._engine.zmp_depth
 
     @property
+    def yaw(self) -> float:
+        """Heading in the odometry frame [rad]."""
+        return float(self._odometry.state[2])
+
+    @property
     def down(self) -> bool:
         """Whether the robot lies or gets up, and ignores commands."""
         return self.get_up is not None

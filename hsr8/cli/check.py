@@ -14,6 +14,7 @@ from hsr8.plugin_file import require_plugins
 from hsr8.recorder.files import atomic
 from hsr8.render.plan_view import PlanView
 from hsr8.render.png import write_png
+from hsr8.robot_builder import field_of_view, head_camera
 from hsr8.scenario.loader import load_scenario
 from hsr8.scenario.schema import Scenario
 from hsr8.scenario.section import Section
@@ -60,7 +61,7 @@ def summarize(scenario: Scenario, world: FairWorld) -> dict[str, Any]:
     clearance = None
     if len(certificate.path) and layout.obstacles:
         clearance = round(min_clearance(layout, certificate.path, scenario.robot.radius), 3)
-    fov = [round(camera.horizontal_fov_deg), round(camera.vertical_fov_deg)]
+    fov = [round(degrees(angle)) for angle in field_of_view(scenario, head_camera(scenario))]
     x, y, heading = layout.start
     goal_heading = layout.goal_heading
     return {
@@ -70,7 +71,7 @@ def summarize(scenario: Scenario, world: FairWorld) -> dict[str, Any]:
         "body": scenario.robot.body,
         "camera": camera.source,
         "camera_period_s": camera.period_ms / 1000.0,
-        "camera_fov_deg": [360] if camera.omnidirectional else fov,
+        "camera_fov_deg": fov,
         "profile": scenario.navigation.profile,
         "mission": scenario.mission.kind,
         "command": _set_values(scenario.command),

@@ -35,8 +35,8 @@ Text = Annotated[str | None, _optional(str, "TEXT"), NO_DEFAULT]
 File = Annotated[Path | None, _optional(Path, "FILE"), NO_DEFAULT]
 Body = Annotated[Literal["full", "kinematic"] | None, _choice("full", "kinematic"), NO_DEFAULT]
 Camera = Annotated[
-    Literal["rendered", "analytic", "omnidirectional"] | None,
-    _choice("rendered", "analytic", "omnidirectional"),
+    Literal["rendered", "analytic", "neck-reach", "omnidirectional"] | None,
+    _choice("rendered", "analytic", "neck-reach", "omnidirectional"),
     NO_DEFAULT,
 ]
 Level = Annotated[
@@ -84,7 +84,7 @@ class Run:
     body: Body = None
     """Full physics, or feet that land exactly as planned (faster)."""
     camera: Camera = None
-    """rendered: OpenGL; analytic: geometry only; omnidirectional: analytic, 360 deg."""
+    """rendered: OpenGL; analytic: geometry only; neck-reach, omnidirectional: bounds."""
     set: Settings = ()
     no_log: Flag = False
     """Write no Rerun log."""
@@ -123,7 +123,7 @@ class Sweep:
     body: Body = None
     """Full physics, or feet that land exactly as planned (faster)."""
     camera: Camera = None
-    """rendered: OpenGL; analytic: geometry only; omnidirectional: analytic, 360 deg."""
+    """rendered: OpenGL; analytic: geometry only; neck-reach, omnidirectional: bounds."""
     executor: str = "local"
     """Executor: local, or dask://HOST:PORT for a Dask cluster."""
     shard: Text = None

@@ -166,8 +166,8 @@ def _inputs(frames: Table) -> Iterator[tuple[tuple[Detection, ...], Frame, Decis
     detections = (Detection(*values) for values in zip(*columns, strict=True))
     for row, count in enumerate(items.counts.tolist()):
         detected = tuple(islice(detections, count))
-        capture = _view(frames, row, "capture", "capture_head")
-        now = _view(frames, row, "camera", "head")
+        capture = _view(frames, row, "capture", "capture_")
+        now = _view(frames, row, "camera", "")
         measured = Frame(
             time=float(frames["captured"][row]),
             odometry=frames["capture_odometry"][row],
@@ -185,7 +185,8 @@ def _inputs(frames: Table) -> Iterator[tuple[tuple[Detection, ...], Frame, Decis
 
 
 def _view(frames: Table, row: int, camera: str, head: str) -> CameraView:
-    pan, tilt = frames[head][row].tolist()
+    pan, tilt = frames[f"{head}head"][row].tolist()
+    pan_rate, tilt_rate = frames[f"{head}head_rate"][row].tolist()
     horizontal_fov, vertical_fov = frames["fov"][row].tolist()
     return CameraView(
         rotation=frames[f"{camera}_rotation"][row],
@@ -195,6 +196,9 @@ def _view(frames: Table, row: int, camera: str, head: str) -> CameraView:
         horizontal_fov=horizontal_fov,
         vertical_fov=vertical_fov,
         yaw_sigma=float(frames["yaw_sigma"][row]),
+        pan_rate=pan_rate,
+        tilt_rate=tilt_rate,
+        blind=bool(frames[f"{head}blind"][row]),
     )
 
 

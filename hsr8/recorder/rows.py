@@ -235,11 +235,15 @@ class FrameRow:
         capture_rotation: R_RC at the capture (3, 3) [1].
         capture_position: p_RC at the capture (3,) [m].
         capture_head: measured pan and tilt at the capture (2,) [rad].
+        capture_head_rate: measured rates of pan and tilt at the capture (2,) [rad/s].
+        capture_blind: whether the camera turned too fast at the capture to see anything.
         detections: in the image.
         odometry: pose in odometry at `time` (3,) [m, m, rad].
         camera_rotation: R_RC at `time` (3, 3) [1].
         camera_position: p_RC at `time` (3,) [m].
         head: measured pan and tilt at `time` (2,) [rad].
+        head_rate: measured rates of pan and tilt at `time` (2,) [rad/s].
+        blind: whether the camera turned too fast at `time`.
         fov: horizontal and vertical field of view (2,) [rad].
         yaw_sigma: standard deviation of the camera's yaw [rad].
         step_count: completed steps at `time`.
@@ -264,6 +268,7 @@ class FrameRow:
         look_request: direction in W that the rear check turns to [rad].
         virtual_obstacles: in the field.
         gaze: decided pan and tilt (2,) [rad].
+        stabilized: whether the gaze keeps its direction in W while the body turns.
         body_direction: direction in W that the body turns to for a fixed camera [rad].
         psi: partial evaluations of local map, self, obstacle and way (4,) [1].
         gaze_map: gaze map GM in 255 shades of its maximum, from below and from the right
@@ -286,11 +291,15 @@ class FrameRow:
     capture_rotation: Array = at("frame.measured.view.rotation")
     capture_position: Array = at("frame.measured.view.position")
     capture_head: Vector = at("frame.measured.view.pan", "frame.measured.view.tilt")
+    capture_head_rate: Vector = at("frame.measured.view.pan_rate", "frame.measured.view.tilt_rate")
+    capture_blind: bool = at("frame.measured.view.blind")
     detections: tuple[Detection, ...] = at("frame.detections")
     odometry: Array = at("frame.context.odometry")
     camera_rotation: Array = at("frame.context.view.rotation")
     camera_position: Array = at("frame.context.view.position")
     head: Vector = at("frame.context.view.pan", "frame.context.view.tilt")
+    head_rate: Vector = at("frame.context.view.pan_rate", "frame.context.view.tilt_rate")
+    blind: bool = at("frame.context.view.blind")
     fov: Vector = at("frame.context.view.horizontal_fov", "frame.context.view.vertical_fov")
     yaw_sigma: float = at("frame.context.view.yaw_sigma")
     step_count: int = at("frame.context.step_count")
@@ -315,6 +324,7 @@ class FrameRow:
     look_request: float | None = at("frame.decision.motion.look_request")
     virtual_obstacles: tuple[VirtualObstacle, ...] = at("frame.decision.motion.virtual_obstacles")
     gaze: Vector = at("frame.decision.gaze.pan", "frame.decision.gaze.tilt")
+    stabilized: bool = at("frame.decision.gaze.stabilized")
     body_direction: float | None = at("frame.decision.gaze.body_direction")
     psi: Vector = at(*(f"frame.decision.gaze.psi_{name}" for name in ("lm", "sf", "ob", "way")))
     gaze_map: Shades | None

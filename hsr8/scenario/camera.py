@@ -8,8 +8,11 @@ from pydantic import model_validator
 
 from hsr8.scenario.section import CONTROL_PERIOD_MS, PeriodMs, Section
 
-LENSES = {"wide": 70.0, "narrow": 45.0}
-"""Vertical field of view of the named lenses [deg]."""
+IDEAL = {
+    "camera": {"vertical_fov_deg": 70.0, "blind_above": 10_000.0},
+    "walking": {"head": {"max_rate": 6.0, "max_acceleration": 60.0}},
+}
+"""Values of the ideal camera and neck; the defaults are those of the honest camera."""
 
 DelayMs = Annotated[int, Interval(ge=0, le=500), MultipleOf(CONTROL_PERIOD_MS)]
 
@@ -26,17 +29,22 @@ class CameraNoise(Section):
 class Camera(Section):
     """Head camera; `walking.head` limits its rate, `navigation.gaze` its range."""
 
-    source: Literal["rendered", "analytic", "omnidirectional"] = "rendered"
+    source: Literal["rendered", "analytic", "neck-reach", "omnidirectional"] = "rendered"
     """rendered: OpenGL images; analytic: cylinders projected geometrically, without OpenGL;
-    omnidirectional: analytic with a 360 deg view, an upper bound for every gaze."""
+    neck-reach: analytic, sees all that the neck could turn to at once, with gaze.mode "fixed";
+    omnidirectional: analytic with a 360 deg view. The last two are bounds for every gaze."""
+    preset: Literal["honest", "ideal"] = "honest"
+    """honest: camera and neck like those of small humanoids; ideal: 86 x 70 deg, a neck of
+    6 rad/s, every image sharp. Sets vertical_fov_deg, blind_above and walking.head; other given
+    values, and those of a robot's description, take precedence."""
     width: Annotated[int, Interval(ge=32, le=1920)] = 320
     """Image width [pixel]."""
     height: Annotated[int, Interval(ge=24, le=1080)] = 240
     """Image height [pixel]."""
-    lens: Literal["wide", "narrow", "custom"] = "wide"
-    """wide: 70 deg vertically (86 deg horizontally at 4:3); narrow: 45 deg (58 deg); custom."""
-    vertical_fov_deg: Annotated[float, Interval(ge=10.0, le=120.0)] = LENSES["wide"]
-    """Vertical field of view; fixed by the lens unless custom [deg]."""
+    vertical_fov_deg: Annotated[float, Interval(ge=10.0, le=120.0)] = 46.8
+    """Vertical field of view; 46.8 deg are 60 deg horizontally at 4:3 [deg]."""
+    blind_above: Annotated[float, Interval(gt=0.0, le=10_000.0)] = 0.8
+    """Rate of the camera, by neck and body, above which a frame shows nothing [rad/s]."""
     period_ms: PeriodMs = 60
     """Frame period, a multiple of the control tick of 5 ms [ms]."""
     latency_ms: DelayMs = 0
@@ -49,9 +57,9 @@ class Camera(Section):
     """Image noise."""
 
     @property
-    def omnidirectional(self) -> bool:
-        """Whether the field of view is 360 deg."""
-        return self.source == "omnidirectional"
+    def panoramic(self) -> bool:
+        """Whether the camera sees in many directions at once."""
+        return self.source in ("neck-reach", "omnidirectional")
 
     @property
     def vertical_fov(self) -> float:
@@ -63,16 +71,6 @@ class Camera(Section):
         """Horizontal field of view [deg]."""
         half = tan(0.5 * self.vertical_fov) * self.width / self.height
         return degrees(2.0 * atan(half))
-
-    @model_validator(mode="after")
-    def _fov_fits_lens(self) -> "Camera":
-        expected = LENSES.get(self.lens, self.vertical_fov_deg)
-        if expected != self.vertical_fov_deg:
-            raise ValueError(
-                f"lens = {self.lens!r} has a vertical_fov_deg of {expected:g}, not "
-                f"{self.vertical_fov_deg:g}; set lens = 'custom' to choose it freely"
-            )
-        return self
 
     @model_validator(mode="after")
     def _exposed_within_a_period(self) -> "Camera":

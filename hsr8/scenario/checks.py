@@ -70,6 +70,9 @@ def _parameters(scenario: Scenario) -> Iterator[Problem]:
             load_table(FilePath(scenario.vision.color_table))
         except VisionError as error:
             yield Problem(("vision", "color_table"), str(error))
+    fixed = navigation.gaze.mode == "fixed" and not scenario.plugin.gaze
+    if scenario.camera.source == "neck-reach" and not fixed:
+        yield Problem(("camera", "source"), 'neck-reach requires navigation.gaze.mode = "fixed"')
     if scenario.robot.body != "full" and not scenario.disturbance.empty:
         yield Problem(("disturbance",), 'requires robot.body = "full"')
 

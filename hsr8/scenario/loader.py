@@ -13,7 +13,6 @@ from pydantic import ValidationError
 
 from hsr8.errors import ModelError, ScenarioError
 from hsr8.robots.scale import DEFAULT_ROBOT, RobotDefaults, RobotScale
-from hsr8.scenario.camera import LENSES
 from hsr8.scenario.checks import check
 from hsr8.scenario.constants import CONSTANTS, misplaced, placed, separated, with_constants
 from hsr8.scenario.key_lines import Path, depth, line_of
@@ -264,8 +263,6 @@ def _merged(base: Table, over: Table) -> Table:
     # Another kind of mission, fault or mover has other keys: the old ones are dropped.
     changed = any(key in over and over[key] != base.get(key, over[key]) for key in KINDS)
     merged = {} if changed else dict(base)
-    if over.get("lens") in tuple(LENSES):
-        merged.pop("vertical_fov_deg", None)  # that of the other lens
     for key, value in over.items():
         old = merged.get(key)
         if isinstance(value, dict) and isinstance(old, dict):

@@ -1,10 +1,10 @@
-"""Presets: the navigation profile, the camera lens, and defaults that follow other keys."""
+"""Presets: the navigation profile, the camera, and defaults that follow other keys."""
 
 from collections.abc import Mapping
 from dataclasses import asdict
 from typing import Any
 
-from hsr8.scenario.camera import LENSES
+from hsr8.scenario.camera import IDEAL
 from navigation.parameters.navigation import NavigationParameters
 from vision.parameters import VisionParameters
 
@@ -14,7 +14,7 @@ PROFILES = {"extended": NavigationParameters.extended, "paper": NavigationParame
 
 
 def expand_presets(data: Mapping[str, Any]) -> Table:
-    """Return a scenario's tables with the values of its profile and lens.
+    """Return a scenario's tables with the values of its profile and camera.
 
     Given values take precedence. Malformed tables remain, for validation to report them.
     """
@@ -24,8 +24,8 @@ def expand_presets(data: Mapping[str, Any]) -> Table:
         profile = navigation.get("profile")
         if isinstance(profile, str) and profile in PROFILES:
             expanded["navigation"] = under(navigation, asdict(PROFILES[profile]()))
-    if isinstance(camera, dict):
-        expanded["camera"] = _with_lens(camera)
+    if isinstance(camera, dict) and camera.get("preset") == "ideal":
+        return under(expanded, IDEAL)
     return expanded
 
 
@@ -51,15 +51,6 @@ def _number(data: Mapping[str, Any], section: str, key: str) -> float | None:
     table = data.get(section)
     value = table.get(key) if isinstance(table, dict) else None
     return None if isinstance(value, bool) or not isinstance(value, int | float) else value
-
-
-def _with_lens(camera: Table) -> Table:
-    lens, fov = camera.get("lens"), camera.get("vertical_fov_deg")
-    if lens is None and fov is not None and fov != LENSES["wide"]:
-        return {**camera, "lens": "custom"}
-    if fov is None and isinstance(lens, str) and lens in LENSES:
-        return {**camera, "vertical_fov_deg": LENSES[lens]}
-    return camera
 
 
 def under(given: Table, defaults: Table) -> Table:

@@ -33,8 +33,8 @@ PUBLIC = _dotted(
         "navigation.mission": "r_via r_goal heading_tolerance",
         "navigation.evaluation": "d_nm d_fm map_ratio",
         "navigation.gaze": "mode moved_by w_lm w_way w_sf w_ob step switch_ratio dwell fixed_tilt "
-        "sweep_amplitude sweep_period max_pan min_tilt max_tilt box_fraction obstacle_votes "
-        "map_votes candidates",
+        "sweep_amplitude sweep_period sweep_stops sweep_frames max_pan min_tilt max_tilt "
+        "box_fraction obstacle_votes map_votes candidates",
         "navigation.planner": "method memory",
         "navigation.univector": "s_robot margin eta_vo eta_imp d_con d_e d_b k_r w_muf w_auf "
         "arrival inside blend grouping side_memory",

@@ -12,6 +12,7 @@ RENAMED: dict[str, str] = {
     "belief.localization.map": "belief.localization.landmarks",
     "belief.recognition": "belief.relocalization",
     "belief.tracking.top_speed": "belief.tracking.max_speed",
+    "camera.lens": "camera.preset",
     "command.random.stops": "command.random.stop_fraction",
     "fault.place": "fault.position",
     "fault.size": "fault.magnitude",

@@ -1,7 +1,6 @@
 """State estimation: localization, tracking and local map, once per camera frame."""
 
 from collections.abc import Mapping
-from dataclasses import replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -75,7 +74,7 @@ class Estimator:
         tracks = self._tracker.update(frame.time, detections, viewpoint, free)
         if isinstance(localizer, EkfSlam):
             localizer.map_landmarks(frame, tracks)
-        searched = replace(viewpoint, range=p.local_map.range)
+        searched = Viewpoint.of(frame.view, pose, p.local_map.range)
         self._map.update(frame.time, searched, centre, detections.positions, detections.radii)
         return Belief(
             time=frame.time,

@@ -131,12 +131,14 @@ class LocalMap:
         if columns == 0 and rows == 0:
             return
         self._corner = corner
-        self._seen_at = _shifted(self._seen_at, rows, columns, -np.inf)
-        self._log_odds = _shifted(self._log_odds, rows, columns, 0.0)
+        self._seen_at = shifted(self._seen_at, rows, columns, -np.inf)
+        self._log_odds = shifted(self._log_odds, rows, columns, 0.0)
 
 
-def _shifted(cells: Array, rows: int, columns: int, empty: float) -> Array:
-    """Return the cells of a window moved by (rows, columns); new cells are `empty`."""
+def shifted(cells: Array, rows: int, columns: int, empty: float) -> Array:
+    """Return the cells (n, n) of a window moved by (rows, columns); new cells are `empty`."""
+    if rows == 0 and columns == 0:
+        return cells
     n = len(cells)
     moved = np.full((n, n), empty)
     if abs(rows) < n and abs(columns) < n:

@@ -1,6 +1,6 @@
 """Visibility: field of view, range and occlusion of the camera."""
 
-from math import pi, tan
+from math import cos, pi, tan
 
 import numpy as np
 from numpy.typing import NDArray
@@ -22,8 +22,8 @@ class Viewpoint:
         rotation: R_WC, columns right, down, forward (3, 3).
         position: p_WC (3,) [m].
         horizontal_half, vertical_half: half the fields of view [rad]. A horizontal half of pi/2
-            or more means an omnidirectional camera, which also sees up and down.
-        range: maximum distance of a detection along the floor [m].
+            or more means a panoramic camera, which also sees up and down.
+        range: maximum distance of a detection along the floor, 0 for a blind camera [m].
     """
 
     rotation: Array
@@ -51,7 +51,7 @@ class Viewpoint:
             position,
             0.5 * view.horizontal_fov,
             0.5 * view.vertical_fov,
-            reach,
+            0.0 if view.blind else reach,
         )
 
     def in_clear_view(
@@ -89,11 +89,13 @@ class Viewpoint:
 
     def _camera(self, margin: float) -> visibility_kernel.Camera:
         """Camera in the format of `visibility_kernel.in_view`, for points of the floor (13)."""
-        omnidirectional = self.horizontal_half >= 0.5 * pi
+        panoramic = self.horizontal_half >= 0.5 * pi
         return (
             *self.rotation.ravel().tolist(),
             -float(self.position[2]),
-            -1.0 if omnidirectional else tan(max(self.horizontal_half - margin, 0.0)),
-            tan(max(self.vertical_half - margin, 0.0)),
+            -1.0 if panoramic else tan(max(self.horizontal_half - margin, 0.0)),
+            cos(min(self.horizontal_half, pi))
+            if panoramic
+            else tan(max(self.vertical_half - margin, 0.0)),
             float(self.range),
         )

@@ -20,13 +20,14 @@ def in_view(dx: float, dy: float, camera: Camera) -> bool:
         dx: from the camera along x of W [m].
         dy: from the camera along y [m].
         camera: rows of R_WC (9,), height of the point above the camera [m], tangents of half
-            the fields of view, the horizontal one negative for an omnidirectional camera, and
-            range [m] (13).
+            the fields of view, and range [m] (13). A panoramic camera has a negative horizontal
+            tangent, then the cosine of half its horizontal field of view.
     """
     if dx * dx + dy * dy > camera[12] * camera[12]:
         return False
     if camera[10] < 0.0:
-        return True
+        across = (camera[2] ** 2 + camera[5] ** 2) * (dx * dx + dy * dy)
+        return bool(camera[2] * dx + camera[5] * dy >= camera[11] * across**0.5)
     dz = camera[9]
     forward = (camera[2] * dx + camera[8] * dz) + camera[5] * dy
     if forward <= 0.0:

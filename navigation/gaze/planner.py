@@ -4,6 +4,7 @@ The body of a robot whose camera is fixed turns instead of its head.
 """
 
 from collections.abc import Mapping
+from dataclasses import replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -11,8 +12,9 @@ from numpy.typing import NDArray
 from navigation.angles import wrap
 from navigation.belief.belief import Belief
 from navigation.decision import GazeDecision, MotionDecision, SpeedLimits, Task
+from navigation.gaze.choice import gaze_policy, search_policy
 from navigation.gaze.gaze_map import GazeGrid
-from navigation.gaze.policy import GazeContext, SweepGaze, gaze_policy
+from navigation.gaze.policy import GazeContext
 from navigation.gaze.scene import gaze_scene
 from navigation.gaze.timing import GazeTiming
 from navigation.parameters.navigation import NavigationParameters
@@ -33,8 +35,8 @@ class GazePlanner:
         parameters: NavigationParameters,
         limits: SpeedLimits,
         beacons: Mapping[str, tuple[float, float]],
-        horizontal_fov: float,
-        vertical_fov: float,
+        fov: tuple[float, float],
+        neck: tuple[float, float],
     ) -> None:
         """Initialize with the gaze straight ahead.
 
@@ -42,18 +44,16 @@ class GazePlanner:
             parameters: profile.
             limits: of the walking layer.
             beacons: positions in W by name [m].
-            horizontal_fov: of the camera [rad].
-            vertical_fov: of the camera [rad].
+            fov: horizontal and vertical field of view of the camera [rad].
+            neck: maximum rate [rad/s] and acceleration [rad/s²] of the camera.
         """
         p = parameters.gaze
         self._parameters = parameters
         self._beacons = np.array([beacons[name] for name in sorted(beacons)]).reshape(-1, 2)
         self._samples = SamplePoints.polar(parameters.evaluation, p.max_pan)
-        self.grid = GazeGrid(p, horizontal_fov, vertical_fov)
-        self._policy = gaze_policy(parameters, limits, self.grid)
-        # The map of a lost robot does not show where the beacons are.
-        searching = p.mode != "fixed" and p.moved_by == "head"
-        self._search = SweepGaze(parameters) if searching else self._policy
+        self.grid = GazeGrid(p, *fov)
+        self._policy = gaze_policy(parameters, limits, self.grid, self._beacons, neck)
+        self._search = search_policy(parameters, self.grid)
         self._timing = GazeTiming(p)
         self._pan, self._tilt = 0.0, p.fixed_tilt
         self._direction: float | None = None
@@ -70,23 +70,22 @@ class GazePlanner:
         Returns:
             The decision in force; a new one after the arrival of the head and the dwell.
         """
+        self._policy.observe(belief)
         policy = self._search if belief.lost else self._policy
-        now = self._now(belief)
-        error = max(abs(belief.view.pan - self._pan), abs(belief.view.tilt - self._tilt))
-        if self._direction is not None:
+        by_body = self._parameters.gaze.moved_by == "body"
+        now = self._now(belief, policy.stabilized or by_body)
+        if by_body:
             error = abs(now[0])
+        else:
+            error = max(abs(belief.view.pan - now[0]), abs(belief.view.tilt - now[1]))
         ready = not policy.steady or self._timing.ready(belief.time, error)
         if self._last is not None and not ready:
-            return self._last
+            return replace(self._last, pan=now[0])
         scene = gaze_scene(belief, motion, self._samples, self._beacons, self._parameters)
-        context = GazeContext(task, motion, scene)
-        gaze_map = self.grid.gaze_map(policy.votes(context))
-        self._pan, self._tilt = policy.aim(context, gaze_map, now)
-        target = self._pan, self._tilt
-        if self._parameters.gaze.moved_by == "body":
-            self._direction = wrap(float(belief.pose[2]) + self._pan)
-            target = self._direction, self._tilt
-        self._timing.decided(belief.time, target)
+        gaze_map, (self._pan, self._tilt) = policy.look(GazeContext(task, motion, scene), now)
+        self._direction = wrap(float(belief.pose[2]) + self._pan)
+        held = by_body or policy.stabilized
+        self._timing.decided(belief.time, (self._direction if held else self._pan, self._tilt))
         self._last = GazeDecision(
             pan=self._pan,
             tilt=self._tilt,
@@ -95,12 +94,14 @@ class GazePlanner:
             psi_ob=scene.psi_ob_max,
             psi_way=scene.psi_way,
             gaze_map=gaze_map,
-            body_direction=self._direction,
+            stabilized=policy.stabilized,
+            body_direction=self._direction if by_body else None,
         )
         return self._last
 
-    def _now(self, belief: Belief) -> tuple[float, float]:
-        """Return the gaze that was chosen, as seen from the present body [rad]."""
-        if self._direction is None:
+    def _now(self, belief: Belief, held: bool) -> tuple[float, float]:
+        """Return the gaze that was chosen [rad]; one that is `held` keeps its direction in W."""
+        if self._direction is None or not held:
             return self._pan, self._tilt
-        return wrap(self._direction - float(belief.pose[2])), self._tilt
+        pan, limit = wrap(self._direction - float(belief.pose[2])), self._parameters.gaze.max_pan
+        return min(max(pan, -limit), limit), self._tilt

@@ -109,9 +109,10 @@ def gaze_scene(
     psi_ob = psi_obstacle(obstacles, pose[:2], velocity, e)
     members = attended(obstacles, pose, velocity, e.attention_range)
     height = float(view.position[2])
-    in_gaze = (np.abs(wrap_array(samples.bearing - view.pan)) <= 0.5 * view.horizontal_fov) & (
-        np.abs(-np.arctan2(height, samples.distance) - view.tilt) <= 0.5 * view.vertical_fov
-    )
+    aside = np.abs(wrap_array(samples.bearing - view.pan))
+    above = np.abs(-np.arctan2(height, samples.distance) - view.tilt)
+    in_gaze = (aside <= 0.5 * view.horizontal_fov) & (above <= 0.5 * view.vertical_fov)
+    in_gaze &= not view.blind
     confidence = belief.local_map.confidence_at(points_to_world(pose, samples.points))
     radii = extended_radius(obstacles, psi_sf, psi_ob, parameters.univector)
     centres = obstacles.position[members]

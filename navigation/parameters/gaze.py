@@ -7,13 +7,14 @@ from dataclasses import dataclass, field
 from math import pi
 from typing import Annotated, Literal
 
-from annotated_types import Ge, Gt, Le, Lt
+from annotated_types import Ge, Gt, Interval, Le, Lt
 
 from navigation.parameters.bounds import NonNegative, Positive
+from navigation.parameters.risk import RiskParameters, UndetectedParameters
 
 GazeMode = Literal[
+    "risk",
     "deadline",
-    "urgency",
     "integrated",
     "psi-lm",
     "psi-sf",
@@ -21,6 +22,8 @@ GazeMode = Literal[
     "psi-way",
     "info",
     "sweep",
+    "triangle",
+    "steps",
     "fixed",
 ]
 
@@ -97,26 +100,14 @@ class InformationParameters:
 
 
 @dataclass(frozen=True)
-class UrgencyParameters:
-    """Votes of obstacles by age over time to collision; the other evaluations as in (6)."""
-
-    max_urgency: float = 10.0  # upper bound of the urgency [1]
-    bonus: Annotated[float, "s"] = 0.3  # age added to decided obstacles
-    unknown_bonus: Annotated[float, "s"] = 1.0  # age added to undecided obstacles
-    min_time: Annotated[float, "s"] = 0.4  # lower bound of the time to collision
-    side_weight: float = 0.6  # weight of obstacles at a right angle to the path [1]
-    static_weight: float = 0.15  # weight of static obstacles [1]
-    unseen_ground_weight: float = 0.8  # vote for unseen ground that slows the robot down [1]
-
-
-@dataclass(frozen=True)
 class GazeParameters:
     """Gaze map (5)-(6) and the timing of the gaze."""
 
-    mode: GazeMode = "deadline"
-    """deadline: age over time to collision, the default; urgency: its predecessor; integrated:
-    (1)-(6); psi-lm, psi-sf, psi-ob, psi-way: one evaluation alone; info: greedy information gain;
-    sweep: sinusoidal pan; fixed: straight ahead."""
+    mode: GazeMode = "risk"
+    """risk: most risk removed per time, the default; deadline: age over time to collision;
+    integrated: (1)-(6); psi-lm, psi-sf, psi-ob, psi-way: one evaluation alone; info: greedy
+    information gain. Blind: sweep: sinusoidal pan; triangle: pan at a constant rate; steps: stops
+    from side to side; fixed: straight ahead."""
     moved_by: Literal["head", "body"] = "head"
     """Part that turns the camera: the head, or the body of a robot with a fixed camera."""
     w_lm: NonNegative = 0.09
@@ -127,7 +118,7 @@ class GazeParameters:
     """Weight of self-localization in (6) [1]."""
     w_ob: NonNegative = 0.45
     """Weight of obstacles in (6) [1]."""
-    step: Annotated[float, Ge(0.01), Le(7.0)] = pi / 36.0
+    step: Annotated[float, Ge(0.01), Le(7.0)] = pi / 18.0
     """Resolution of the gaze map [rad]."""
     box_fraction: Annotated[float, Gt(0.0), Le(0.5)] = 0.45
     """Half width of the box of a vote as a fraction of the field of view [1]."""
@@ -148,15 +139,20 @@ class GazeParameters:
     dwell: NonNegative = 0.1
     """Dwell: time between the arrival of the head and the next decision [s]."""
     fixed_tilt: Annotated[float, Ge(-2.0), Le(2.0)] = -0.45
-    """Tilt of the fixed gaze and of the sweep [rad]."""
+    """Tilt of the blind gazes [rad]."""
     sweep_amplitude: NonNegative = 1.2
-    """Pan amplitude of the sweep [rad]."""
+    """Pan amplitude of the sweeps [rad]."""
     sweep_period: Annotated[Positive, "s"] = 4.0
-    """Period of the sweep [s]."""
+    """Period of sine and triangle sweep [s]."""
+    sweep_stops: Annotated[int, Interval(ge=2, le=100)] = 4
+    """Number of stops of the step sweep [1]."""
+    sweep_frames: Annotated[int, Interval(ge=1, le=100)] = 2
+    """Number of sharp frames at each of its stops [1]."""
 
     arrival_tolerance: float = 0.06  # distance from the target at which a saccade ends [rad]
     max_saccade_time: float = 0.6  # time until the next decision if the head does not arrive [s]
     max_turn_time: float = 1.5  # the same time if the body does not arrive [s]
-    urgency: UrgencyParameters = field(default_factory=UrgencyParameters)
+    risk: RiskParameters = field(default_factory=RiskParameters)
+    undetected: UndetectedParameters = field(default_factory=UndetectedParameters)
     deadline: DeadlineParameters = field(default_factory=DeadlineParameters)
     information: InformationParameters = field(default_factory=InformationParameters)

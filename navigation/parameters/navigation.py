@@ -5,6 +5,7 @@ printed structure.
 """
 
 from dataclasses import dataclass, field
+from math import pi
 from typing import Annotated
 
 from navigation.parameters.bounds import Positive
@@ -66,6 +67,7 @@ class NavigationParameters:
             evaluation=EvaluationParameters(map_ratio="printed", t_heading=0.0),
             gaze=GazeParameters(
                 mode="integrated",
+                step=pi / 36.0,
                 w_lm=0.21,
                 w_way=0.17,
                 w_sf=0.29,

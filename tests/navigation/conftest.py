@@ -77,8 +77,15 @@ def frame():
 class _Map:
     """A local map that answers with given functions of points in W."""
 
+    cell, origin = 0.1, (-3.0, -3.0)
+
     def __init__(self, confidence, age):
         self._confidence, self._age = confidence, age
+
+    @property
+    def age(self):
+        centres = -2.95 + 0.1 * np.arange(60)
+        return np.array([[self._age(x, y) for x in centres] for y in centres])
 
     def confidence_at(self, points):
         return np.array([self._confidence(*p) for p in np.asarray(points).tolist()])

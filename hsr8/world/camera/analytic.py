@@ -1,13 +1,14 @@
 """Analytic camera: detections from the geometry of the cylinders, without rendering.
 
 It needs no OpenGL. Occlusion, image borders, range, noise and missed detections are modelled;
-colours are always recognised. The omnidirectional camera differs in its field of view alone.
+colours are always recognised. Panoramic cameras differ in their field of view alone.
 """
 
 from collections.abc import Sequence
-from math import atan2, cos, hypot, pi, sin
+from math import atan2, cos, hypot, sin
 
 import numpy as np
+from numpy.typing import NDArray
 
 from hsr8.robots.normal_form import HEAD_CAMERA
 from hsr8.scenario.camera import Camera
@@ -17,9 +18,13 @@ from hsr8.world.camera.analytic_kernel import project, project_all
 from hsr8.world.camera.faults import CameraFaults
 from hsr8.world.field.layout import Beacon, Layout, Obstacle
 from hsr8.world.rotation import heading
+from navigation.angles import wrap
 from vision.camera import PinholeCamera
 from vision.color import COLOR_CLASSES
 from vision.detection import Detection
+
+Array = NDArray[np.float64]
+Pose = tuple[float, float, float]
 
 # Lengths are those in a world of scale 1.
 OBSTACLE_RANGE = 4.5  # farther obstacles are not reported [m]
@@ -46,24 +51,28 @@ class AnalyticCamera:
     Args:
         layout: obstacles and beacons.
         camera: intrinsics.
-        rng: generator of noise and misses.
         settings: of the camera.
+        rng: generator of noise and misses.
         faults: of the images.
+        fov: horizontal field of view, more than that of `camera` if panoramic [rad].
     """
 
     def __init__(
         self,
         layout: Layout,
         camera: PinholeCamera,
-        rng: np.random.Generator,
         settings: Camera,
+        rng: np.random.Generator,
         faults: CameraFaults,
+        *,
+        fov: float,
     ) -> None:
         self._camera = camera
         self._scale = layout.scale
         self._rng = rng
         self._fault_rng = rng.spawn(1)[0]
-        self._omnidirectional = settings.omnidirectional
+        self._panoramic = settings.panoramic
+        self._half_fov = 0.5 * fov
         self._faults = faults
         self._movers = layout.motion()
         self._cylinders: tuple[Obstacle | Beacon, ...] = (*layout.obstacles, *layout.beacons)
@@ -72,7 +81,7 @@ class AnalyticCamera:
         self._sizes = np.array([(c.radius, c.height) for c in self._cylinders]).reshape(-1, 2)
         self._beacon = np.array([isinstance(c, Beacon) for c in self._cylinders], dtype=bool)
         self._eye = np.zeros(16)
-        self._eye[12:] = camera.width, camera.height, camera.focal, self._omnidirectional
+        self._eye[12:] = camera.width, camera.height, camera.focal, self._panoramic
 
     def capture(self, body: Body) -> tuple[Detection, ...]:
         """Return the detections in the present world, by distance and label."""
@@ -81,19 +90,30 @@ class AnalyticCamera:
         camera_id, root = model.camera(HEAD_CAMERA).id, int(model.jnt_qposadr[0])
         # MuJoCo cameras look along -z with y up, frame C along +z with y down.
         rotation = data.cam_xmat[camera_id].reshape(3, 3) * (1.0, -1.0, -1.0)
-        self._eye[:3], self._eye[3:12] = data.cam_xpos[camera_id], rotation.ravel()
         x, y = data.qpos[root : root + 2].tolist()
         robot = (x, y, heading(data.qpos[root + 3 : root + 7]))
-        tick = ticks(body.time)
-        detections = self._detect(body.time, robot, self._faults.missed(tick))
+        return self.detect(body.time, robot, data.cam_xpos[camera_id], rotation)
+
+    def detect(
+        self, time: float, robot: Pose, position: Array, rotation: Array
+    ) -> tuple[Detection, ...]:
+        """Return the detections from a pose of robot and camera, by distance and label.
+
+        Args:
+            time: simulated time [s].
+            robot: x, y, heading in W [m, m, rad].
+            position: of the camera in W (3,) [m].
+            rotation: R_WC, columns right, down, forward (3, 3).
+        """
+        self._eye[:3], self._eye[3:12] = position, rotation.ravel()
+        tick = ticks(time)
+        detections = self._detect(time, robot, self._faults.missed(tick))
         detections += self._false_detections(robot, self._faults.false_detections(tick))
         if self._faults.black(tick):
             return ()
         return tuple(sorted(detections, key=lambda d: (d.distance, d.label)))
 
-    def _detect(
-        self, time: float, robot: tuple[float, float, float], missed: float
-    ) -> list[Detection]:
+    def _detect(self, time: float, robot: Pose, missed: float) -> list[Detection]:
         """Return the detections of cylinders; a fault hides the fraction `missed`."""
         if len(self._movers):
             self._positions[self._moving] = self._movers.positions(time)
@@ -114,9 +134,10 @@ class AnalyticCamera:
                 continue
             if missed and self._fault_rng.random() < missed:
                 continue
-            if box[2]:
-                x, y = self._positions[i].tolist()
-                polar = _polar(x, y, robot)
+            x, y = self._positions[i].tolist()
+            polar = _polar(x, y, robot)
+            in_sector = not self._panoramic or abs(wrap(polar[1])) <= self._half_fov
+            if box[2] and in_sector:
                 detections.append(
                     _detection(
                         polar,
@@ -129,18 +150,17 @@ class AnalyticCamera:
                 )
         return detections
 
-    def _false_detections(self, robot: tuple[float, float, float], mean: float) -> list[Detection]:
+    def _false_detections(self, robot: Pose, mean: float) -> list[Detection]:
         """Return false detections of obstacles, `mean` on average."""
         rng, eye = self._fault_rng, self._eye
         ahead = atan2(eye[8], eye[5]) - robot[2]
-        half = pi if self._omnidirectional else 0.5 * self._camera.horizontal_fov
         detections = []
         for _ in range(int(rng.poisson(mean)) if mean else 0):
             color = OBSTACLE_COLORS[rng.integers(len(OBSTACLE_COLORS))]
             radius, height = FALSE_RADIUS * self._scale, FALSE_HEIGHT * self._scale
             cylinder = Obstacle((0.0, 0.0), radius, height, color)
             distance = self._scale * rng.uniform(*FALSE_RANGE)
-            polar = (distance, ahead + rng.uniform(-half, half))
+            polar = (distance, ahead + rng.uniform(-self._half_fov, self._half_fov))
             direction = polar[1] + robot[2]
             x = robot[0] + polar[0] * cos(direction) - float(eye[0])
             y = robot[1] + polar[0] * sin(direction) - float(eye[1])
@@ -159,7 +179,7 @@ class AnalyticCamera:
         return detections
 
 
-def _polar(x: float, y: float, robot: tuple[float, float, float]) -> tuple[float, float]:
+def _polar(x: float, y: float, robot: Pose) -> tuple[float, float]:
     """Return distance [m] and bearing [rad] of a point from the robot."""
     x, y = x - robot[0], y - robot[1]
     return hypot(x, y), atan2(y, x) - robot[2]

@@ -2,7 +2,7 @@
 
 An eye is a packed camera: position (3) [m], rotation row by row with right, down and forward axes
 as columns (9), width, height and focal length of the image [pixel], and whether the camera is
-omnidirectional.
+panoramic.
 """
 
 from math import asin, atan2, ceil, hypot, inf, pi

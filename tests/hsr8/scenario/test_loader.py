@@ -51,7 +51,8 @@ mode = "deadlin"
         r"file\.toml:4: world\.n_statics: unknown key; did you mean 'n_static'\? \(allowed: ",
         r"file\.toml:5: world\.radius\[1\]: must be greater than 0, got -0\.2",
         r"file\.toml:7: camera\.period_ms: must be a multiple of 5, got 33",
-        r'file\.toml:8: camera\.source: must be one of "rendered", "analytic", "omnidirectional", '
+        r'file\.toml:8: camera\.source: must be one of "rendered", "analytic", "neck-reach", '
+        '"omnidirectional", '
         'got "egll"',
         r"file\.toml:10: navigation\.gaze\.mode: must be one of .*did you mean 'deadline'\?",
     ):
@@ -247,17 +248,21 @@ def test_wrong_overrides_are_named(override, expected):
     assert f"--set {override}" in str(caught.value)
 
 
-def test_single_keys_take_precedence_over_profile_and_lens():
+def test_single_keys_take_precedence_over_profile_and_camera():
     scenario = load_scenario(
-        "course", ["navigation.profile=paper", "navigation.gaze.w_lm=0.5", "camera.lens=narrow"]
+        "course",
+        [
+            *("navigation.profile=paper", "navigation.gaze.w_lm=0.5", "camera.preset=ideal"),
+            "walking.head.max_rate=5.0",
+        ],
     )
     assert scenario.navigation.gaze.mode == "integrated"
     assert scenario.navigation.gaze.w_lm == 0.5
     assert not scenario.navigation.safety_filter.enabled
-    assert scenario.camera.vertical_fov_deg == 45.0
-    assert scenario.camera.horizontal_fov_deg == pytest.approx(57.8, abs=0.1)
+    assert scenario.camera.vertical_fov_deg == 70.0
+    assert scenario.walking.head.max_rate == 5.0
+    assert load_scenario("course").camera.horizontal_fov_deg == pytest.approx(60.0, abs=0.1)
     assert loads(dump(scenario)) == scenario
-    assert load_scenario("course", ["camera.vertical_fov_deg=60.0"]).camera.lens == "custom"
 
 
 TABLES = list(json_schema()["properties"])
@@ -270,7 +275,7 @@ leaves = st.one_of(
     st.sampled_from(["tour", "course", "points", "walk", "rendered", "paper", "shuttle"]),
 )
 inner = st.sampled_from(
-    ["kind", "n_static", "size", "radius", "mover", "motion", "points", "profile", "lens", "gaze"]
+    ["kind", "n_static", "size", "radius", "mover", "motion", "points", "profile", "preset", "gaze"]
 )
 values = st.recursive(
     leaves, lambda v: st.lists(v, max_size=3) | st.dictionaries(keys | inner, v, max_size=4)

@@ -2,7 +2,6 @@ from dataclasses import asdict
 
 import pytest
 
-from hsr8.scenario.camera import LENSES
 from hsr8.scenario.presets import PROFILES, expand_presets
 
 
@@ -18,13 +17,11 @@ def test_a_profile_sets_all_defaults_and_keeps_given_values(profile):
     assert given == {"profile": profile, "gaze": {"max_pan": 0.5}}
 
 
-@pytest.mark.parametrize("lens", LENSES)
-def test_a_lens_sets_the_field_of_view(lens):
-    assert expand_presets({"camera": {"lens": lens}})["camera"]["vertical_fov_deg"] == LENSES[lens]
-
-
-def test_another_field_of_view_is_a_custom_lens():
-    assert expand_presets({"camera": {"vertical_fov_deg": 33.0}})["camera"]["lens"] == "custom"
+def test_the_ideal_camera_sets_lens_and_neck_and_keeps_given_values():
+    given = {"camera": {"preset": "ideal", "blind_above": 2.0}, "walking": {"head": {}}}
+    tables = expand_presets(given)
+    assert tables["camera"] == {"preset": "ideal", "vertical_fov_deg": 70.0, "blind_above": 2.0}
+    assert tables["walking"]["head"] == {"max_rate": 6.0, "max_acceleration": 60.0}
 
 
 @pytest.mark.parametrize(
@@ -32,8 +29,8 @@ def test_another_field_of_view_is_a_custom_lens():
     [
         {},
         {"navigation": 3, "camera": "wide"},
-        {"navigation": {"profile": "fast"}, "camera": {"lens": 2}},
-        {"camera": {"vertical_fov_deg": LENSES["wide"]}},
+        {"navigation": {"profile": "fast"}, "camera": {"preset": 2}},
+        {"camera": {"preset": "honest", "vertical_fov_deg": 33.0}},
     ],
 )
 def test_other_values_stay_for_validation(data):

@@ -142,11 +142,12 @@ def test_the_table_of_a_robot_is_a_default(defaults):
     assert paper.navigation.univector.d_e == 0.8
 
 
-def test_a_lens_replaces_the_field_of_view_of_a_robot(monkeypatch):
+def test_the_camera_of_a_robot_takes_precedence_over_a_preset(monkeypatch):
     table = {"camera": {"vertical_fov_deg": 50.0}}
     monkeypatch.setattr(loader, "robot_defaults", lambda _: RobotDefaults(SCALE, table))
     assert load_scenario("course", BIG).camera.vertical_fov_deg == 50.0
-    assert load_scenario("course", [*BIG, "camera.lens=narrow"]).camera.vertical_fov_deg == 45.0
+    ideal = load_scenario("course", [*BIG, "camera.preset=ideal"]).camera
+    assert (ideal.vertical_fov_deg, ideal.blind_above) == (50.0, 10_000.0)
 
 
 @pytest.mark.parametrize("name", ["course", "fig4b", "corridor", "push", "paper"])
@@ -191,7 +192,7 @@ def test_a_wrong_robot_is_reported_with_its_place(defaults, tmp_path):
         (["world=3"], "world: must be a table"),
         (["world.size=4"], "world.size: must be a list"),
         (["mission.kind=tours"], "did you mean 'tour'"),
-        (["camera.lens=[1]"], "camera.lens: must be one of"),
+        (["camera.preset=[1]"], "camera.preset: must be one of"),
         (["world.mover=[{motion=3}]"], "world.mover[0].motion: must be one of"),
         (["navigation=[]"], "navigation: must be a table"),
         (["world.n_statics=1"], "did you mean 'n_static'"),

@@ -1,3 +1,4 @@
+from dataclasses import replace
 from math import atan2, cos, pi, sin
 
 import numpy as np
@@ -61,3 +62,19 @@ def test_an_omnidirectional_camera_contains_everything_in_range(view):
     wide = view(0.4, -0.3, hfov=2.0 * np.pi, vfov=np.pi)
     observed = contains(Viewpoint.of(wide, np.array([0.3, -0.2, 1.0]), 1.5), points, 0.1)
     np.testing.assert_array_equal(observed, np.hypot(*(points - [0.3, -0.2]).T) <= 1.5)
+
+
+def test_a_blind_camera_contains_nothing(view):
+    seen = Viewpoint.of(view(tilt=-0.5), np.zeros(3), 2.5)
+    blind = Viewpoint.of(replace(view(tilt=-0.5), blind=True), np.zeros(3), 2.5)
+    points = np.random.default_rng(2).uniform(-2, 2, (300, 2))
+    assert contains(seen, points).any()
+    assert not contains(blind, points).any()
+
+
+def test_a_panoramic_camera_contains_a_sector(view):
+    sector = Viewpoint.of(view(pan=0.3, hfov=4.0, vfov=pi), np.array([0.0, 0.0, 0.5]), 9.0)
+    angles = np.linspace(-pi, pi, 721)
+    points = 1.5 * np.column_stack([np.cos(angles), np.sin(angles)])
+    offset = np.abs(np.angle(np.exp(1j * (angles - 0.8))))
+    assert np.array_equal(contains(sector, points), offset < 2.0)

@@ -18,7 +18,7 @@ def votes(b, t, p=PAPER, beacons=NO_BEACONS):
 
 def test_the_printed_map_stays_within_0_and_1(belief, task, track, limits):
     rng = np.random.default_rng(0)
-    gaze = GazePlanner(PAPER, limits, {"a/b": (2.5, 0.5)}, 1.5, 1.22)
+    gaze = GazePlanner(PAPER, limits, {"a/b": (2.5, 0.5)}, (1.5, 1.22), (3.0, 40.0))
     for _ in range(10):
         tracks = [
             track(c, v, sigma=0.2, id=i)
@@ -74,7 +74,7 @@ def test_obstacles_out_of_reach_do_not_vote(belief, task, track):
 
 def test_obstacles_and_beacons_together_do_not_exceed_one(belief, task, track, view, limits):
     """Everything at its largest and in one line of sight."""
-    gaze = GazePlanner(PAPER, limits, {}, 1.6, 2.0)
+    gaze = GazePlanner(PAPER, limits, {}, (1.6, 2.0), (3.0, 40.0))
     mover = track((2.2, 0.0), (-0.2, 0.0), sigma=1.0)
     b = belief([mover], sigma=0.2, confidence=lambda x, y: 0.0, camera=view(1.57, -0.44))
     v = votes(b, task(), beacons=np.array([[4.0, 0.0]]))

@@ -4,9 +4,10 @@ from typing import get_args
 import numpy as np
 import pytest
 
+from navigation.gaze.choice import BLIND, gaze_policy, single_weight
 from navigation.gaze.gaze_map import GazeGrid, Votes
 from navigation.gaze.planner import GazePlanner
-from navigation.gaze.policy import VotingGaze, gaze_policy, single_weight
+from navigation.gaze.voting import VotingGaze
 from navigation.parameters.gaze import GazeMode, GazeParameters
 from navigation.parameters.navigation import NavigationParameters
 
@@ -14,17 +15,20 @@ BEACONS = {"cyan/yellow": (2.9, 0.5), "yellow/cyan": (-2.9, 0.0), "magenta/cyan"
 P = NavigationParameters.extended()
 MODES = get_args(GazeMode)
 PSI = [mode for mode in MODES if mode.startswith("psi-")]
-VOTING = [mode for mode in MODES if mode not in ("fixed", "sweep")]
+DELIBERATE = [mode for mode in MODES if mode not in BLIND]
+FOV, NECK = (1.5, 1.22), (3.0, 40.0)
 
 
-def planner(limits, mode):
-    return GazePlanner(replace(P, gaze=replace(P.gaze, mode=mode)), limits, BEACONS, 1.5, 1.22)
+def planner(limits, mode, step=P.gaze.step):
+    gaze = replace(P.gaze, mode=mode, step=step)
+    return GazePlanner(replace(P, gaze=gaze), limits, BEACONS, FOV, NECK)
 
 
 @pytest.fixture
 def choose(limits, task):
     def choose(mode, belief, **where):
-        return planner(limits, mode).choose(belief, task(**where), None)
+        step = P.gaze.step / 2.0
+        return planner(limits, mode, step).choose(belief, task(**where), None)
 
     return choose
 
@@ -40,7 +44,7 @@ def test_every_gaze_stays_within_the_limits_of_the_head(mode, changes, limits, t
     for k in range(12):
         tracks = [track(c, (0.1, 0.0), age=1.0) for c in rng.uniform(-1.5, 1.5, (5, 2))]
         b = belief(tracks, time=0.37 * k, confidence=lambda x, y: 0.5)
-        gaze = GazePlanner(replace(P, gaze=p), limits, BEACONS, 1.5, 1.22).choose(b, task(), None)
+        gaze = GazePlanner(replace(P, gaze=p), limits, BEACONS, FOV, NECK).choose(b, task(), None)
         assert abs(gaze.pan) <= p.max_pan + 1e-9
         assert p.min_tilt - 1e-9 <= gaze.tilt <= p.max_tilt + 1e-9
         assert np.isfinite(gaze.gaze_map).all()
@@ -51,15 +55,14 @@ def test_every_gaze_stays_within_the_limits_of_the_head(mode, changes, limits, t
 def test_at_a_ratio_of_one_the_gaze_is_the_centre_of_the_plateau_and_stays(ratio):
     p = GazeParameters(max_pan=1.0, min_tilt=-1.0, max_tilt=0.0, step=0.1, box_fraction=0.5)
     grid = GazeGrid(p, 0.8, 0.6)
-    gaze = VotingGaze(lambda context: Votes.join([]), grid, ratio)
-    top = grid.gaze_map(Votes.one(0.2, -0.5, 1.0))
+    gaze = VotingGaze(lambda context: Votes.one(0.2, -0.5, 1.0), grid, ratio)
     now = (0.5, -0.4)
     for _ in range(5):
-        now = gaze.aim(None, top, now)
+        now = gaze.look(None, now)[1]
     assert now == pytest.approx((0.2, -0.5) if ratio == 1.0 else (0.5, -0.4))
 
 
-@pytest.mark.parametrize("mode", VOTING)
+@pytest.mark.parametrize("mode", DELIBERATE)
 def test_the_mirror_image_of_a_world_is_looked_at_from_the_other_side(
     mode, choose, belief, track, limits, task
 ):
@@ -69,7 +72,7 @@ def test_the_mirror_image_of_a_world_is_looked_at_from_the_other_side(
         beacons = {"cyan/yellow": (0.5, 2.9 * side)}
         p = replace(P, gaze=replace(P.gaze, mode=mode))
         goal = task(target=(0.2, 2.0 * side))
-        return GazePlanner(p, limits, beacons, 1.5, 1.22).choose(unseen, goal, None)
+        return GazePlanner(p, limits, beacons, FOV, NECK).choose(unseen, goal, None)
 
     left, right = world(1.0), world(-1.0)
     assert left.pan > 0.1
@@ -98,18 +101,19 @@ def test_the_weight_of_a_single_evaluation_is_one(mode):
     assert getattr(g, f"w_{mode.removeprefix('psi-')}") == 1.0
 
 
-def test_only_the_sweep_moves_without_arriving(limits):
+def test_voting_gazes_and_the_fixed_one_wait_for_the_head(limits):
     for mode in MODES:
         p = replace(P, gaze=replace(P.gaze, mode=mode))
-        steady = gaze_policy(p, limits, planner(limits, mode).grid).steady
-        assert steady == (mode != "sweep")
+        policy = gaze_policy(p, limits, planner(limits, mode).grid, np.zeros((0, 2)), NECK)
+        assert policy.steady == (mode not in ("risk", "sweep", "triangle", "steps"))
 
 
-def test_the_sweep_has_its_amplitude_and_period(choose, belief):
-    p = P.gaze
-    times = np.linspace(0.0, p.sweep_period, 41)
-    pans = [choose("sweep", belief(time=t)).pan for t in times]
-    assert pans == pytest.approx(p.sweep_amplitude * np.sin(2.0 * np.pi * times / p.sweep_period))
+@pytest.mark.parametrize("mode", MODES)
+def test_deliberate_gazes_and_stops_keep_their_direction_while_the_body_turns(
+    mode, choose, belief, track
+):
+    decision = choose(mode, belief([track((0.5, 0.5), age=1.0)]))
+    assert decision.stabilized == (mode not in ("fixed", "sweep", "triangle"))
 
 
 def test_the_fixed_gaze_ignores_the_belief(choose, belief, track):

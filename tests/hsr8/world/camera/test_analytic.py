@@ -1,3 +1,5 @@
+from math import pi
+
 import numpy as np
 import pytest
 
@@ -9,7 +11,7 @@ from hsr8.world.camera.faults import CameraFaults
 from hsr8.world.field.layout import Obstacle
 from vision.camera import PinholeCamera
 
-AHEAD = Camera()
+AHEAD = Camera(source="analytic")
 CAMERA = PinholeCamera.from_vertical_fov(320, 240, np.radians(70.0))
 
 
@@ -21,7 +23,9 @@ def see(world, silent):
         layout, model = world(*obstacles, start=start)
         body = KinematicBody(model, load_robot("hsr8"), layout, silent, np.random.default_rng(0))
         body.data.joint("head_tilt").qpos[0] = tilt
-        camera = AnalyticCamera(layout, CAMERA, np.random.default_rng(1), settings, CameraFaults())
+        fov = {"analytic": CAMERA.horizontal_fov, "neck-reach": 4.2}.get(settings.source, 2.0 * pi)
+        rng = np.random.default_rng(1)
+        camera = AnalyticCamera(layout, CAMERA, settings, rng, CameraFaults(), fov=fov)
         return [camera.capture(body) for _ in range(frames)]
 
     return make
@@ -122,3 +126,13 @@ def test_an_omnidirectional_camera_sees_in_every_direction_with_the_noise_of_any
     assert 0.7 < np.std(off) < 1.4
     (ahead,) = {d.covariance[1, 1] for d in obstacles_in(see(Obstacle((1.2, 0), 0.08, 0.3, "red")))}
     assert detections[0].covariance[1, 1] == pytest.approx(ahead)
+
+
+def test_a_camera_within_reach_of_the_neck_sees_to_both_sides_but_not_behind(see):
+    def seen(degrees):
+        bearing = np.radians(degrees)
+        obstacle = Obstacle((1.2 * np.cos(bearing), 1.2 * np.sin(bearing)), 0.08, 0.3, "red")
+        return bool(obstacles_in(see(obstacle, frames=5, settings=Camera(source="neck-reach"))))
+
+    assert all(seen(angle) for angle in (0.0, 115.0, -115.0))
+    assert not any(seen(angle) for angle in (125.0, -125.0, 180.0))

@@ -165,7 +165,7 @@ def test_the_seed_determines_the_world():
     assert first.start == again.start != other.start
     assert first.goal_heading == again.goal_heading
     np.testing.assert_array_equal(first.waypoints, again.waypoints)
-    changed = load_scenario("course", ["camera.lens=narrow", "sensors.gyro=0.0"])
+    changed = load_scenario("course", ["camera.preset=ideal", "sensors.gyro=0.0"])
     assert draw_layout(changed, 5).obstacles == first.obstacles
 
 

@@ -1,0 +1,192 @@
+"""Risk gaze: the view that removes the most risk per time.
+
+The four partial evaluations of Yoo & Kim decide on looks: at ground where undetected movers may be
+(psi_lm), at obstacles that may have moved (psi_ob), at beacons (psi_sf) and at unseen ground ahead
+(psi_way). Their urgencies feed the gaze map: the value of a view is the sum of the urgencies of
+all that its image shows, over the time of the saccade and the look.
+"""
+
+from dataclasses import replace
+from math import hypot, tan
+
+import numpy as np
+from numpy.typing import NDArray
+
+from navigation.belief.belief import Belief, Motion
+from navigation.decision import SpeedLimits
+from navigation.gaze.gaze_map import GazeGrid
+from navigation.gaze.policy import Gaze, GazeContext, GazePolicy
+from navigation.gaze.undetected import Undetected
+from navigation.gaze.view_kernel import view_values
+from navigation.motion.unseen_ground import ground_points
+from navigation.parameters.navigation import NavigationParameters
+from navigation.partial_evaluation import psi_self
+from navigation.transform import points_to_robot, velocity_in_world
+
+Array = NDArray[np.float64]
+
+MAX_HALF_FOV = 1.5  # of a panoramic camera, as a pinhole camera [rad]
+
+
+class RiskGaze(GazePolicy):
+    """Gaze at the view of the highest value per time, decided at every frame.
+
+    Args:
+        parameters: of the decisions.
+        limits: of the walking layer.
+        grid: views.
+        beacons: known positions in W (m, 2) [m].
+        neck: maximum rate [rad/s] and acceleration [rad/s²] of the camera.
+    """
+
+    def __init__(
+        self,
+        parameters: NavigationParameters,
+        limits: SpeedLimits,
+        grid: GazeGrid,
+        beacons: Array,
+        neck: tuple[float, float],
+    ) -> None:
+        self.steady, self.stabilized = parameters.gaze.moved_by == "body", True
+        self._parameters = parameters
+        self._speed = limits.vx
+        self._grid = grid
+        self._beacons = beacons
+        self._neck = neck
+        self._undetected: Undetected | None = None
+
+    def observe(self, belief: Belief) -> None:
+        if self._undetected is None:
+            parameters = self._parameters.gaze.undetected
+            self._undetected = Undetected(parameters, belief.local_map, belief.time)
+        self._undetected.update(belief.local_map, belief.time)
+
+    def look(self, context: GazeContext, now: Gaze) -> tuple[Array, Gaze]:
+        p, view = self._parameters.gaze.risk, context.scene.belief.view
+        pose = _after_saccade(context, p.saccade_time)
+        half_fov = (0.5 * view.horizontal_fov, 0.5 * view.vertical_fov)
+        lens = np.array([tan(min(half, MAX_HALF_FOV) - p.border) for half in half_fov])
+        seen_from = (
+            self._looks(context, pose),
+            self._discs(context, pose),
+            np.array([hypot(*view.position[:2].tolist()), float(view.position[2])]),
+            lens,
+            np.array([view.pan, view.pan_rate, view.tilt, view.tilt_rate, *self._neck]),
+            np.array([p.look_time, p.max_urgency, p.exponent, p.disc_edge]),
+        )
+        values = view_values(self._grid.pan, self._grid.tilt, *seen_from)
+        present = view_values(np.array([now[0]]), np.array([now[1]]), *seen_from)
+        if present[0, 0] >= values.max():
+            return values, now
+        row, column = np.unravel_index(int(np.argmax(values)), values.shape)
+        return values, (float(self._grid.pan[column]), float(self._grid.tilt[row]))
+
+    def _looks(self, context: GazeContext, pose: Array) -> Array:
+        """Return all looks, see `view_kernel.view_values` (n, 7)."""
+        parts = [
+            self._undetected_looks(context, pose),
+            self._obstacle_looks(context, pose),
+            self._unseen_ground_looks(context, pose),
+            self._beacon_looks(context, pose),
+        ]
+        return np.concatenate(parts)
+
+    def _undetected_looks(self, context: GazeContext, pose: Array) -> Array:
+        """Return the looks at ground where undetected movers may be."""
+        assert self._undetected is not None
+        belief = context.scene.belief
+        motion = context.motion
+        twist = np.zeros(3) if motion is None else motion.velocity
+        velocity = velocity_in_world(belief.pose, twist)[:2]
+        cells = self._undetected.risks(belief.pose[:2], velocity, self._parameters.gaze.risk)
+        return _looks(points_to_robot(pose, cells[:, :2]), cells[:, 2])
+
+    def _unseen_ground_looks(self, context: GazeContext, pose: Array) -> Array:
+        """Return the looks at unseen ground that slows the robot down."""
+        g, belief = self._parameters.unseen_ground, context.scene.belief
+        if not g.enabled:
+            return np.zeros((0, 7))
+        points = ground_points(belief.pose, float(belief.pose[2]) + context.path, g)
+        unseen = points[belief.local_map.confidence_at(points) < g.confidence]
+        weight = self._parameters.gaze.risk.unseen_ground_weight / max(1, len(unseen))
+        return _looks(points_to_robot(pose, unseen), np.full(len(unseen), weight))
+
+    def _beacon_looks(self, context: GazeContext, pose: Array) -> Array:
+        """Return the looks at beacons, which must be in view from the foot to the top."""
+        p, belief = self._parameters.gaze.risk, context.scene.belief
+        evaluation = replace(self._parameters.evaluation, t_heading=p.t_heading)
+        psi = psi_self(belief.pose_covariance, evaluation)
+        value = p.beacon_weight * max(0.0, psi - p.min_self_uncertainty)
+        points = points_to_robot(pose, self._beacons)
+        near = np.hypot(points[:, 0], points[:, 1]) <= self._parameters.evaluation.beacon_range
+        weights = np.full(len(points), value / max(1, len(points)))
+        return _looks(points, weights, p.beacon_height, -1.0)[near]
+
+    def _obstacle_looks(self, context: GazeContext, pose: Array) -> Array:
+        """Return the looks at tracks, and at the particles of lost ones.
+
+        The urgency of a look is the age of the track over a fraction of the worst-case time to
+        collision.
+        """
+        p, belief, o = self._parameters.gaze.risk, context.scene.belief, context.scene.obstacles
+        if len(o) == 0:
+            return np.zeros((0, 7))
+        clouds = [track.particles for track in belief.tracks]
+        counts = [1 if cloud is None else len(cloud.weights) for cloud in clouds]
+        owner = np.repeat(np.arange(len(clouds)), counts)
+        positions = np.concatenate(
+            [
+                t.position[None] if c is None else c.positions
+                for t, c in zip(belief.tracks, clouds, strict=True)
+            ]
+        )
+        weights = np.concatenate([np.ones(1) if c is None else c.weights for c in clouds])
+        points = points_to_robot(pose, positions)
+        distance = np.hypot(points[:, 0], points[:, 1])
+        course = context.path + float(belief.pose[2] - pose[2])
+        bearing = np.arctan2(points[:, 1], points[:, 0])
+        static, moving, radius = o.static[owner], o.moving[owner], o.radius[owner]
+        unknown = ~static & ~moving
+        hits = np.array([track.hits for track in belief.tracks])[owner]
+        worst = np.minimum(p.mover_speed * self._speed, o.speed + 0.5 * o.speed_sigma)[owner]
+        approach = np.where(moving, worst, p.unknown_speed * self._speed)
+        approach = np.where(static, p.static_speed, approach)
+        approach += self._speed * np.maximum(p.min_approach, 0.5 + 0.5 * np.cos(bearing - course))
+        gap = distance - radius - self._parameters.univector.s_robot - p.clearance
+        rate = 1.0 / (p.look_ratio * np.maximum(p.min_time, gap / approach))
+        age = o.age[owner] + p.min_age + p.unknown_bonus * unknown
+        age += p.fresh_bonus * (unknown & (hits < p.fresh_hits))
+        weights = weights * np.where(static, p.static_weight, 1.0)
+        # The side that faces the robot is seen first.
+        points *= np.maximum(0.0, 1.0 - 0.5 * radius / np.maximum(distance, radius))[:, None]
+        looks = _looks(points, weights, p.top_height, p.top_credit)
+        looks[:, 3], looks[:, 4] = age * rate, rate
+        return looks[distance <= self._parameters.evaluation.attention_range]
+
+    def _discs(self, context: GazeContext, pose: Array) -> Array:
+        """Return the obstacles that hide what is behind them: x, y in R, radius (m, 3) [m]."""
+        p, belief = self._parameters.gaze.risk, context.scene.belief
+        known = [
+            (*t.position.tolist(), t.radius)
+            for t in belief.tracks
+            if t.particles is None and (t.age < p.max_disc_age or t.motion is Motion.STATIC)
+        ]
+        discs = np.array(known).reshape(-1, 3)
+        discs[:, :2] = points_to_robot(pose, discs[:, :2])
+        return discs
+
+
+def _looks(points: Array, weights: Array, top: float = 0.0, credit: float = 0.0) -> Array:
+    """Return looks of constant value at points in R, see `view_kernel.view_values` (n, 7)."""
+    looks = np.zeros((len(points), 7))
+    looks[:, :2], looks[:, 2], looks[:, 3] = points, weights, 1.0
+    looks[:, 5], looks[:, 6] = top, credit
+    return looks
+
+
+def _after_saccade(context: GazeContext, time: float) -> Array:
+    """Return the pose of the robot that has turned for `time` [s] (3,) [m, m, rad]."""
+    pose = context.scene.belief.pose.copy()
+    if context.motion is not None:
+        pose[2] += time * float(context.motion.velocity[2])
+    return pose

@@ -1,0 +1,162 @@
+"""Compiled part of the risk gaze: the value per time of every view of the head."""
+
+from math import cos, sin
+
+import numpy as np
+from numba import njit
+from numpy.typing import NDArray
+
+Array = NDArray[np.float64]
+
+MIN_DEPTH = 0.05  # of a visible point, relative to its distance [1]
+
+
+@njit(cache=True)
+def move_time(angle: float, speed: float, rate: float, acceleration: float) -> float:
+    """Return the duration of the fastest move that ends at rest [s].
+
+    Args:
+        angle: of the move [rad].
+        speed: at its beginning [rad/s].
+        rate: maximum rate [rad/s].
+        acceleration: maximum angular acceleration [rad/s²].
+    """
+    stopping = 0.5 * speed * abs(speed) / acceleration  # angle of a full stop
+    sign = 1.0 if angle >= stopping else -1.0
+    angle, speed = sign * angle, sign * speed
+    peak = max(0.0, acceleration * angle + 0.5 * speed * speed) ** 0.5
+    if peak <= rate:
+        return (2.0 * peak - speed) / acceleration
+    ramps = (2.0 * rate * rate - speed * speed) / (2.0 * acceleration)
+    return (2.0 * rate - speed) / acceleration + (angle - ramps) / rate
+
+
+@njit(cache=True)
+def hidden(x: float, y: float, discs: Array, edge: float) -> bool:
+    """Return whether a nearer disc hides a point of the floor.
+
+    Args:
+        x: of the point, from the robot [m].
+        y: of the point [m].
+        discs: x, y, radius (m, 3) [m].
+        edge: distance from a disc's centre within which the point is on the disc [m].
+    """
+    for j in range(len(discs)):
+        ax, ay, radius = discs[j, 0], discs[j, 1], discs[j, 2]
+        if x * ax + y * ay <= ax * ax + ay * ay or (ax - x) ** 2 + (ay - y) ** 2 <= edge * edge:
+            continue
+        across = x * ay - y * ax
+        if across * across < radius * radius * (x * x + y * y):
+            return True
+    return False
+
+
+@njit(cache=True)
+def in_image(ahead: float, aside: float, up: float, tilt: tuple[float, float], lens: Array) -> bool:
+    """Return whether a point is in the image of the head camera.
+
+    Args:
+        ahead: from the camera along the pan [m].
+        aside: across the pan [m].
+        up: above the camera [m].
+        tilt: its cosine and sine.
+        lens: tangents of half the fields of view (2,).
+    """
+    depth = ahead * tilt[0] + up * tilt[1]
+    if depth < MIN_DEPTH or abs(aside) > lens[0] * depth:
+        return False
+    return bool(abs(up * tilt[0] - ahead * tilt[1]) <= lens[1] * depth)
+
+
+@njit(cache=True)
+def visible_part(
+    ahead: float,
+    aside: float,
+    height: float,
+    top: float,
+    credit: float,
+    tilt: tuple[float, float],
+    lens: Array,
+) -> float:
+    """Return the value of what an image shows of an upright object, 1 for its foot.
+
+    Args:
+        ahead: from the camera along the pan [m].
+        aside: across the pan [m].
+        height: of the camera [m].
+        top: height of the top of the object [m].
+        credit: value of the top alone; negative where the image must show foot and top.
+        tilt: of the camera, its cosine and sine.
+        lens: tangents of half the fields of view (2,).
+    """
+    if in_image(ahead, aside, -height, tilt, lens):
+        whole = credit >= 0.0 or in_image(ahead, aside, top - height, tilt, lens)
+        return 1.0 if whole else 0.0
+    if credit > 0.0 and in_image(ahead, aside, top - height, tilt, lens):
+        return credit
+    return 0.0
+
+
+@njit(cache=True)
+def view_values(
+    pans: Array,
+    tilts: Array,
+    looks: Array,
+    discs: Array,
+    eye: Array,
+    lens: Array,
+    neck: Array,
+    limits: Array,
+) -> Array:
+    """Return the value of every view over the time of its saccade and look (tilts, pans) [1/s].
+
+    The value of a look is weight x min(max_urgency, base + rate x time)^exponent at the end of
+    the saccade.
+
+    Args:
+        pans: of the views [rad].
+        tilts: of the views [rad].
+        looks: position in R [m], weight, base, rate [1/s], height of the top [m], and value of a
+            view of the top without the foot, negative where a view must show both (n, 7).
+        discs: that hide the looks behind them, see `hidden`.
+        eye: distance of the camera from the pan axis, and its height [m] (2,).
+        lens: tangents of half the fields of view (2,).
+        neck: present pan [rad] and its rate [rad/s], the same of the tilt, maximum rate [rad/s]
+            and acceleration [rad/s²] (6,).
+        limits: duration of a look [s], maximum urgency and its exponent, edge of a disc [m] (4,).
+    """
+    look_time, max_urgency, exponent, edge = limits
+    times = saccade_times(pans, tilts, neck)
+    values = np.zeros_like(times)
+    tilted = [(cos(tilt), sin(tilt)) for tilt in tilts]
+    panned = [(cos(pan), sin(pan)) for pan in pans]
+    for x, y, weight, base, rate, top, credit in looks:
+        if credit >= 0.0 and hidden(x, y, discs, edge):
+            continue
+        steady = weight * min(max_urgency, base) ** exponent
+        for p, (c, s) in enumerate(panned):
+            ahead, aside = c * x + s * y - eye[0], c * y - s * x
+            if ahead < 0.0 and ahead * ahead + aside * aside > eye[1] * eye[1]:
+                continue
+            for t, tilt in enumerate(tilted):
+                part = visible_part(ahead, aside, eye[1], top, credit, tilt, lens)
+                if part > 0.0 and rate > 0.0:
+                    urgency = min(max_urgency, base + rate * times[t, p])
+                    values[t, p] += part * weight * urgency**exponent
+                elif part > 0.0:
+                    values[t, p] += part * steady
+    rates: Array = values / (times + look_time)
+    return rates
+
+
+@njit(cache=True)
+def saccade_times(pans: Array, tilts: Array, neck: Array) -> Array:
+    """Return the duration of the saccade to every view (tilts, pans) [s]; see `view_values`."""
+    pan, pan_rate, tilt, tilt_rate, rate, acceleration = neck
+    times = np.empty((len(tilts), len(pans)))
+    for p in range(len(pans)):
+        pan_time = move_time(pans[p] - pan, pan_rate, rate, acceleration)
+        for t in range(len(tilts)):
+            tilt_time = move_time(tilts[t] - tilt, tilt_rate, rate, acceleration)
+            times[t, p] = max(pan_time, tilt_time)
+    return times

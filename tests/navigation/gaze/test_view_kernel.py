@@ -1,0 +1,115 @@
+from math import tan
+
+import numpy as np
+import pytest
+
+from navigation.gaze.view_kernel import hidden, move_time, view_values, visible_part
+
+RATE, ACCELERATION = 3.0, 40.0
+EYE, LENS = np.array([0.04, 0.46]), np.array([tan(0.5), tan(0.4)])
+LIMITS = np.array([0.25, 4.0, 1.5, 0.14])
+NO_DISCS = np.zeros((0, 3))
+
+
+def moved(time, angle, speed, steps=20_000):
+    """Angle and speed left after the fastest move: full acceleration, switched once or twice."""
+    dt = time / steps
+    for k in range(steps):
+        left = time - k * dt
+        stopping = 0.5 * speed * abs(speed) / ACCELERATION
+        push = np.sign(angle - stopping) or -np.sign(speed)
+        speed = np.clip(speed + push * ACCELERATION * dt, -RATE, RATE)
+        angle -= speed * dt
+        assert left > 0.0
+    return angle, speed
+
+
+@pytest.mark.parametrize("speed", [-2.0, 0.0, 1.0, 3.0])
+@pytest.mark.parametrize("angle", [-1.2, -0.05, 0.1, 0.9])
+def test_a_head_that_accelerates_fully_arrives_in_the_time_of_the_move(angle, speed):
+    left, rate = moved(move_time(angle, speed, RATE, ACCELERATION), angle, speed)
+    assert left == pytest.approx(0.0, abs=2e-3)
+    assert rate == pytest.approx(0.0, abs=0.1)
+
+
+def test_times_of_moves_are_symmetric_and_continuous_and_grow_with_the_angle():
+    angles = np.linspace(0.0, 2.0, 400)
+    times = np.array([move_time(a, 0.0, RATE, ACCELERATION) for a in angles])
+    assert times[0] == 0.0
+    assert np.all(np.diff(times) > 0.0)
+    assert np.abs(np.diff(times)).max() < 0.03
+    for angle, speed in ((0.7, 1.5), (0.02, 2.0), (-0.4, 3.0)):
+        mirrored = move_time(-angle, -speed, RATE, ACCELERATION)
+        assert move_time(angle, speed, RATE, ACCELERATION) == pytest.approx(mirrored)
+
+
+def look(x, y, weight=1.0, base=1.0, rate=0.0, *, top=0.0, credit=0.0):
+    return np.array([[x, y, weight, base, rate, top, credit]])
+
+
+def values(looks, *, pans=(0.0,), tilts=(-0.4,), discs=NO_DISCS, neck=(0.0, 0.0, -0.4, 0.0)):
+    motion = np.array([*neck, RATE, ACCELERATION])
+    return view_values(np.array(pans), np.array(tilts), looks, discs, EYE, LENS, motion, LIMITS)
+
+
+@pytest.mark.parametrize("pan", [-1.2, 0.0, 0.6])
+@pytest.mark.parametrize("tilt", [-0.9, -0.3])
+def test_a_view_counts_the_points_that_a_pinhole_camera_projects_into_its_image(pan, tilt):
+    rng = np.random.default_rng(1)
+    c, s = np.cos([pan, tilt]), np.sin([pan, tilt])
+    forward = np.array([c[0] * c[1], s[0] * c[1], s[1]])
+    right = np.array([s[0], -c[0], 0.0])
+    down = np.cross(forward, right)
+    eye = np.array([EYE[0] * c[0], EYE[0] * s[0], EYE[1]])
+    for x, y in rng.uniform(-2.5, 2.5, (300, 2)):
+        ray = np.array([x, y, 0.0]) - eye
+        depth = ray @ forward
+        inside = depth > 0.05 and np.all(np.abs([ray @ right, ray @ down]) <= LENS * depth)
+        value = values(look(x, y), pans=[pan], tilts=[tilt], neck=(pan, 0.0, tilt, 0.0))
+        assert (value[0, 0] > 0.0) == inside
+
+
+def test_values_of_looks_add_up_over_the_time_of_saccade_and_look():
+    one, other = look(1.0, 0.1), look(0.9, -0.1, weight=2.0)
+    pans, tilts = np.linspace(-1.5, 1.5, 7), np.array([-0.8, -0.4])
+    both = values(np.vstack([one, other]), pans=pans, tilts=tilts)
+    assert both == pytest.approx(
+        values(one, pans=pans, tilts=tilts) + values(other, pans=pans, tilts=tilts)
+    )
+    away = (1.0, 0.0, -0.4, 0.0)
+    time = move_time(-1.0, 0.0, RATE, ACCELERATION)
+    assert values(one)[0, 0] == pytest.approx(1.0 / LIMITS[0])
+    assert values(one, neck=away)[0, 0] == pytest.approx(1.0 / (LIMITS[0] + time))
+
+
+def test_the_urgency_grows_during_the_saccade_up_to_its_limit():
+    away = (1.0, 0.0, -0.4, 0.0)
+    time = move_time(-1.0, 0.0, RATE, ACCELERATION)
+    growing = values(look(1.0, 0.0, base=0.5, rate=2.0), neck=away)[0, 0]
+    assert growing == pytest.approx((0.5 + 2.0 * time) ** 1.5 / (LIMITS[0] + time))
+    for base in (4.0, 9.0):
+        assert values(look(1.0, 0.0, base=base, rate=2.0))[0, 0] == pytest.approx(8.0 / LIMITS[0])
+
+
+def test_a_disc_hides_what_is_behind_it_but_not_itself_or_a_beacon():
+    disc = np.array([[0.8, 0.0, 0.08]])
+    assert hidden(1.5, 0.0, disc, 0.14)
+    assert not hidden(1.5, 0.4, disc, 0.14)
+    assert not hidden(0.5, 0.0, disc, 0.14)
+    assert not hidden(0.82, 0.0, disc, 0.14)
+    assert values(look(1.5, 0.0), discs=disc)[0, 0] == 0.0
+    beacon = look(1.5, 0.0, top=0.3, credit=-1.0)
+    assert values(beacon, discs=disc, tilts=[-0.2], neck=(0.0, 0.0, -0.2, 0.0))[0, 0] > 0.0
+
+
+def test_a_top_alone_has_its_credit_and_a_beacon_must_be_whole():
+    def part(distance, tilt, top, credit):
+        tilted = (np.cos(tilt), np.sin(tilt))
+        return visible_part(distance, 0.0, EYE[1], top, credit, tilted, LENS)
+
+    assert part(0.3, -0.9, 0.17, 0.7) == 1.0
+    assert part(0.3, -0.3, 0.17, 0.7) == 0.0
+    assert part(0.5, -0.2, 0.17, 0.7) == 0.7
+    assert part(0.5, -0.2, 0.17, 0.0) == 0.0
+    assert part(3.0, 0.0, 0.6, -1.0) == 1.0
+    assert part(3.0, -0.5, 0.6, -1.0) == 0.0
