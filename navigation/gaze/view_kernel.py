@@ -26,9 +26,9 @@ def move_time(angle: float, speed: float, rate: float, acceleration: float) -> f
     angle, speed = sign * angle, sign * speed
     peak = max(0.0, acceleration * angle + 0.5 * speed * speed) ** 0.5
     if peak <= rate:
-        return (2.0 * peak - speed) / acceleration
+        return float((2.0 * peak - speed) / acceleration)
     ramps = (2.0 * rate * rate - speed * speed) / (2.0 * acceleration)
-    return (2.0 * rate - speed) / acceleration + (angle - ramps) / rate
+    return float((2.0 * rate - speed) / acceleration + (angle - ramps) / rate)
 
 
 @njit(cache=True)
