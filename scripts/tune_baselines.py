@@ -1,4 +1,4 @@
-"""Tune every baseline planner with the same budget, in the 2-D loop of the decision study.
+"""Tune every baseline planner with the same budget, in a planar loop.
 
 Each baseline gets `candidates` parameter sets, the first by hand and the others drawn, on
 `seeds` worlds; the best `finalists` get `more` worlds, and the best over all of them wins.
@@ -21,13 +21,15 @@ from typing import Any
 from hsr8.evaluation.proportion import Proportion
 from hsr8.scenario.loader import load_scenario
 from hsr8.scenario.schema import Scenario
+from hsr8.world.field.generator import draw_layout
 from navigation.angles import wrap
+from navigation.baselines.choice import build_planner
 from navigation.belief.belief import Belief
+from navigation.mission import Mission
 
 import numpy as np
 import tyro
-from decision_study import Run
-from decision_world import TICK, perfect_belief
+from decision_world import TICK, Walker, World, perfect_belief
 from numpy.typing import NDArray
 
 Array = NDArray[np.float64]
@@ -80,11 +82,21 @@ Settings = dict[str, float]
 Row = dict[str, Any]
 
 
-class Blurred(Run):
+class Blurred:
     """A run with errors of sensing instead of a camera, thinned out to be fast."""
 
     def __init__(self, scenario: Scenario, seed: int) -> None:
-        super().__init__(scenario, seed, "perfect")
+        streams = [np.random.default_rng(s) for s in np.random.SeedSequence(seed).spawn(5)]
+        layout, limits = draw_layout(scenario, seed), scenario.speed_limits()
+        parameters = scenario.navigation
+        self.seed, self.duration, self.world = seed, scenario.duration, World(layout)
+        self.walker = Walker(np.array(layout.start), limits, streams[1])
+        self.mission = Mission(
+            layout.waypoints, layout.goal_heading, layout.endless, parameters.mission
+        )
+        self.planner = build_planner(parameters, limits, streams[4])
+        self.step_ticks = round(limits.footstep / TICK)
+        self.frame_ticks = round(scenario.camera.period_ms / 1000 / TICK)
         self._rng = np.random.default_rng(np.random.SeedSequence([seed, 7]))
         n = len(self.world.radii)
         self._position = POSITION_SIGMA * self._rng.standard_normal((n, 2))
@@ -110,9 +122,9 @@ class Blurred(Run):
                 belief = self._blurred(tick * TICK)
                 task = self.mission.update(belief.pose)
                 before = process_time()
-                self.motion = self.planner.plan(belief, task)
+                motion = self.planner.plan(belief, task)
                 planned, calls = planned + process_time() - before, calls + 1
-                walker.latch(self.motion.velocity)
+                walker.latch(motion.velocity)
             walker.step()
         assert task is not None
         success = reason == "goal"
