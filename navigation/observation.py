@@ -41,6 +41,12 @@ class Observation:
     occluded: bool = False
     by_radius: Array = field(default_factory=partial(np.zeros, 2))
 
+    @property
+    def bearing_variance(self) -> float:
+        """Variance of the bearing for a known distance [rad²]."""
+        (range_variance, covariance), (_, variance) = self.covariance.tolist()
+        return float(variance - covariance * covariance / range_variance)
+
 
 @value
 class CameraView:

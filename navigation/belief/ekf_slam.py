@@ -150,7 +150,7 @@ class EkfSlam:
         H = np.zeros((2 * len(matched), n))
         R = np.zeros((2 * len(matched), 2 * len(matched)))
         y = np.zeros(2 * len(matched))
-        smallest = min(float(o.covariance[1, 1]) for o in matched.values())
+        smallest = min(o.bearing_variance for o in matched.values())
         R[1::2, 1::2] = min(frame.view.yaw_sigma**2, MAX_SHARED * smallest)
         for row, (i, o) in enumerate(matched.items()):
             a, b = 2 * row, 2 * row + 2

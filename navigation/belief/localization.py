@@ -19,7 +19,7 @@ from navigation.transform import rotate, yaw_rotation
 Array = NDArray[np.float64]
 
 MAX_SHARED = 0.98
-"""Maximum fraction of a bearing's variance that is common to all bearings of a frame [1]."""
+"""Maximum fraction of a bearing's variance, for a known distance, that all bearings share [1]."""
 
 
 class Localizer:
@@ -159,7 +159,7 @@ class Localizer:
     def _measurement(self, frame: Frame, beacons: list[Observation]) -> tuple[Array, Array, Array]:
         """Return measurement (2 k,), its covariance (2 k, 2 k) and the landmarks in W (k, 2)."""
         z = np.array([(o.distance, o.bearing) for o in beacons]).ravel()
-        shared = MAX_SHARED * min(float(o.covariance[1, 1]) for o in beacons)
+        shared = MAX_SHARED * min(o.bearing_variance for o in beacons)
         R = np.zeros((len(z), len(z)))
         R[1::2, 1::2] = min(frame.view.yaw_sigma**2, shared)
         for i, o in enumerate(beacons):

@@ -269,6 +269,19 @@ def test_the_information_of_a_frame_is_added_with_all_correlations():
     np.testing.assert_allclose(localizer.covariance, expected, atol=0.01 * expected.max())
 
 
+def test_a_shared_yaw_error_beyond_the_bearings_leaves_the_noise_a_covariance():
+    """Bearings that depend on the distance have less noise of their own."""
+    correlated = np.array([[0.05**2, 0.8 * 0.05 * 0.02], [0.8 * 0.05 * 0.02, 0.02**2]])
+    localizer = Localizer(LocalizationParameters(), BEACONS, np.zeros(3), P0)
+    for k in range(1, 20):
+        observed = [
+            replace(beacon((0, 0, 0), name), covariance=correlated) for name in ("b0", "b1", "b2")
+        ]
+        localizer.update(frame(k * DT, (0, 0, 0), observed, yaw_sigma=0.05))
+        assert np.linalg.eigvalsh(localizer.covariance).min() > 0.0
+    assert localizer.faults == 0
+
+
 @pytest.mark.parametrize("part", ["x", "P"])
 def test_a_filter_with_a_number_that_is_none_is_started_again(part):
     localizer = Localizer(LocalizationParameters(), BEACONS, np.zeros(3), P0)
