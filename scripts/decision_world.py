@@ -104,10 +104,12 @@ class Walker:
         self.command, self.body = np.zeros(3), np.zeros(3)
         self._rng = rng
         self._slip, self._drift = np.zeros(3), np.zeros(3)
+        self._ticks = 0  # of the present footstep
+        self.yaw_rate = 0.0  # which pulsates with the footsteps [rad/s]
 
     def latch(self, command: Array) -> None:
         """Begin a footstep."""
-        self.command = command
+        self.command, self._ticks = command, 0
         self._slip = self._rng.normal(0.0, SLIP)
         self._drift = self._rng.normal(0.0, DRIFT) * (np.abs(command).max() > 1e-6)
 
@@ -115,8 +117,12 @@ class Walker:
         """Advance one tick."""
         change = np.array([self._limits.acceleration] * 2 + [TURN_ACCELERATION]) * TICK
         self.body = self.body + np.clip(self.command - self.body, -change, change)
-        true = self.body * (1.0 + self._slip) + self._drift
-        for velocity, pose in ((true, self.pose), (self.body, self.odometry)):
+        phase = 2.0 * pi * (self._ticks + 0.5) * TICK / self._limits.footstep
+        self._ticks += 1
+        self.yaw_rate = float(self.body[2]) * (1.0 - cos(phase))
+        measured = np.array([self.body[0], self.body[1], self.yaw_rate])
+        true = measured * (1.0 + self._slip) + self._drift
+        for velocity, pose in ((true, self.pose), (measured, self.odometry)):
             heading = pose[2] + 0.5 * velocity[2] * TICK
             pose[0] += TICK * (cos(heading) * velocity[0] - sin(heading) * velocity[1])
             pose[1] += TICK * (sin(heading) * velocity[0] + cos(heading) * velocity[1])

@@ -132,7 +132,7 @@ class PlanarEngine:
                 tilt=tilt,
                 pan_rate=float(self._head_rate[0]),
                 tilt_rate=float(self._head_rate[1]),
-                yaw_rate=float(self.body.body[2]),
+                yaw_rate=self.body.yaw_rate,
             ),
             applied_velocity=self.body.body,
             footsteps=(),

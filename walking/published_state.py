@@ -43,7 +43,8 @@ def camera_pose(robot: RobotModel, sensors: BodySensors, body: BodyMeasurement) 
         robot.neck.angles(sensors.joint_position),
         robot.neck.rates(sensors.joint_velocity),
     )
-    return HeadCameraPose(R_RB @ R_BC, position, *angles, *rates)
+    yaw_rate = float(R_RB[2] @ sensors.gyro)
+    return HeadCameraPose(R_RB @ R_BC, position, *angles, *rates, yaw_rate)
 
 
 def published_plan(
