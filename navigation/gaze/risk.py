@@ -1,7 +1,7 @@
 """Risk gaze: the view that removes the most risk per time.
 
 The four partial evaluations of Yoo & Kim decide on looks: at ground where undetected movers may be
-(psi_lm), at obstacles that may have moved (psi_ob), at beacons (psi_sf) and at unseen ground ahead
+(psi_lm), at obstacles that may have moved (psi_ob), at beacons (psi_sf) and at the ground ahead
 (psi_way). Their urgencies feed the gaze map: the value of a view is the sum of the urgencies of
 all that its image shows, over the time of the saccade and the look.
 """
@@ -25,6 +25,7 @@ from navigation.transform import points_to_robot, velocity_in_world
 
 Array = NDArray[np.float64]
 
+MAX_AGE = 1e3  # of ground never seen [s]
 MAX_HALF_FOV = 1.5  # of a panoramic camera, as a pinhole camera [rad]
 
 
@@ -86,7 +87,7 @@ class RiskGaze(GazePolicy):
         parts = [
             self._undetected_looks(context, pose),
             self._obstacle_looks(context, pose),
-            self._unseen_ground_looks(context, pose),
+            self._path_looks(context, pose),
             self._beacon_looks(context, pose),
         ]
         return np.concatenate(parts)
@@ -101,15 +102,18 @@ class RiskGaze(GazePolicy):
         cells = self._undetected.risks(belief.pose[:2], velocity, self._parameters.gaze.risk)
         return _looks(points_to_robot(pose, cells[:, :2]), cells[:, 2])
 
-    def _unseen_ground_looks(self, context: GazeContext, pose: Array) -> Array:
-        """Return the looks at unseen ground that slows the robot down."""
-        g, belief = self._parameters.unseen_ground, context.scene.belief
-        if not g.enabled:
-            return np.zeros((0, 7))
-        points = ground_points(belief.pose, float(belief.pose[2]) + context.path, g)
-        unseen = points[belief.local_map.confidence_at(points) < g.confidence]
-        weight = self._parameters.gaze.risk.unseen_ground_weight / max(1, len(unseen))
-        return _looks(points_to_robot(pose, unseen), np.full(len(unseen), weight))
+    def _path_looks(self, context: GazeContext, pose: Array) -> Array:
+        """Return the looks at the ground ahead: its age over the time until the robot is there."""
+        p, belief = self._parameters.gaze.risk, context.scene.belief
+        course = float(belief.pose[2]) + context.path
+        ahead = ground_points(belief.pose, course, self._parameters.unseen_ground)
+        points = points_to_robot(pose, ahead)
+        gap = np.hypot(points[:, 0], points[:, 1]) - self._parameters.univector.s_robot
+        rate = 1.0 / (p.look_ratio * np.maximum(p.min_time, gap / self._speed))
+        age = np.minimum(belief.local_map.age_at(ahead), MAX_AGE) + p.min_age
+        looks = _looks(points, np.full(len(points), p.path_weight / len(points)))
+        looks[:, 3], looks[:, 4] = age * rate, rate
+        return looks
 
     def _beacon_looks(self, context: GazeContext, pose: Array) -> Array:
         """Return the looks at beacons, which must be in view from the foot to the top."""

@@ -47,7 +47,7 @@ class RiskParameters:
     top_credit: float = 0.7  # value of a view of an obstacle without its foot [1]
     top_height: Annotated[float, "m"] = 0.17  # of the part of it that such a view shows
     max_disc_age: Annotated[float, "s"] = 1.0  # age up to which an obstacle occludes others
-    unseen_ground_weight: float = 0.8  # of unseen ground that slows the robot down [1]
+    path_weight: float = 0.3  # weight of the ground ahead [1]
     beacon_weight: float = 1.6  # of all beacons in a view together [1]
     min_self_uncertainty: float = 0.35  # psi_sf from which beacons count [1]
     t_heading: float = 0.06  # heading uncertainty at which psi_sf is one [rad]
