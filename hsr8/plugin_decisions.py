@@ -42,15 +42,11 @@ class PluginPlanner:
             raise UsageError(f"{name}: field has no method at(points)")
         if not isinstance(motion.situation, str):
             raise UsageError(f"{name}: situation must be a string, got {shown(motion.situation)}")
-        look_request = motion.look_request
-        if look_request is not None:
-            look_request = number(look_request, "look_request", name)
         return replace(
             motion,
             velocity=_velocity(motion.velocity, name),
             direction=number(motion.direction, "direction", name),
             speed=number(motion.speed, "speed", name),
-            look_request=look_request,
         )
 
 

@@ -128,7 +128,6 @@ class MotionDecision:
             planner.
         virtual_obstacles: active ones.
         extended_radii: (track id, S_oe) of the obstacles in the field.
-        look_request: direction in W that the rear check turns to; None for none [rad].
         field: vector field of the decision, for displays; None for a planner without one.
     """
 
@@ -138,5 +137,4 @@ class MotionDecision:
     situation: str = "free"
     virtual_obstacles: tuple[VirtualObstacle, ...] = ()
     extended_radii: tuple[tuple[int, float], ...] = ()
-    look_request: float | None = None
     field: DirectionField | None = dataclasses.field(default=None, repr=False, compare=False)

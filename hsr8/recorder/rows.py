@@ -265,7 +265,6 @@ class FrameRow:
         direction: of motion in W [rad].
         speed: along `direction` [m/s].
         situation: outcome of velocity modification.
-        look_request: direction in W that the rear check turns to [rad].
         virtual_obstacles: in the field.
         gaze: decided pan and tilt (2,) [rad].
         stabilized: whether the gaze keeps its direction in W while the body turns.
@@ -321,7 +320,6 @@ class FrameRow:
     direction: float = at("frame.decision.motion.direction")
     speed: float = at("frame.decision.motion.speed")
     situation: str = at("frame.decision.motion.situation")
-    look_request: float | None = at("frame.decision.motion.look_request")
     virtual_obstacles: tuple[VirtualObstacle, ...] = at("frame.decision.motion.virtual_obstacles")
     gaze: Vector = at("frame.decision.gaze.pan", "frame.decision.gaze.tilt")
     stabilized: bool = at("frame.decision.gaze.stabilized")

@@ -1,7 +1,7 @@
 """Public keys: the parameters of the libraries that a user may set.
 
 All other parameters of walking, vision, belief and navigation are constants. Studies change them
-in the table ``[constants]``: ``constants.navigation.gaze.deadline.exponent = 2.0``.
+in the table ``[constants]``: ``constants.navigation.gaze.risk.exponent = 2.0``.
 """
 
 LIBRARIES = ("walking", "vision", "belief", "navigation")
@@ -42,7 +42,6 @@ PUBLIC = _dotted(
         "wait_in_band xi margin horizon",
         "navigation.unseen_ground": "enabled",
         "navigation.safety_filter": "enabled reachable margin",
-        "navigation.rear_check": "enabled",
         "navigation.waypoint_search": "enabled",
     }
 )
@@ -82,7 +81,6 @@ EXPERIMENTAL = _dotted(
         "navigation.moving_obstacles": "virtual_obstacle velocity_modification radius wait_in_band",
         "navigation.unseen_ground": "enabled",
         "navigation.safety_filter": "enabled reachable",
-        "navigation.rear_check": "enabled",
         "navigation.waypoint_search": "enabled",
     }
 )

@@ -24,7 +24,6 @@ RENAMED: dict[str, str] = {
     "navigation.gaze.tilt_max": "navigation.gaze.max_tilt",
     "navigation.gaze.tilt_min": "navigation.gaze.min_tilt",
     "navigation.mover": "navigation.moving_obstacles",
-    "navigation.shoulder": "navigation.rear_check",
     "navigation.way_search": "navigation.waypoint_search",
     "own": "plugin",
     "robot.speed.backward": "robot.speed.vx_backward",

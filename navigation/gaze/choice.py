@@ -1,6 +1,5 @@
 """Choice of the gaze policy by its name."""
 
-from collections.abc import Callable
 from dataclasses import replace
 
 import numpy as np
@@ -8,7 +7,6 @@ from numpy.typing import NDArray
 
 from navigation.decision import SpeedLimits
 from navigation.gaze.blind import BlindGaze, SineSweep, StepSweep, TriangleSweep
-from navigation.gaze.deadline import deadline_votes
 from navigation.gaze.gaze_map import GazeGrid, Votes
 from navigation.gaze.information import information_votes
 from navigation.gaze.integrated import integrated_votes
@@ -50,24 +48,13 @@ def gaze_policy(
     if p.mode == "risk":
         return RiskGaze(parameters, limits, grid, beacons, neck)
     weighted = replace(parameters, gaze=single_weight(p))
-    votes: dict[str, Callable[[GazeContext], Votes]] = {
-        "deadline": lambda c: _deadline_votes(c, limits.vx, parameters),
-        "info": lambda c: information_votes(c.scene, parameters),
-    }
-    return VotingGaze(
-        votes.get(p.mode, lambda c: integrated_votes(c.scene, c.task, weighted)),
-        grid,
-        p.deadline.switch_ratio if p.mode == "deadline" else p.switch_ratio,
-    )
 
+    def votes(c: GazeContext) -> Votes:
+        if p.mode == "info":
+            return information_votes(c.scene, parameters)
+        return integrated_votes(c.scene, c.task, weighted)
 
-def _deadline_votes(c: GazeContext, speed: float, parameters: NavigationParameters) -> Votes:
-    turn_rate, request = 0.0, None
-    if c.motion is not None:
-        turn_rate, request = float(c.motion.velocity[2]), c.motion.look_request
-    return deadline_votes(
-        c.scene, c.path, speed, parameters, look_request=request, turn_rate=turn_rate
-    )
+    return VotingGaze(votes, grid, p.switch_ratio)
 
 
 def search_policy(parameters: NavigationParameters, grid: GazeGrid) -> GazePolicy:

@@ -55,12 +55,15 @@ class RiskGaze(GazePolicy):
         self._beacons = beacons
         self._neck = neck
         self._undetected: Undetected | None = None
+        self._beacon_seen = 0.0  # time of the latest beacon [s]
 
     def observe(self, belief: Belief) -> None:
         if self._undetected is None:
             parameters = self._parameters.gaze.undetected
             self._undetected = Undetected(parameters, belief.local_map, belief.time)
         self._undetected.update(belief.local_map, belief.time)
+        if belief.seen_beacons:
+            self._beacon_seen = belief.time
 
     def look(self, context: GazeContext, now: Gaze) -> tuple[Array, Gaze]:
         p, view = self._parameters.gaze.risk, context.scene.belief.view
@@ -120,11 +123,14 @@ class RiskGaze(GazePolicy):
         p, belief = self._parameters.gaze.risk, context.scene.belief
         evaluation = replace(self._parameters.evaluation, t_heading=p.t_heading)
         psi = psi_self(belief.pose_covariance, evaluation)
+        psi = max(psi, min(1.0, (belief.time - self._beacon_seen) / p.beacon_time))
         value = p.beacon_weight * max(0.0, psi - p.min_self_uncertainty)
         points = points_to_robot(pose, self._beacons)
         near = np.hypot(points[:, 0], points[:, 1]) <= self._parameters.evaluation.beacon_range
-        weights = np.full(len(points), value / max(1, len(points)))
-        return _looks(points, weights, p.beacon_height, -1.0)[near]
+        reach = self._parameters.gaze.max_pan + 0.5 * belief.view.horizontal_fov
+        near &= np.abs(np.arctan2(points[:, 1], points[:, 0])) <= reach
+        weights = np.full(int(near.sum()), value / max(1, int(near.sum())))
+        return _looks(points[near], weights, p.beacon_height, -1.0)
 
     def _obstacle_looks(self, context: GazeContext, pose: Array) -> Array:
         """Return the looks at tracks, and at the particles of lost ones.

@@ -14,21 +14,17 @@ Array = NDArray[np.float64]
 
 @value
 class Facing:
-    """Target heading of the body: a heading in W, or an offset from the course.
+    """Target heading of the body.
 
     Attributes:
         heading: target in W; None for the course [rad].
-        offset: angle from the course to the target, if `heading` is None [rad].
-        look_request: direction in W that the rear check turns to; None for none [rad].
     """
 
     heading: float | None = None
-    offset: float = 0.0
-    look_request: float | None = None
 
     def on(self, course: float) -> float:
         """Return the target heading while walking along `course` [rad]."""
-        return course + self.offset if self.heading is None else self.heading
+        return course if self.heading is None else self.heading
 
 
 def towards(direction: float, course: float, most: float) -> Facing:

@@ -23,7 +23,6 @@ from navigation.motion.hypotheses import collision_hypotheses
 from navigation.motion.motion_field import ActiveVirtualObstacles, FieldScene, MotionField
 from navigation.motion.move_to_goal import ArrivalSide, arrival_gain
 from navigation.motion.passing_side import PassingSides
-from navigation.motion.rear_check import RearCheck
 from navigation.motion.safety_filter import RolloutStart, SafetyFilter
 from navigation.motion.unseen_ground import ground_seen
 from navigation.motion.velocity_mapping import body_velocity, idle_velocity
@@ -81,7 +80,6 @@ class Planner:
         )
         self._sides = PassingSides(parameters.univector)
         self._arrival = ArrivalSide(parameters.univector)
-        self._rear_check: RearCheck | None = None
         self._path: tuple[float, float] | None = None
         self._body = np.zeros(3)
         self._direction: float | None = None
@@ -123,7 +121,6 @@ class Planner:
             wanted.situation,
             wanted.virtual,
             extended_radii=radii,
-            look_request=facing.look_request,
             field=wanted.field,
         )
 
@@ -205,22 +202,14 @@ class Planner:
         )
 
     def _facing(self, belief: Belief, task: Task, wanted: _Wanted, look: float | None) -> Facing:
-        """Return the target heading: that of the goal, or the course with gaze or rear check."""
+        """Return the target heading: that of the goal, of the look, or the course."""
         p = self._parameters
         if arriving(belief.pose[:2], task, p.univector.holonomic_distance):
             return Facing(task.heading)
-        course, speed = self._path or (wanted.direction, wanted.speed)
-        if look is not None:
-            return towards(look, course, p.gaze.max_pan)
-        # Only the deadline gaze answers look requests.
-        if not p.rear_check.enabled or p.gaze.mode != "deadline":
+        if look is None:
             return Facing()
-        if self._rear_check is None:
-            reach = p.gaze.max_pan + p.gaze.box_fraction * belief.view.horizontal_fov
-            s_robot, v_max = p.univector.s_robot, self._limits.vx
-            self._rear_check = RearCheck(p.rear_check, reach, s_robot, v_max)
-        angle = self._rear_check.body_angle(belief, course, speed)
-        return Facing(offset=angle, look_request=self._rear_check.look_request())
+        course = wanted.direction if self._path is None else self._path[0]
+        return towards(look, course, p.gaze.max_pan)
 
     def _steer(self, pose: Array, scene: FieldScene, virtual: ActiveVirtualObstacles) -> float:
         u_x, u_y = self._field.at(pose[:2], float(pose[2]), scene, virtual).tolist()

@@ -48,7 +48,6 @@ def rollout(
     heading: float,
     course: float,
     facing: float,
-    offset: float,
     body_now: Array,
     envelope: Envelope,
     gait: tuple[float, float, float, float, float],
@@ -61,7 +60,6 @@ def rollout(
         heading: of the robot [rad].
         course: direction of a candidate that stands [rad].
         facing: target heading; NaN for the direction of motion [rad].
-        offset: angle from the direction of motion to the target heading, if that is NaN [rad].
         body_now: present velocity of the body in R (3,) [m/s, m/s, rad/s].
         envelope: of the walking layer.
         gait: duration of a footstep [s], maximum change between footsteps of velocity [m/s]
@@ -79,7 +77,7 @@ def rollout(
     for i in range(len(candidates)):
         speed = hypot(candidates[i, 0], candidates[i, 1])
         direction = course if speed < 1e-9 else atan2(candidates[i, 1], candidates[i, 0])
-        target = direction + offset if isnan(facing) else facing
+        target = direction if isnan(facing) else facing
         vx, vy, wz, now = body_now[0], body_now[1], body_now[2], heading
         for step in range(steps):
             goal = body_velocity(direction - now, speed, target - now, envelope)

@@ -120,7 +120,6 @@ class SafetyFilter:
             float(start.pose[2]),
             start.course,
             nan if facing.heading is None else facing.heading,
-            facing.offset,
             start.body,
             self._envelope,
             self._gait,

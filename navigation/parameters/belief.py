@@ -106,7 +106,7 @@ class TrackingParameters:
     # Below the range of vision, close to which only errors towards the camera are reported.
     birth_range: Annotated[float, "m"] = 3.5  # maximum distance of a track birth
     birth_hits: int = 2  # detections that confirm a track
-    birth_time: float = 0.5  # time within which they must follow each other [s]
+    birth_time: float = 1.5  # time within which they must follow each other [s]
     birth_moving_probability: float = 0.3  # that a new track moves
     intruder_moving_probability: float = 0.8  # the same on floor seen empty before
     max_log_ratio: float = 6.0  # log likelihood ratio of two modes from one detection [1]

@@ -14,7 +14,6 @@ from navigation.parameters.risk import RiskParameters, UndetectedParameters
 
 GazeMode = Literal[
     "risk",
-    "deadline",
     "integrated",
     "psi-lm",
     "psi-sf",
@@ -55,41 +54,6 @@ class EvaluationParameters:
 
 
 @dataclass(frozen=True)
-class DeadlineParameters:
-    """Votes by age over half the worst-case time to collision."""
-
-    static_speed: Annotated[float, "m/s"] = 0.02  # assumed speed of a static obstacle
-    unknown_speed: float = 0.70  # assumed speed of an undecided obstacle, ratio to the robot's [1]
-    mover_speed: float = 0.80  # maximum assumed speed of a mover, ratio to the robot's [1]
-    exponent: float = 1.5  # exponent of the urgency [1]
-    max_urgency: float = 4.0  # upper bound of the urgency [1]
-    unknown_bonus: Annotated[float, "s"] = 1.0  # age added to undecided obstacles
-    # additional age of undecided obstacles of few detections
-    fresh_bonus: Annotated[float, "s"] = 3.0
-    fresh_hits: int = 8  # number of detections below which they are few [1]
-    static_weight: float = 0.12  # weight of static obstacles [1]
-    map_weight: float = 0.05  # weight of the local map [1]
-    # distances of the ground that votes
-    map_rings: Annotated[tuple[float, ...], "m"] = (0.45, 0.8, 1.2, 1.7)
-    map_rays: int = 17  # number of its directions, over the whole reach of the gaze [1]
-    path_weight: float = 0.2  # weight of the floor along the path [1]
-    unseen_ground_weight: float = 0.8  # vote for unseen ground that slows the robot down [1]
-    look_request_weight: float = 3.0  # vote for the look request of the rear check [1]
-    beacon_weight: float = 1.6  # weight of all beacons together [1]
-    t_heading: float = 0.06  # heading uncertainty at which the beacons vote fully [rad]
-    switch_ratio: float = 1.03  # gain in the gaze map that moves the gaze [1]
-    saccade_time: float = 0.25  # prediction time of the votes: duration of a saccade [s]
-    look_ratio: float = 0.5  # fraction of the time to collision within which to look again [1]
-    min_time: Annotated[float, "s"] = 0.4  # lower bound of the time to collision
-    min_age: float = 0.1  # age of what the latest frame shows [s]
-    max_age: Annotated[float, "s"] = 8.0  # upper bound of the age of ground
-    clearance: Annotated[float, "m"] = 0.05  # gap that counts as a collision
-    map_speed: float = 0.70  # assumed speed of movers from unseen ground, ratio to the robot's [1]
-    path_distance: Annotated[float, "m"] = 0.8  # distance of the floor along the path that votes
-    look_request_tilt: float = -0.6  # tilt of a requested look: shows the floor from 0.3 m on [rad]
-
-
-@dataclass(frozen=True)
 class InformationParameters:
     """Greedy information gain: expected accuracy of one detection."""
 
@@ -104,10 +68,9 @@ class GazeParameters:
     """Gaze map (5)-(6) and the timing of the gaze."""
 
     mode: GazeMode = "risk"
-    """risk: most risk removed per time, the default; deadline: age over time to collision;
-    integrated: (1)-(6); psi-lm, psi-sf, psi-ob, psi-way: one evaluation alone; info: greedy
-    information gain. Blind: sweep: sinusoidal pan; triangle: pan at a constant rate; steps: stops
-    from side to side; fixed: straight ahead."""
+    """risk: most risk removed per time, the default; integrated: (1)-(6); psi-lm, psi-sf, psi-ob,
+    psi-way: one evaluation alone; info: greedy information gain. Blind: sweep: sinusoidal pan;
+    triangle: pan at a constant rate; steps: stops from side to side; fixed: straight ahead."""
     moved_by: Literal["head", "body"] = "head"
     """Part that turns the camera: the head, or the body of a robot with a fixed camera."""
     w_lm: NonNegative = 0.09
@@ -129,7 +92,7 @@ class GazeParameters:
     candidates: Literal["obstacles", "beacons"] = "beacons"
     """Candidates for self-localization: obstacles and beacons, or beacons alone."""
     switch_ratio: Annotated[float, Ge(1.0), Le(100.0)] = 1.1
-    """Gain in the gaze map that moves the gaze, except in mode deadline [1]."""
+    """Gain in the gaze map that moves the gaze of a mode with votes [1]."""
     max_pan: Annotated[float, Ge(0.01), Le(7.0)] = pi / 2.0
     """Maximum pan to either side [rad]."""
     min_tilt: Annotated[float, Ge(-2.0), Lt(0.0)] = -pi / 3.0
@@ -154,5 +117,4 @@ class GazeParameters:
     max_turn_time: float = 1.5  # the same time if the body does not arrive [s]
     risk: RiskParameters = field(default_factory=RiskParameters)
     undetected: UndetectedParameters = field(default_factory=UndetectedParameters)
-    deadline: DeadlineParameters = field(default_factory=DeadlineParameters)
     information: InformationParameters = field(default_factory=InformationParameters)

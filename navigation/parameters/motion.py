@@ -177,31 +177,6 @@ class WaypointSearchParameters:
 
 
 @dataclass(frozen=True)
-class RearCheckParameters:
-    """Rear check: the body turns until the gaze reaches the ground behind the robot."""
-
-    enabled: bool = True
-    """Whether the rear check is used."""
-
-    near_angle: float = 0.4  # body angle for ground just out of the gaze's reach [rad]
-    far_angle: float = 0.95  # body angle for ground right behind [rad]
-    far_weight: float = 0.77  # weight of ground right behind, which costs speed [1]
-    # Distances of the checked ground; a lost mover farther away than all is ignored [m].
-    rings: Annotated[tuple[float, ...], "m"] = (0.40, 0.65, 0.90, 1.20)
-    rays: int = 4  # directions per sector [1]
-    mover_speed: float = 1.1  # assumed speed of unseen movers, ratio to the robot's [1]
-    start_urgency: float = 0.7  # urgency above which the body turns [1]
-    stop_urgency: float = 0.3  # urgency below which the body turns back [1]
-    max_turn_time: Annotated[float, "s"] = 2.5  # maximum duration of a rear check
-    retry_delay: Annotated[float, "s"] = 2.0  # time until the next rear check after a failed one
-    clearance: Annotated[float, "m"] = 0.25  # gap to a mover within which no rear check starts
-    min_approach: Annotated[float, "m/s"] = 0.02  # lower bound of the assumed closing speed
-    min_time: Annotated[float, "s"] = 0.4  # lower bound of the time to collision
-    max_age: Annotated[float, "s"] = 8.0  # upper bound of the age of ground
-    max_urgency: float = 2.0  # upper bound of the urgency of a point [1]
-
-
-@dataclass(frozen=True)
 class VelocityMappingParameters:
     """Velocity mapping from direction and speed to a body velocity."""
 

@@ -13,7 +13,6 @@ from navigation.parameters.gaze import EvaluationParameters, GazeParameters
 from navigation.parameters.motion import (
     LandmarkParameters,
     MovingObstacleParameters,
-    RearCheckParameters,
     SafetyFilterParameters,
     UnivectorParameters,
     UnseenGroundParameters,
@@ -51,7 +50,6 @@ class NavigationParameters:
     unseen_ground: UnseenGroundParameters = field(default_factory=UnseenGroundParameters)
     safety_filter: SafetyFilterParameters = field(default_factory=SafetyFilterParameters)
     landmarks: LandmarkParameters = field(default_factory=LandmarkParameters)
-    rear_check: RearCheckParameters = field(default_factory=RearCheckParameters)
     waypoint_search: WaypointSearchParameters = field(default_factory=WaypointSearchParameters)
     velocity_mapping: VelocityMappingParameters = field(default_factory=VelocityMappingParameters)
 
@@ -96,5 +94,4 @@ class NavigationParameters:
             ),
             unseen_ground=UnseenGroundParameters(enabled=False),
             safety_filter=SafetyFilterParameters(enabled=False),
-            rear_check=RearCheckParameters(enabled=False),
         )

@@ -49,7 +49,9 @@ class RiskParameters:
     max_disc_age: Annotated[float, "s"] = 1.0  # age up to which an obstacle occludes others
     path_weight: float = 0.3  # weight of the ground ahead [1]
     beacon_weight: float = 1.6  # of all beacons in a view together [1]
-    min_self_uncertainty: float = 0.35  # psi_sf from which beacons count [1]
+    min_self_uncertainty: float = 0.2  # psi_sf from which beacons count [1]
+    # time without a beacon that counts like psi_sf = 1: the covariance does not show every error
+    beacon_time: Annotated[float, "s"] = 10.0
     t_heading: float = 0.06  # heading uncertainty at which psi_sf is one [rad]
     beacon_height: Annotated[float, "m"] = 0.60  # of a beacon, whole in a view
     disc_edge: Annotated[float, "m"] = 0.14  # distance from an obstacle that it does not hide

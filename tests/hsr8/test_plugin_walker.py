@@ -239,7 +239,7 @@ def test_the_engine_of_hsr8_as_a_custom_walker_reaches_the_goal():
     assert custom["falls"] == custom["collisions"] == 0
     assert custom["steps"] == pytest.approx(usual["steps"], rel=0.3)
     assert custom["time_to_goal_s"] == pytest.approx(usual["time_to_goal_s"], rel=0.3)
-    assert custom["localization_rmse_m"] < 0.005
+    assert custom["localization_rmse_m"] < 0.02
     assert custom["zmp_min_margin_m"] is None
     assert custom["limited_by"] == {}
 

@@ -69,7 +69,7 @@ def test_the_robot_recovers_with_rendered_images_from(simulate, fault):
 
 def test_a_black_camera_detects_nothing(simulate):
     fault = 'fault=[{kind="camera-black",start=0.3,duration=0.6}]'
-    _, recorded, _ = simulate("quick", fault, duration=1.2)
+    _, recorded, _ = simulate("quick", fault, "navigation.gaze.mode=fixed", duration=1.2)
     black = [f for f in recorded.frames if 0.3 <= f.time < 0.9]
     assert len(black) == 10
     assert not any(f.detections for f in black)
@@ -106,7 +106,8 @@ def test_a_table_learnt_from_rendered_images_detects_as_the_declared_one(simulat
     save_table(learn(pairs), tmp_path / "colors.npz")
     labels = []
     for setting in ([], [f"vision.color_table={tmp_path / 'colors.npz'}"]):
-        _, recorded, _ = simulate("course", *setting, camera="rendered", seed=3, duration=0.6)
+        still = (*setting, "navigation.gaze.mode=fixed")
+        _, recorded, _ = simulate("course", *still, camera="rendered", seed=3, duration=0.6)
         labels.append([sorted(d.label for d in f.detections) for f in recorded.frames])
     declared, learnt = labels
     assert sum(map(len, declared)) > 20

@@ -10,7 +10,7 @@ from walking.body.joints import HEAD
 from walking.command import HeadTarget, VelocityCommand
 from walking.engine import WalkingEngine
 from walking.footsteps.planner import STANCE_YAW_TOLERANCE
-from walking.parameters import CONTROL_PERIOD, WalkingParameters
+from walking.parameters import CONTROL_PERIOD, HeadParameters, WalkingParameters
 from walking.phase import Phase
 
 AHEAD = HeadTarget()
@@ -142,7 +142,7 @@ def test_a_push_while_standing_is_answered_by_a_step(robot, ideal_body):
 
 def test_setpoints_stay_within_the_range_of_the_joints(robot, ideal_body):
     """The head moves from stop to stop, where the feed-forward offset leads beyond the stop."""
-    engine = WalkingEngine(robot, WalkingParameters())
+    engine = WalkingEngine(robot, replace(WalkingParameters(), head=HeadParameters(max_rate=6.0)))
     at_stop = 0
     for k in range(800):
         side = 1.0 if k // 100 % 2 else -1.0

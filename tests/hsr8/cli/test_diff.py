@@ -66,7 +66,7 @@ def test_the_order_of_the_runs_only_swaps_the_values(recorded, capsys):
         ("records", "support", 9, lambda v: v[1:], "shape of support"),
         ("records", "footsteps", 9, lambda v: v[:-1], "number of footsteps"),
         ("frames", "tracks", 20, lambda v: [v[0] | {"age": -1.0}, *v[1:]], "tracks[0].age [s]"),
-        ("frames", "look_request", 20, lambda _: 1.0, "look_request [rad]"),
+        ("frames", "body_direction", 20, lambda _: 1.0, "body_direction [rad]"),
         ("frames", "local_map", 17, lambda v: [v[0] ^ 1, *v[1:]], "local_map[0, 0]"),
         ("seconds", "robot", 1, lambda v: b"?" + v[1:], "robot"),
     ],

@@ -7,17 +7,17 @@ from hsr8.scenario.constants import constant_names
 from hsr8.scenario.loader import dump, load_scenario, loads
 
 COURSE = 'mission = {kind = "course"}\n'
-EXPONENT = "navigation.gaze.deadline.exponent"
+EXPONENT = "navigation.gaze.risk.exponent"
 
 
 @pytest.mark.parametrize("profile", ["extended", "paper"])
 def test_a_constant_is_changed_and_written_where_it_differs_from_the_profile(profile):
     usual = load_scenario("course", [f"navigation.profile={profile}"])
     assert "[constants" not in dump(usual)
-    changes = {f"constants.{EXPONENT}": 2.25, "constants.navigation.gaze.deadline.map_rings": [0.5]}
+    changes = {f"constants.{EXPONENT}": 2.25, "constants.navigation.univector.memory": 0.5}
     changed = load_scenario("course", {"navigation.profile": profile, **changes})
-    assert changed.navigation.gaze.deadline.exponent == 2.25
-    assert changed.navigation.gaze.deadline.map_rings == (0.5,)
+    assert changed.navigation.gaze.risk.exponent == 2.25
+    assert changed.navigation.univector.memory == 0.5
     assert changed.navigation.univector == usual.navigation.univector
     text = dump(changed)
     assert "[constants.navigation.gaze.deadline]\nmap_rings = [0.5]" in text.replace(
@@ -39,8 +39,8 @@ def test_a_constant_is_changed_and_written_where_it_differs_from_the_profile(pro
             "expected navigation.gaze.mode",
         ),
         (
-            "[constants]\nnavigation.gaze.deadline.exponen = 2.0",
-            f"3: constants.navigation.gaze.deadline.exponen: unknown constant; did you mean "
+            "[constants]\nnavigation.gaze.risk.exponen = 2.0",
+            f"3: constants.navigation.gaze.risk.exponen: unknown constant; did you mean "
             f"'{EXPONENT}'?",
         ),
         (

@@ -54,7 +54,7 @@ mode = "deadlin"
         r'file\.toml:8: camera\.source: must be one of "rendered", "analytic", "neck-reach", '
         '"omnidirectional", '
         'got "egll"',
-        r"file\.toml:10: navigation\.gaze\.mode: must be one of .*did you mean 'deadline'\?",
+        r"file\.toml:10: navigation\.gaze\.mode: must be one of .*did you mean 'risk'\?",
     ):
         assert re.search(pattern, report), pattern
 

@@ -17,7 +17,7 @@ def planner(limits, p=EXTENDED, mode=None):
     return GazePlanner(p, limits, BEACONS, (1.5, 1.22), (3.0, 40.0))
 
 
-@pytest.mark.parametrize("mode", ["risk", "deadline", "integrated"])
+@pytest.mark.parametrize("mode", ["risk", "integrated"])
 def test_an_urgent_obstacle_is_looked_at(mode, belief, task, track, limits):
     side = track((0.3, 0.6), (-0.05, -0.1), sigma=0.08, age=1.0)
     decision = planner(limits, mode=mode).choose(belief([side]), task(), None)

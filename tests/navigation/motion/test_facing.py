@@ -8,7 +8,6 @@ from navigation.motion.facing import Facing, arriving, towards
 def test_a_heading_overrides_the_course(course):
     assert Facing(0.5).on(course) == 0.5
     assert Facing().on(course) == course
-    assert Facing(offset=0.4).on(course) == pytest.approx(course + 0.4)
 
 
 def test_the_body_turns_to_the_heading_near_the_goal_only(task):

@@ -214,36 +214,6 @@ def test_a_robot_that_stands_has_no_field(belief, task, limits):
     assert Planner(EXTENDED, limits).plan(belief(), task(done=True)).field is None
 
 
-def _stale_behind(x, y):
-    return 9.0 if x < 0.0 else 0.0
-
-
-def test_the_rear_check_turns_the_body_and_requests_a_look(belief, task, limits):
-    decision = Planner(EXTENDED, limits).plan(belief(age=_stale_behind), task())
-    assert decision.velocity[2] != 0.0
-    assert decision.look_request is not None
-    assert abs(decision.look_request) > 2.0
-    fresh = Planner(EXTENDED, limits).plan(belief(), task())
-    assert fresh.look_request is None
-    assert fresh.velocity[2] == 0.0
-
-
-@pytest.mark.parametrize("mode", ["fixed", "sweep", "integrated"])
-def test_there_is_no_rear_check_with_other_gazes(mode, belief, task, limits):
-    p = replace(EXTENDED, gaze=replace(EXTENDED.gaze, mode=mode))
-    decision = Planner(p, limits).plan(belief(age=_stale_behind), task())
-    assert decision.look_request is None
-    assert decision.velocity[2] == 0.0
-
-
-def test_there_is_no_rear_check_at_the_goal_and_in_the_paper(belief, task, limits):
-    near = task((0.2, 0.0), is_goal=True)
-    for p, t in ((EXTENDED, near), (PAPER, task())):
-        decision = Planner(p, limits).plan(belief(age=_stale_behind), t)
-        assert decision.look_request is None
-        assert decision.velocity[2] == pytest.approx(0.0)
-
-
 def test_the_body_turns_for_a_fixed_camera_and_keeps_its_course(belief, task, limits):
     p = EXTENDED
     ahead = Planner(p, limits).plan(belief(), task())

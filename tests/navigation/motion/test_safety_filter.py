@@ -118,7 +118,7 @@ def test_the_rollout_obeys_the_limits(limits):
 def test_a_turned_body_is_rolled_out_along_its_course(limits):
     """The lateral speed limit slows the turned body down."""
     turned, straight = (
-        filter_of(limits).rollout(start((0.0, 0.0, a), body, 0.0, Facing(offset=a)), AHEAD[None])
+        filter_of(limits).rollout(start((0.0, 0.0, a), body, 0.0, Facing(a)), AHEAD[None])
         for a, body in ((1.0, (0.05, -0.08, 0.0)), (0.0, (0.2, 0.0, 0.0)))
     )
     last = turned[0][-3, 0]

@@ -10,7 +10,7 @@ from walking.parameters import CONTROL_PERIOD, HeadParameters
 from walking.servos.head import Head
 
 LIMITS = ((-1.57, 1.57), (-1.05, 0.35))
-PARAMETERS = HeadParameters()
+PARAMETERS = HeadParameters(max_rate=6.0, max_acceleration=60.0)
 
 
 def follow(targets):

@@ -50,4 +50,4 @@ def test_pixels_of_the_gaze_map_match_its_cells(gaze):
 def test_directions_beyond_the_gaze_map_are_on_its_border():
     gaze = GazeParameters()
     beyond = np.array([[gaze.max_pan + 1.0, gaze.max_tilt + 1.0], [-3.0, -3.0]])
-    assert map_points(beyond, (17, 37), gaze).tolist() == [[0.0, 0.0], [37.0, 17.0]]
+    assert map_points(beyond, (9, 19), gaze).tolist() == [[0.0, 0.0], [19.0, 9.0]]
