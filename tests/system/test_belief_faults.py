@@ -5,7 +5,7 @@ import pytest
 
 from navigation.angles import wrap
 
-AHEAD = ("navigation.gaze.mode=fixed", "navigation.gaze.fixed_tilt=-0.2")  # at the beacons
+AROUND = "omnidirectional"  # sees the beacons wherever the gaze turns
 
 
 def errors(recorded):
@@ -18,7 +18,7 @@ def errors(recorded):
 
 
 def test_a_beacon_moved_by_half_a_metre_is_ignored(simulate):
-    _, recorded, _ = simulate("quick", "world.beacon_displacement=0.5", duration=5.0)
+    _, recorded, _ = simulate("quick", "world.beacon_displacement=0.5", camera=AROUND, duration=5.0)
     position, heading, lost = errors(recorded)
     assert any("yellow/cyan" in f.belief.seen_beacons for f in recorded.frames)
     assert not lost[-1]
@@ -27,15 +27,15 @@ def test_a_beacon_moved_by_half_a_metre_is_ignored(simulate):
 
 
 def test_beacons_hold_the_heading_of_a_drifting_gyro(simulate):
-    _, recorded, _ = simulate("quick", "sensors.gyro_bias=0.01", *AHEAD, duration=5.0)
+    _, recorded, _ = simulate("quick", "sensors.gyro_bias=0.01", camera=AROUND, duration=5.0)
     position, heading, lost = errors(recorded)
-    assert not (lost[1:] & lost[:-1]).any()  # where beacons contradict it, it asks them at once
+    assert not (lost[1:] & lost[:-1]).any()  # beacons that contradict it relocalize it at once
     assert heading.max() < 0.04  # by itself it would be 0.05
     assert position.max() < 0.08
 
 
 def test_a_gyro_that_drifts_slower_than_beacons_correct_it_loses_nobody(simulate):
-    _, recorded, _ = simulate("quick", "sensors.gyro_bias=0.003", *AHEAD, duration=5.0)
+    _, recorded, _ = simulate("quick", "sensors.gyro_bias=0.003", camera=AROUND, duration=5.0)
     _, heading, lost = errors(recorded)
     assert not lost.any()
     assert heading.max() < 0.01

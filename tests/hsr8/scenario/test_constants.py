@@ -14,13 +14,13 @@ EXPONENT = "navigation.gaze.risk.exponent"
 def test_a_constant_is_changed_and_written_where_it_differs_from_the_profile(profile):
     usual = load_scenario("course", [f"navigation.profile={profile}"])
     assert "[constants" not in dump(usual)
-    changes = {f"constants.{EXPONENT}": 2.25, "constants.navigation.univector.memory": 0.5}
+    changes = {f"constants.{EXPONENT}": 2.25, "constants.navigation.gaze.undetected.reach": 0.5}
     changed = load_scenario("course", {"navigation.profile": profile, **changes})
     assert changed.navigation.gaze.risk.exponent == 2.25
-    assert changed.navigation.univector.memory == 0.5
+    assert changed.navigation.gaze.undetected.reach == 0.5
     assert changed.navigation.univector == usual.navigation.univector
     text = dump(changed)
-    assert "[constants.navigation.gaze.deadline]\nmap_rings = [0.5]" in text.replace(
+    assert "[constants.navigation.gaze.undetected]\nreach = 0.5" in text.replace(
         "exponent = 2.25\n", ""
     )
     assert loads(text) == changed
@@ -30,7 +30,7 @@ def test_a_constant_is_changed_and_written_where_it_differs_from_the_profile(pro
     ("text", "wanted"),
     [
         (
-            "[navigation.gaze.deadline]\nexponent = 2.0",
+            "[navigation.gaze.risk]\nexponent = 2.0",
             f"3: {EXPONENT}: a constant, not a setting; for studies, constants.{EXPONENT}",
         ),
         (

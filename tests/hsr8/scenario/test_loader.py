@@ -41,7 +41,7 @@ radius = [0.1, -0.2]
 period_ms = 33
 source = "egll"
 [navigation.gaze]
-mode = "deadlin"
+mode = "integrate"
 """
     lines = mistakes(text)
     assert len(lines) == 6
@@ -54,7 +54,7 @@ mode = "deadlin"
         r'file\.toml:8: camera\.source: must be one of "rendered", "analytic", "neck-reach", '
         '"omnidirectional", '
         'got "egll"',
-        r"file\.toml:10: navigation\.gaze\.mode: must be one of .*did you mean 'risk'\?",
+        r"file\.toml:10: navigation\.gaze\.mode: must be one of .*did you mean 'integrated'\?",
     ):
         assert re.search(pattern, report), pattern
 

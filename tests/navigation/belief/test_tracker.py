@@ -85,9 +85,9 @@ def test_far_away_no_track_begins_but_one_goes_on(stage):
 
 
 def test_single_false_detections_leave_no_track(stage):
-    for k in range(200):
+    for k in range(300):
         a = 0.6 * np.sin(12.9 * k)
-        assert len(stage.show((1.5, a) if k % 12 == 0 else (1.0, 0.0))) <= 1
+        assert len(stage.show((1.5, a) if k % 30 == 0 else (1.0, 0.0))) <= 1
     assert len(stage.show((1.0, 0.0))) == 1
 
 

@@ -18,22 +18,19 @@ FOV, NECK = (1.05, 0.82), (3.0, 40.0)
 WALK = MotionDecision(np.array([0.2, 0.0, 0.0]))
 
 
-def with_risk(**changes):
-    return replace(P, gaze=replace(P.gaze, risk=replace(P.gaze.risk, **changes)))
-
-
-def without_undetected(p=P):
-    return replace(
-        p, gaze=replace(p.gaze, undetected=replace(p.gaze.undetected, movers=0.0, static=0.0))
-    )
+def known(p=P, path_weight=0.0):
+    """Parameters without undetected obstacles, and with looks at the path on request."""
+    undetected = replace(p.gaze.undetected, movers=0.0, static=0.0)
+    risk = replace(p.gaze.risk, path_weight=path_weight)
+    return replace(p, gaze=replace(p.gaze, undetected=undetected, risk=risk))
 
 
 @pytest.fixture
 def gaze_map(limits, task):
     """The gaze map of a first decision, without undetected obstacles."""
 
-    def look(belief, p=P, motion=WALK, beacons=BEACONS):
-        gaze = GazePlanner(without_undetected(p), limits, beacons, FOV, NECK)
+    def look(belief, motion=WALK, beacons=BEACONS, path_weight=0.0):
+        gaze = GazePlanner(known(path_weight=path_weight), limits, beacons, FOV, NECK)
         return gaze.choose(belief, task(), motion).gaze_map
 
     return look
@@ -89,11 +86,16 @@ def test_beacons_are_worth_a_look_while_the_pose_is_uncertain(belief, gaze_map):
     assert columns.max() < values.shape[1] - 1
 
 
-def test_unseen_ground_ahead_is_worth_a_look(belief, gaze_map):
-    unseen = belief(sigma=0.0, turn_sigma=0.0, confidence=lambda x, y: float(x < 0.3))
-    assert gaze_map(unseen).max() > 0.0
-    closed = replace(P, unseen_ground=replace(P.unseen_ground, enabled=False))
-    assert gaze_map(unseen, closed).max() == 0.0
+def test_the_path_is_worth_a_look_by_the_age_of_its_ground(belief, gaze_map):
+    def value(age, path_weight=0.3):
+        b = belief(sigma=0.0, turn_sigma=0.0, age=lambda x, y: age)
+        return gaze_map(b, path_weight=path_weight).max()
+
+    values = [value(age) for age in (0.0, 0.5, 1.0, 2.0, np.inf)]
+    assert values == sorted(values)
+    assert values[0] < 0.2 * values[2]
+    assert np.isfinite(values[-1])
+    assert value(2.0, path_weight=0.0) == 0.0
 
 
 def test_the_gaze_map_turns_with_the_world(belief, track, limits, task):
@@ -101,7 +103,7 @@ def test_the_gaze_map_turns_with_the_world(belief, track, limits, task):
         c, s = np.cos(turn), np.sin(turn)
         point = np.array([[c, -s], [s, c]]) @ (0.6, 0.7)
         b = belief([track(point, age=2.0, motion=Motion.UNKNOWN)], pose=(0.0, 0.0, turn))
-        gaze = GazePlanner(without_undetected(), limits, {}, FOV, NECK)
+        gaze = GazePlanner(known(), limits, {}, FOV, NECK)
         return gaze.choose(b, task(target=(2 * c, 2 * s)), WALK)
 
     plain = chosen(0.0)
@@ -115,7 +117,7 @@ def test_a_turning_body_looks_where_the_obstacle_will_be(belief, track, limits, 
     side = belief([track((0.0, 0.9), (0.0, -0.1), age=2.0)])
 
     def centre(turn_rate):
-        gaze = GazePlanner(without_undetected(), limits, {}, FOV, NECK)
+        gaze = GazePlanner(known(), limits, {}, FOV, NECK)
         motion = MotionDecision(np.array([0.0, 0.0, turn_rate]))
         columns = gaze.choose(side, task(), motion).gaze_map.max(axis=0)
         return np.average(gaze.grid.pan, weights=columns > 0.0)
@@ -124,7 +126,7 @@ def test_a_turning_body_looks_where_the_obstacle_will_be(belief, track, limits, 
 
 
 def test_the_gaze_stays_where_no_other_view_is_worth_the_saccade(belief, track, limits, task, view):
-    gaze = GazePlanner(without_undetected(), limits, {}, FOV, NECK)
+    gaze = GazePlanner(known(), limits, {}, FOV, NECK)
     fresh = track((0.9, 0.2), motion=Motion.UNKNOWN, hits=3, age=0.0)
     first = gaze.choose(belief([fresh]), task(), WALK)
     for k in range(1, 10):
