@@ -48,7 +48,7 @@ class Outcome:
 
     Attributes:
         success: the goal was reached without a contact.
-        contact: what was touched, empty for nothing: "mover" or "static".
+        contact: kind of the touched obstacle, "mover" or "static"; empty without a contact.
         time: of the end [s].
         clearance: minimum gap from an obstacle [m].
         near: time with a mover nearby [s].
@@ -169,8 +169,9 @@ def camera_offset(engine: PlanarEngine, scenario: Scenario) -> Array:
         with Simulation(scene, 0) as simulation:
             for tick in simulation:
                 if tick.record is not None and tick.time > SETTLED:
-                    seen = tick.record.walking.camera
-                    offsets.append(seen.position - engine.camera_pose(seen.pan, seen.tilt)[1])
+                    camera_pose = tick.record.walking.camera
+                    planar = engine.camera_pose(camera_pose.pan, camera_pose.tilt)[1]
+                    offsets.append(camera_pose.position - planar)
         _OFFSETS[scenario.robot.model] = np.mean(offsets, axis=0)
     return _OFFSETS[scenario.robot.model]
 
@@ -294,28 +295,30 @@ class FastRun:
         if len(near) == 0 or self.robot.frame is None:
             return
         period = self._frame_ticks * CONTACT_TICKS * TICK
-        places = self.world.state(time)[0][near]
+        positions = self.world.state(time)[0][near]
         self._near += period * len(near)
-        unaware = [_nearest(self.robot.frame.belief, place)[0] > UNKNOWN for place in places]
+        unaware = [
+            _nearest(self.robot.frame.belief, position)[0] > UNKNOWN for position in positions
+        ]
         self._unaware += period * sum(unaware)
 
     def _describe(self, touched: int, time: float) -> str:
         """Return bearing, speeds and track of the obstacle that the body touches, for people."""
         body, frame = self.engine.body, self.robot.frame
-        place, velocity = (a[touched] for a in self.world.state(time))
-        dx, dy = (place - body.pose[:2]).tolist()
+        position, velocity = (a[touched] for a in self.world.state(time))
+        dx, dy = (position - body.pose[:2]).tolist()
         bearing = degrees(wrap(atan2(dy, dx) - float(body.pose[2])))
-        track = "exact" if frame is None else _nearest(frame.belief, place)[1]
+        track = "exact" if frame is None else _nearest(frame.belief, position)[1]
         speeds = f"{hypot(*velocity.tolist()):.2f}, robot {hypot(*body.body[:2].tolist()):.2f} m/s"
         return f"obstacle {touched} at {bearing:.0f} deg, {speeds}, {track}"
 
 
-def _nearest(belief: Belief, place: Array) -> tuple[float, str]:
-    """Return distance and description of the track nearest to a place in W [m]."""
+def _nearest(belief: Belief, position: Array) -> tuple[float, str]:
+    """Return distance and description of the track nearest to a position in W [m]."""
     tracks = belief.tracks
     if not tracks:
         return inf, "no track"
-    gaps = [hypot(*(track.position - place).tolist()) for track in tracks]
+    gaps = [hypot(*(track.position - position).tolist()) for track in tracks]
     k = int(np.argmin(gaps))
     track = tracks[k]
     return gaps[

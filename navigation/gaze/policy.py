@@ -1,4 +1,4 @@
-"""Protocol of gaze policies, and what they decide on."""
+"""Protocol of gaze policies, and the inputs of their decisions."""
 
 from math import atan2, hypot
 from typing import Protocol

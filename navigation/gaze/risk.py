@@ -25,6 +25,7 @@ from navigation.transform import points_to_robot, velocity_in_world
 
 Array = NDArray[np.float64]
 
+ARRIVED = 0.1  # distance from the chosen gaze at which a fixation begins [rad]
 MAX_AGE = 1e3  # of ground never seen [s]
 MAX_HALF_FOV = 1.5  # of a panoramic camera, as a pinhole camera [rad]
 
@@ -56,6 +57,7 @@ class RiskGaze(GazePolicy):
         self._neck = neck
         self._undetected: Undetected | None = None
         self._beacon_seen = 0.0  # time of the latest beacon [s]
+        self._fixated = 0.0  # time of the latest frame of a saccade [s]
 
     def observe(self, belief: Belief) -> None:
         if self._undetected is None:
@@ -79,11 +81,22 @@ class RiskGaze(GazePolicy):
             np.array([p.look_time, p.max_urgency, p.exponent, p.disc_edge]),
         )
         values = view_values(self._grid.pan, self._grid.tilt, *seen_from)
+        if self._fixates(context.scene.belief, now):
+            return values, now
         present = view_values(np.array([now[0]]), np.array([now[1]]), *seen_from)
         if present[0, 0] >= values.max():
             return values, now
         row, column = np.unravel_index(int(np.argmax(values)), values.shape)
         return values, (float(self._grid.pan[column]), float(self._grid.tilt[row]))
+
+    def _fixates(self, belief: Belief, now: Gaze) -> bool:
+        """Return whether the present fixation is younger than its minimum duration."""
+        view = belief.view
+        arrived = max(abs(view.pan - now[0]), abs(view.tilt - now[1])) < ARRIVED
+        if view.blind or not arrived:
+            self._fixated = belief.time
+            return False
+        return belief.time - self._fixated < self._parameters.gaze.risk.min_fixation
 
     def _looks(self, context: GazeContext, pose: Array) -> Array:
         """Return all looks, see `view_kernel.view_values` (n, 7)."""

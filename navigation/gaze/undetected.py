@@ -51,8 +51,8 @@ class Undetected:
             movers[:] = shifted(movers, rows, columns, self._new)
         columns, rows = scroll.tolist()
         self._static = shifted(self._static, rows, columns, self._parameters.static)
-        seen = local_map.age <= 0.0
-        undetected_kernel.see(self._movers, self._static, seen, self._parameters.missed)
+        in_view = local_map.age <= 0.0
+        undetected_kernel.see(self._movers, self._static, in_view, self._parameters.missed)
 
     def risks(self, position: Array, velocity: Array, parameters: RiskParameters) -> Array:
         """Return position in W [m] and risk of the cells around the robot (m, 3).

@@ -34,19 +34,19 @@ def time_to_collision(x: float, y: float, vx: float, vy: float, gap: float) -> f
 
 
 @njit(cache=True)
-def see(movers: Array, static: Array, seen: NDArray[np.bool_], missed: float) -> None:
+def see(movers: Array, static: Array, in_view: NDArray[np.bool_], missed: float) -> None:
     """Reduce the densities in the cells that a frame shows, in place.
 
     Args:
         movers: density by heading (k, n, n) [1/m²].
         static: density (n, n) [1/m²].
-        seen: cells in the frame (n, n).
+        in_view: cells in the frame (n, n).
         missed: fraction that remains [1].
     """
     count = len(static)
     for row in range(count):
         for column in range(count):
-            if seen[row, column]:
+            if in_view[row, column]:
                 static[row, column] *= missed
                 for k in range(len(movers)):
                     movers[k, row, column] *= missed
