@@ -7,7 +7,7 @@ all that its image shows, over the time of the saccade and the look.
 """
 
 from dataclasses import replace
-from math import hypot, tan
+from math import hypot, inf, tan
 
 import numpy as np
 from numpy.typing import NDArray
@@ -57,7 +57,7 @@ class RiskGaze(GazePolicy):
         self._neck = neck
         self._undetected: Undetected | None = None
         self._beacon_seen = 0.0  # time of the latest beacon [s]
-        self._fixated = 0.0  # time of the latest frame of a saccade [s]
+        self._fixated = -inf  # time of the latest frame of a saccade [s]
 
     def observe(self, belief: Belief) -> None:
         if self._undetected is None:

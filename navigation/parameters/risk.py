@@ -28,7 +28,7 @@ class RiskParameters:
     """Risk gaze: the risk that a look removes, over the time that it takes."""
 
     look_time: Annotated[float, "s"] = 0.25  # duration of a look after the saccade
-    # minimum duration of a fixation, from its first sharp frame
+    # minimum duration of a fixation, from the latest frame of its saccade
     min_fixation: Annotated[float, "s"] = 0.1
     exponent: float = 1.5  # exponent of the urgency [1]
     max_urgency: float = 4.0  # upper bound of the urgency [1]

@@ -46,7 +46,7 @@ def test_a_voting_gaze_decides_after_arrival_only(belief, task, track, limits, v
 
 
 def test_equal_votes_do_not_make_the_gaze_chatter(belief, task, track, limits, view):
-    gaze = planner(limits)
+    gaze = planner(limits, mode="integrated")
     both = [track((0.0, y), (-0.05, 0), age=1.0) for y in (0.7, -0.7)]
     first = gaze.choose(belief(both), task(), None)
     for k in range(1, 100):

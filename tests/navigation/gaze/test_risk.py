@@ -149,3 +149,18 @@ def test_ground_where_movers_may_hide_is_visited_in_turn(limits, task, view, bel
         pans.append(pan)
     assert max(pans) > 1.0
     assert min(pans) < -1.0
+
+
+def test_a_fixation_lasts_for_its_minimum_duration(belief, track, limits, task, view):
+    """The head arrives at the first obstacle when the other one becomes urgent."""
+    gaze = GazePlanner(known(), limits, {}, FOV, NECK)
+    left, right = (track((0.5, y), (-0.1, 0.0), age=2.0) for y in (0.8, -0.8))
+    first = gaze.choose(belief([left], camera=view(1.4, 0.3)), task(), WALK)
+    assert first.pan > 0.3
+    pans = []
+    for k in range(1, 6):
+        camera = view(first.pan, first.tilt)
+        seen = belief([right], time=0.06 * k, camera=camera)
+        pans.append(gaze.choose(seen, task(), WALK).pan)
+    assert pans[0] == first.pan
+    assert pans[1] < 0.0

@@ -63,9 +63,7 @@ def test_footsteps_follow_one_another(scene, facing):
     direction = np.where(speed < 1e-9, 0.3, np.arctan2(candidates[:, 1], candidates[:, 0]))
     to = direction if np.isnan(facing) else np.full(len(candidates), facing)
     heading, body = np.full(len(candidates), 2.8), np.tile(now, (len(candidates), 1))
-    velocity, duration = kernel.rollout(
-        candidates, 2.8, 0.3, facing, now, ENVELOPE, GAIT, 4
-    )
+    velocity, duration = kernel.rollout(candidates, 2.8, 0.3, facing, now, ENVELOPE, GAIT, 4)
     for step in range(4):
         delta = body_velocity(direction, speed, heading, to) - body
         size = np.hypot(delta[:, 0], delta[:, 1])
