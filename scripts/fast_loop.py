@@ -20,6 +20,7 @@ from hsr8.world.camera.faults import CameraFaults
 from hsr8.world.field.generator import draw_layout
 from navigation.angles import wrap
 from navigation.belief.belief import Belief
+from navigation.decision import GazeDecision
 from navigation.observation import Frame
 from navigation.transform import yaw_rotation
 from walking.body import head_kernel
@@ -176,6 +177,14 @@ def camera_offset(engine: PlanarEngine, scenario: Scenario) -> Array:
     return _OFFSETS[scenario.robot.model]
 
 
+class _Ahead:
+    """Gaze straight ahead."""
+
+    def choose(self, *_: object) -> GazeDecision:
+        """Return the gaze."""
+        return GazeDecision(pan=0.0, tilt=0.0)
+
+
 class FastRun:
     """One run.
 
@@ -214,11 +223,11 @@ class FastRun:
         )
         self._frame_ticks = max(1, round(1e-3 * scenario.camera.period_ms / TICK))
         self._ticks = round(scenario.duration / TICK)
-        self._exact = (
-            build_decisions(scenario, self.layout, seed, None, planner=planner, gaze=gaze)
-            if exact
-            else None
-        )
+        self._exact = None
+        if exact:  # needs no gaze
+            self._exact = build_decisions(
+                scenario, self.layout, seed, None, planner=planner, gaze=_Ahead()
+            )
         self._near = self._unaware = self._travel = 0.0
         self._frames = self._sharp = 0
         self._pan = 0.0
