@@ -74,6 +74,26 @@ class ObstacleSet:
         return ObstacleSet(*(getattr(self, f.name)[mask] for f in fields(self)))
 
 
+def possible_positions(tracks: Sequence[Track]) -> tuple[NDArray[np.int64], Array, Array]:
+    """Return where tracks may be: at their positions, or at the particles of lost ones.
+
+    Args:
+        tracks: at least one.
+
+    Returns:
+        Index of the track (m,), position in W (m, 2) [m] and weight (m,), which sums to one for
+        each track.
+    """
+    clouds = [track.particles for track in tracks]
+    positions = [
+        track.position[None] if cloud is None else cloud.positions
+        for track, cloud in zip(tracks, clouds, strict=True)
+    ]
+    weights = [np.ones(1) if cloud is None else cloud.weights for cloud in clouds]
+    owner = np.repeat(np.arange(len(clouds)), [len(w) for w in weights])
+    return owner, np.concatenate(positions), np.concatenate(weights)
+
+
 def max_deviation(covariance: Array) -> float:
     """Return sqrt(lambda_max) of a symmetric matrix (2, 2)."""
     (xx, xy), (_, yy) = covariance.tolist()

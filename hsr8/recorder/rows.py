@@ -11,9 +11,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from hsr8.record import Second, TickRecord
+from hsr8.record import Second
 from hsr8.recorder.columns import at, computed, row
-from hsr8.recorder.limit_bits import limit_bits
+from hsr8.recorder.limit_bits import limit_bits, limited_command_of, limits_of
 from hsr8.world.truth.truth import ActivePush, Contact
 from navigation.decision import VirtualObstacle
 from vision.detection import Detection
@@ -23,16 +23,6 @@ from walking.value import value
 Array = NDArray[np.float64]
 Vector = Array | tuple[float, ...]
 Shades = NDArray[np.uint8]
-
-
-def _limited_command(record: TickRecord) -> Vector:
-    report = record.walking.command_limits
-    return np.full(3, np.nan) if report is None else report.commanded.velocity
-
-
-def _limits(record: TickRecord) -> int:
-    report = record.walking.command_limits
-    return 0 if report is None else limit_bits(report.limits)
 
 
 def _saturation(name: str) -> Callable[[Second], Any]:
@@ -147,8 +137,8 @@ class RecordRow:
     head_target: Vector = at("head.pan", "head.tilt")
     command: Vector = at("command.velocity")
     applied_velocity: Array = at("walking.applied_velocity")
-    limited_command: Vector = computed(_limited_command)
-    limits: int = computed(_limits)
+    limited_command: Vector = computed(limited_command_of)
+    limits: int = computed(limits_of)
     footsteps: tuple[Foothold, ...] = at("walking.footsteps")
     step_count: int = at("walking.step_count")
     zmp: Array = at("walking.zmp")

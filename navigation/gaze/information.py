@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 
 from navigation.gaze.gaze_map import Votes
 from navigation.gaze.scene import GazeScene, relative
+from navigation.obstacle_set import possible_positions
 from navigation.parameters.navigation import NavigationParameters
 from navigation.transform import points_to_world
 
@@ -28,20 +29,17 @@ def information_votes(scene: GazeScene, parameters: NavigationParameters) -> Vot
 
 def track_information(scene: GazeScene, parameters: NavigationParameters) -> Votes:
     """½ log det(1 + P/R) of every track; that of a lost track is split over its particles."""
-    positions, weights, variances = [], [], []
-    for track in scene.belief.tracks:
-        cloud = track.particles
-        positions.append(track.position[None] if cloud is None else cloud.positions)
-        weights.append(np.ones(1) if cloud is None else cloud.weights)
-        spread = np.linalg.eigvalsh(track.covariance[:2, :2])
-        variances.append(np.broadcast_to(np.maximum(spread, 0.0), (len(positions[-1]), 2)))
-    if not positions:
+    tracks = scene.belief.tracks
+    if not tracks:
         return Votes.join([])
-    bearing, distance = relative(np.concatenate(positions), scene.belief.pose)
+    owner, positions, weights = possible_positions(tracks)
+    spread = [np.linalg.eigvalsh(track.covariance[:2, :2]) for track in tracks]
+    variances = np.maximum(spread, 0.0)[owner]
+    bearing, distance = relative(positions, scene.belief.pose)
     near = distance <= parameters.evaluation.attention_range
     noise = sight_sigma(distance, parameters) ** 2
-    ratio = np.concatenate(variances) / noise[:, None]
-    gain = np.concatenate(weights) * 0.5 * np.log1p(ratio).sum(axis=1)
+    ratio = variances / noise[:, None]
+    gain = weights * 0.5 * np.log1p(ratio).sum(axis=1)
     height = parameters.evaluation.aim_height - scene.camera_height
     tilt = np.arctan2(height, np.maximum(distance, parameters.evaluation.min_distance))
     return Votes(bearing[near], tilt[near], gain[near])

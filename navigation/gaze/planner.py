@@ -1,4 +1,4 @@
-"""Gaze planner: applies the policy of the parameters after every saccade and dwell.
+"""Gaze planner: applies the policy of the parameters, a steady one after saccade and dwell.
 
 The body of a robot whose camera is fixed turns instead of its head.
 """
@@ -68,7 +68,7 @@ class GazePlanner:
             motion: decision of the planner, None before the first.
 
         Returns:
-            The decision in force; a new one after the arrival of the head and the dwell.
+            The decision in force; of a steady policy a new one after arrival and dwell.
         """
         self._policy.observe(belief)
         policy = self._search if belief.lost else self._policy

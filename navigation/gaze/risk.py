@@ -19,6 +19,7 @@ from navigation.gaze.policy import Gaze, GazeContext, GazePolicy
 from navigation.gaze.undetected import Undetected
 from navigation.gaze.view_kernel import view_values
 from navigation.motion.unseen_ground import ground_points
+from navigation.obstacle_set import possible_positions
 from navigation.parameters.navigation import NavigationParameters
 from navigation.partial_evaluation import psi_self
 from navigation.transform import points_to_robot, velocity_in_world
@@ -90,13 +91,13 @@ class RiskGaze(GazePolicy):
         return values, (float(self._grid.pan[column]), float(self._grid.tilt[row]))
 
     def _fixates(self, belief: Belief, now: Gaze) -> bool:
-        """Return whether the present fixation is younger than its minimum duration."""
+        """Return whether the present fixation is younger than a dwell."""
         view = belief.view
         arrived = max(abs(view.pan - now[0]), abs(view.tilt - now[1])) < ARRIVED
         if view.blind or not arrived:
             self._fixated = belief.time
             return False
-        return belief.time - self._fixated < self._parameters.gaze.risk.min_fixation
+        return belief.time - self._fixated < self._parameters.gaze.dwell
 
     def _looks(self, context: GazeContext, pose: Array) -> Array:
         """Return all looks, see `view_kernel.view_values` (n, 7)."""
@@ -154,16 +155,7 @@ class RiskGaze(GazePolicy):
         p, belief, o = self._parameters.gaze.risk, context.scene.belief, context.scene.obstacles
         if len(o) == 0:
             return np.zeros((0, 7))
-        clouds = [track.particles for track in belief.tracks]
-        counts = [1 if cloud is None else len(cloud.weights) for cloud in clouds]
-        owner = np.repeat(np.arange(len(clouds)), counts)
-        positions = np.concatenate(
-            [
-                t.position[None] if c is None else c.positions
-                for t, c in zip(belief.tracks, clouds, strict=True)
-            ]
-        )
-        weights = np.concatenate([np.ones(1) if c is None else c.weights for c in clouds])
+        owner, positions, weights = possible_positions(belief.tracks)
         points = points_to_robot(pose, positions)
         distance = np.hypot(points[:, 0], points[:, 1])
         course = context.path + float(belief.pose[2] - pose[2])

@@ -100,7 +100,7 @@ class GazeParameters:
     max_tilt: Annotated[float, Ge(0.0), Le(2.0)] = pi / 9.0
     """Highest tilt [rad]."""
     dwell: NonNegative = 0.1
-    """Dwell: time between the arrival of the head and the next decision [s]."""
+    """Dwell: minimum time between the arrival of the head and the next gaze [s]."""
     fixed_tilt: Annotated[float, Ge(-2.0), Le(2.0)] = -0.45
     """Tilt of the blind gazes [rad]."""
     sweep_amplitude: NonNegative = 1.2

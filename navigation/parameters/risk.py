@@ -28,8 +28,6 @@ class RiskParameters:
     """Risk gaze: the risk that a look removes, over the time that it takes."""
 
     look_time: Annotated[float, "s"] = 0.25  # duration of a look after the saccade
-    # minimum duration of a fixation, from the latest frame of its saccade
-    min_fixation: Annotated[float, "s"] = 0.1
     exponent: float = 1.5  # exponent of the urgency [1]
     max_urgency: float = 4.0  # upper bound of the urgency [1]
     # assumed approach of obstacles: static, and undecided or moving at most, ratios to the robot's

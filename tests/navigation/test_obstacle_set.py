@@ -2,7 +2,7 @@ import numpy as np
 import pytest
 
 from navigation.belief.belief import Motion
-from navigation.obstacle_set import ObstacleSet, max_deviation
+from navigation.obstacle_set import ObstacleSet, max_deviation, possible_positions
 
 
 def test_max_deviation_is_that_of_the_eigenvalues_and_ignores_rotation():
@@ -37,3 +37,12 @@ def test_selection_keeps_rows_together(track):
     assert part.ids.tolist() == [1, 3]
     assert part.position[:, 1] == pytest.approx([2, 6])
     assert part.speed == pytest.approx([0.1, 0.3])
+
+
+def test_possible_positions_are_those_of_tracks_and_the_particles_of_lost_ones(track):
+    cloud = ([[1.0, 0.0], [2.0, 0.0], [3.0, 0.0]], np.zeros((3, 2)), [0.5, 0.3, 0.2])
+    tracks = [track((0.0, 1.0)), track((9.0, 9.0), particles=cloud), track((0.0, 2.0))]
+    owner, positions, weights = possible_positions(tracks)
+    assert owner.tolist() == [0, 1, 1, 1, 2]
+    assert positions.tolist() == [[0, 1], [1, 0], [2, 0], [3, 0], [0, 2]]
+    assert np.bincount(owner, weights).tolist() == pytest.approx([1.0, 1.0, 1.0])
