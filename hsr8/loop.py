@@ -28,7 +28,7 @@ from hsr8.world.camera.analytic import AnalyticCamera
 from hsr8.world.camera.faults import CameraFaults
 from hsr8.world.camera.feed import CameraFeed, CapturedFrame
 from hsr8.world.camera.rendered import RenderedCamera
-from hsr8.world.field.generator import draw_layout
+from hsr8.world.field.generator import draw_world
 from hsr8.world.model.index import ModelIndex
 from hsr8.world.truth.truth import Truth
 from walking.parameters import CONTROL_PERIOD
@@ -77,6 +77,7 @@ class Simulation:
         seed: draws the world and all noise.
         humanoid: the robot and its model.
         layout: the drawn world.
+        certificate: feasibility certificate of the world.
         model: MuJoCo model of world and robot.
         exit_reason: goal, timeout, completed, fall, diverged or interrupted after the run; None
             before.
@@ -101,7 +102,8 @@ class Simulation:
         self.scenario = scenario
         self.seed = scenario.with_seed(seed).seed
         self.humanoid = load_robot(scenario.robot.model)
-        self.layout = draw_layout(scenario, self.seed)
+        world = draw_world(scenario, self.seed)
+        self.layout, self.certificate = world.layout, world.certificate
         self.model = build_model(scenario, self.layout)
         self.exit_reason: str | None = None
         self.tick = 0

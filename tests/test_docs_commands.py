@@ -221,8 +221,8 @@ def stand_ins(monkeypatch, tmp_path, finished):
     for name in RUNS:
         shutil.copytree(finished, tmp_path / "runs" / name)
     monkeypatch.setattr("hsr8.api.run", run_in_short)
-    monkeypatch.setattr("hsr8.cli.sweep.require_gl", lambda: "none")
-    monkeypatch.setattr("hsr8.cli.sweep.open_executor", lambda name, workers: Instant())
+    monkeypatch.setattr("hsr8.cli.sweep_runs.require_gl", lambda: "none")
+    monkeypatch.setattr("hsr8.cli.sweep_runs.open_executor", lambda name, workers: Instant())
     monkeypatch.setattr("hsr8.render.viewer.has_display", lambda: True)
     monkeypatch.setattr("hsr8.render.viewer.show", lambda logs: 0)
     monkeypatch.setattr("hsr8.render.viewer.screenshot", lambda logs, time, size: b"PNG")

@@ -16,6 +16,7 @@ from hsr8.evaluation.sums import mean, root_mean, total
 from hsr8.evaluation.track_metrics import track_metrics
 from hsr8.evaluation.walk_metrics import walk_metrics
 from hsr8.recorder.table import Table
+from hsr8.world.field.certificate import Certificate
 from hsr8.world.field.layout import Layout
 from hsr8.world.truth.collision_counter import CollisionCounter
 from hsr8.world.truth.falls import RECOVERY_TIME, Falls
@@ -58,6 +59,7 @@ def metrics(
     layout: Layout,
     mission: MissionParameters,
     *,
+    certificate: Certificate | None = None,
     exit_reason: str,
     state_hash: str,
     wall_time: float,
@@ -70,6 +72,7 @@ def metrics(
         tables: of the run, with at least `COLUMNS`.
         layout: of the run's world.
         mission: distances at which via points and goal are reached.
+        certificate: of the world.
         exit_reason: of the run.
         state_hash: of the last state.
         wall_time: of the run [s].
@@ -95,6 +98,7 @@ def metrics(
         "arrival_error_deg": _arrival_error(records, layout, arrival),
         "time_to_goal_s": arrival.time,
         "path_length_m": path,
+        **_certified(certificate, layout),
         "min_clearance_m": clearance if isfinite(clearance) else None,
         **_localization(frames, truth),
         "obstacle_speed_rmse_mps": _obstacle_speed(frames, truth, layout),
@@ -170,6 +174,17 @@ def _arrival(frames: Table, truth: Truth, layout: Layout, mission: MissionParame
                 and degrees(abs(wrap(heading - wanted))) <= HEADING_TOLERANCE
             )
     return arrival
+
+
+def _certified(certificate: Certificate | None, layout: Layout) -> dict[str, object]:
+    """Return time and length of the certified path; None unless it leads to the goal."""
+    if (
+        certificate is None
+        or not (certificate.solvable and _has_goal(layout))
+        or certificate.points < len(layout.waypoints)
+    ):
+        return {"certified_time_s": None, "certified_length_m": None}
+    return {"certified_time_s": certificate.time, "certified_length_m": certificate.length}
 
 
 def _arrival_error(records: Table, layout: Layout, arrival: _Arrival) -> float | None:

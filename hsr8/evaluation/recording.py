@@ -172,6 +172,7 @@ class Recording:
             selection.tables(),
             simulation.layout,
             simulation.scenario.navigation.mission,
+            certificate=simulation.certificate,
             exit_reason=outcome.exit_reason,
             state_hash=outcome.state_hash,
             wall_time=wall_time,

@@ -58,7 +58,7 @@ def instant(monkeypatch, tmp_path):
 
     def use(outcomes=None):
         executor = Instant(outcomes or {})
-        monkeypatch.setattr("hsr8.cli.sweep.open_executor", lambda name, workers: executor)
+        monkeypatch.setattr("hsr8.cli.sweep_runs.open_executor", lambda name, workers: executor)
         return executor
 
     return use
@@ -267,7 +267,7 @@ def test_progress_and_table_are_printed(instant, capsys):
 def test_the_examples_of_the_documentation_work(instant, monkeypatch, capsys):
     """Every command of it, in order, on runs that end at once; then its Python."""
     page = (Path(__file__).parents[3] / "docs" / "sweeps.md").read_text()
-    monkeypatch.setattr("hsr8.cli.sweep.require_gl", lambda: "none")
+    monkeypatch.setattr("hsr8.cli.sweep_runs.require_gl", lambda: "none")
     monkeypatch.setattr("os.fsync", lambda _: None)  # thousands of runs
     instant()
     commands = re.findall(r"^(hsr8 (?:sweep|compare) .*)$", page, re.M)

@@ -5,7 +5,10 @@ import numpy as np
 import pytest
 
 from hsr8.evaluation.metrics import metrics
+from hsr8.world.field.certificate import Certificate
 from navigation.parameters.navigation import MissionParameters
+
+PATH = np.array([[0.0, 0.0, 0.0, 0.0], [4.0, 1.5, 0.0, 0.0], [9.0, 1.5, 1.0, 1.6]])
 
 PROMISED = {
     "success",
@@ -34,11 +37,12 @@ PROMISED = {
 def measure(layout, tables_of):
     """Results of records, with a via point radius of 15 cm and a goal radius of 5 cm."""
 
-    def measured(records, reason="timeout", world=layout):
+    def measured(records, reason="timeout", world=layout, certificate=None):
         return metrics(
             tables_of(records),
             world,
             MissionParameters(r_via=0.15, r_goal=0.05),
+            certificate=certificate,
             exit_reason=reason,
             state_hash="hash",
             wall_time=5.0,
@@ -52,6 +56,24 @@ def test_all_keys_are_present_also_without_records(measure):
     assert set(results) >= PROMISED
     assert results["success"] is False
     assert results["localization_rmse_m"] is None
+
+
+@pytest.mark.parametrize(
+    ("certificate", "endless", "time", "length"),
+    [
+        (Certificate(True, 2, 2, 9.0, PATH), False, 9.0, 2.5),
+        (Certificate(True, 1, 1, 9.0, PATH), False, None, None),  # not all points were checked
+        (Certificate(False, 1, 2, 400.0), False, None, None),
+        (Certificate(True, 2, 2, 9.0, PATH), True, None, None),
+        (None, False, None, None),
+    ],
+)
+def test_the_certified_path_counts_if_it_leads_to_the_goal(
+    measure, layout, certificate, endless, time, length
+):
+    results = measure([], world=replace(layout, endless=endless), certificate=certificate)
+    assert results["certified_time_s"] == time
+    assert results["certified_length_m"] == length
 
 
 def test_a_straight_walk(measure, walk):

@@ -1,0 +1,202 @@
+"""Runs of one or more sweep folders."""
+
+import hashlib
+import os
+import re
+import sys
+from collections.abc import Iterable, Mapping, Sequence
+from contextlib import ExitStack, closing
+from dataclasses import dataclass
+from pathlib import Path
+
+from hsr8.cli import termination
+from hsr8.cli.main import entry
+from hsr8.errors import UsageError
+from hsr8.evaluation.sweep.dask_executor import DaskExecutor
+from hsr8.evaluation.sweep.definition import Definition
+from hsr8.evaluation.sweep.executor import Executor, parse_executor, pending, run_jobs
+from hsr8.evaluation.sweep.folder import SweepFolder
+from hsr8.evaluation.sweep.job import Job, Keep, RunResult
+from hsr8.evaluation.sweep.local_executor import LocalExecutor
+from hsr8.evaluation.sweep.progress import SweepProgress
+from hsr8.evaluation.sweep.report import report
+from hsr8.evaluation.sweep.summary import Summary
+from hsr8.gl import require_gl
+from hsr8.plugin_file import require_plugins
+from hsr8.scenario.schema import Scenario
+
+PRELOAD = "hsr8.cli.sweep_preload"
+START_TIME = 60.0  # default limits: for the start of a process [s]
+MAX_SLOWNESS = 20.0  # and wall time per simulated second [1]
+MAX_NAME = 120  # of a folder [characters]
+INTERRUPTED = 130
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Execution:
+    """How runs are executed.
+
+    Attributes:
+        command: command line that continues them.
+        seeds: seeds of every sweep.
+        shard: number, from 1, and count of shards; None for all seeds.
+        workers: parallel runs on this machine; None for the number of CPUs.
+        executor: "local" or "dask://HOST:PORT".
+        timeout: wall-clock limit per run [s]; None for the default.
+        keep: which run folders are kept.
+        log: whether runs write Rerun logs.
+        quiet: whether no progress is shown.
+
+    Raises:
+        UsageError: an option is invalid.
+    """
+
+    command: str
+    seeds: tuple[int, ...]
+    shard: tuple[int, int] | None = None
+    workers: int | None = None
+    executor: str = "local"
+    timeout: float | None = None
+    keep: Keep = "all"
+    log: bool = False
+    quiet: bool = False
+
+    def __post_init__(self) -> None:
+        if self.workers is not None and self.workers < 1:
+            raise UsageError(f"--workers: out of range, got {self.workers}; expected at least 1")
+        if self.timeout is not None and not self.timeout > 0.0:
+            raise UsageError(
+                f"--timeout: out of range, got {self.timeout:g}; expected more than 0 s"
+            )
+        parse_executor(self.executor)
+
+
+@dataclass(frozen=True, slots=True)
+class SweepRuns:
+    """Results of sweeps.
+
+    Attributes:
+        results: of all seeds in the folder, by name of the sweep.
+        interrupted: whether the runs were interrupted.
+    """
+
+    results: dict[str, list[RunResult]]
+    interrupted: bool
+
+
+def run_sweeps(
+    out: Path,
+    scenarios: Mapping[str, Scenario],
+    definitions: Mapping[str, Definition],
+    execution: Execution,
+) -> SweepRuns:
+    """Execute the runs without a result and write the results and a report of every sweep.
+
+    Args:
+        out: parent of the folders of the sweeps.
+        scenarios: scenario by name of the folder; an empty name is `out` itself.
+        definitions: definition by name of the folder.
+        execution: how to execute the runs.
+
+    Raises:
+        UsageError: a plugin cannot be made, or a folder is invalid.
+        RenderingUnavailable: the camera needs OpenGL and there is none.
+    """
+    local = not parse_executor(execution.executor)
+    if local and any(s.camera.source == "rendered" for s in scenarios.values()):
+        require_gl()
+    for scenario in scenarios.values():
+        require_plugins(scenario.plugin)
+    folders: dict[str, SweepFolder] = {}
+    jobs: list[Job] = []
+    with ExitStack() as stack:
+        for name, scenario in scenarios.items():
+            folder = SweepFolder.open(out / name, definitions[name])
+            folder.lock(execution.shard)
+            stack.callback(folder.close)
+            folders[name] = folder
+            limit = execution.timeout or START_TIME + MAX_SLOWNESS * scenario.duration
+            path, text = str(folder.path.resolve()), folder.definition.scenario
+            jobs += [
+                Job(seed, path, text, limit, log=execution.log, keep=execution.keep)
+                for seed in pending(execution.seeds, folder.results(), execution.shard)
+            ]
+        interrupted = bool(jobs) and _run(jobs, list(folders.values()), execution)
+        results = {name: folder.results() for name, folder in folders.items()}
+        for name, folder in folders.items():
+            folder.write_report(report(folder.definition, results[name], execution.command))
+    if interrupted:
+        print(f"hsr8: interrupted; continue with: {execution.command}", file=sys.stderr)
+    return SweepRuns(results, interrupted)
+
+
+def _run(jobs: Sequence[Job], folders: Sequence[SweepFolder], execution: Execution) -> bool:
+    """Run the jobs; return whether they were interrupted."""
+    total = len(pending(execution.seeds, (), execution.shard)) * len(folders)
+    progress = None if execution.quiet else SweepProgress(total, total - len(jobs))
+    by_path = {str(folder.path.resolve()): folder for folder in folders}
+
+    def on_result(job: Job, result: RunResult) -> None:
+        folder = by_path[job.folder]
+        folder.append(result | {"command": folder.definition.command(job.seed)})
+        if progress is not None:
+            progress.on_result(result)
+
+    with ExitStack() as stack:
+        if progress is not None:
+            stack.callback(progress.close)
+        stack.enter_context(termination.like_ctrl_c())
+        try:
+            executor = open_executor(execution.executor, execution.workers)
+            stack.enter_context(closing(executor))
+            run_jobs(jobs, executor, on_result, progress.refresh if progress else lambda: None)
+        except KeyboardInterrupt:
+            return True
+    return False
+
+
+def open_executor(name: str, workers: int | None) -> Executor:
+    """Return the executor called `name`.
+
+    Args:
+        name: "local" or "dask://HOST:PORT".
+        workers: parallel runs on this machine; None for the number of CPUs.
+    """
+    address = parse_executor(name)
+    if address:
+        return DaskExecutor(address)
+    return LocalExecutor(workers or len(os.sched_getaffinity(0)), entry, PRELOAD)
+
+
+def folder_name(settings: Sequence[str]) -> str:
+    """Return settings as a file name, with a digest if characters are replaced or cut."""
+    text = ",".join(settings)
+    name = re.sub(r"[^A-Za-z0-9._=+,-]+", "_", text)
+    if name == text and len(name) <= MAX_NAME:
+        return name
+    digest = hashlib.sha256(text.encode("utf-8", errors="surrogateescape")).hexdigest()[:8]
+    return f"{name[: MAX_NAME - 9]}-{digest}"
+
+
+def require_no_seed(option: str, settings: Iterable[str]) -> None:
+    """Check that no setting is the seed.
+
+    Raises:
+        UsageError: a setting is.
+    """
+    for setting in settings:
+        if setting.partition("=")[0].strip() == "seed":
+            raise UsageError(f"{option}: the seed is not a setting, got {setting}; use --seeds")
+
+
+def report_lost_runs(summaries: Iterable[Summary], where: Path) -> None:
+    """Print the numbers of crashed, diverged and refused runs on standard error."""
+    summaries = list(summaries)
+    counts = {
+        kind: sum(getattr(s, kind) for s in summaries)
+        for kind in ("crashed", "diverged", "refused")
+    }
+    if any(counts.values()):
+        runs = sum(s.runs + s.refused for s in summaries)
+        text = ", ".join(f"{count} {kind}" for kind, count in counts.items() if count)
+        print(f"hsr8: of {runs} runs {text}; reasons: {where}", file=sys.stderr)
