@@ -33,6 +33,23 @@ class DecisionContext:
 
 
 @value
+class Situation:
+    """Inputs of the decisions at one frame.
+
+    Attributes:
+        belief: the estimate, predicted to the time of the decision.
+        task: current destination.
+        context: state of the robot.
+        motion_due: whether a motion is decided, once per footstep.
+    """
+
+    belief: Belief
+    task: Task
+    context: DecisionContext
+    motion_due: bool
+
+
+@value
 class Decision:
     """Task, motion and gaze decided at one frame.
 
@@ -110,7 +127,11 @@ class Decisions:
         self._planned_step = -1
 
     def make(self, estimate: Belief, measured: Frame, context: DecisionContext) -> Decision:
-        """Decide task, motion and gaze.
+        """Decide task, motion and gaze; arguments as of `assess`."""
+        return self.decide(self.assess(estimate, measured, context))
+
+    def assess(self, estimate: Belief, measured: Frame, context: DecisionContext) -> Situation:
+        """Return the situation to decide in.
 
         Args:
             estimate: belief at the time of the capture.
@@ -123,22 +144,35 @@ class Decisions:
                 estimate, measured.odometry, context.odometry, context.time, context.view
             )
         task = self._mission.update(belief.pose)
-        fresh = self._motion is None
-        motion = self._move(context, belief, task)
-        gaze = self._gaze.choose(belief, task, motion)
+        elapsed = context.time - self._planned_at
+        due = context.step_count != self._planned_step or elapsed >= self._footstep
+        return Situation(belief, task, context, motion_due=due or self._motion is None)
+
+    def decide(
+        self,
+        situation: Situation,
+        motion: MotionDecision | None = None,
+        gaze: GazeDecision | None = None,
+    ) -> Decision:
+        """Decide motion and gaze.
+
+        Motion is decided once per footstep, or per footstep time when standing.
+
+        Args:
+            situation: to decide in.
+            motion: replaces the decision of the motion planner, if one is due.
+            gaze: replaces the decision of the gaze planner.
+        """
+        belief, task, fresh = situation.belief, situation.task, self._motion is None
+        if situation.motion_due or self._motion is None:
+            avoided = self._landmarks.added_to(belief)
+            self._motion = motion or self._planner.plan(avoided, task, self._look)
+            self._planned_at = situation.context.time
+            self._planned_step = situation.context.step_count
+        gaze = gaze or self._gaze.choose(belief, task, self._motion)
         self._look = gaze.body_direction
-        return Decision(belief, task, motion, gaze, fresh)
+        return Decision(belief, task, self._motion, gaze, fresh)
 
     def forget(self) -> None:
         """Drop the motion decision in force."""
         self._motion, self._look = None, None
-
-    def _move(self, context: DecisionContext, belief: Belief, task: Task) -> MotionDecision:
-        """Return a new motion decision once per footstep, or per footstep time when standing."""
-        elapsed = context.time - self._planned_at
-        due = context.step_count != self._planned_step or elapsed >= self._footstep
-        if self._motion is None or due:
-            self._motion = self._planner.plan(self._landmarks.added_to(belief), task, self._look)
-            self._planned_at = context.time
-            self._planned_step = context.step_count
-        return self._motion

@@ -2,23 +2,23 @@
 
 import hashlib
 from collections.abc import Iterator
-from contextlib import suppress
-from dataclasses import dataclass
+from contextlib import contextmanager, suppress
 from time import perf_counter
 from typing import Self, SupportsIndex
 
 import cv2
 import numpy as np
 
+from hsr8.begun_tick import BegunTick
 from hsr8.body_builder import build_body, build_model
-from hsr8.decisions import GazeController, MotionPlanner
+from hsr8.decisions import GazeController, MotionPlanner, Situation
 from hsr8.errors import ScenarioError, SimulationDiverged
 from hsr8.event_watch import EventWatch
 from hsr8.frame_record import FrameRecord
 from hsr8.plugin_walker import CustomWalker
-from hsr8.record import Event, Second, Tick, TickRecord
+from hsr8.record import Event, RunOutcome, Second, Tick, TickRecord
 from hsr8.robot import Robot, SensorFrame
-from hsr8.robot_builder import build_robot, field_of_view, head_camera
+from hsr8.robot_builder import build_robot, field_of_view, head_camera, require_planner
 from hsr8.robots.loaded import load_robot
 from hsr8.scenario.schema import Scenario
 from hsr8.seeds import named_rng
@@ -39,21 +39,6 @@ GOAL_DWELL = 1.0  # simulated time after the goal is reached [s]
 FALL_DWELL = 0.6  # simulated time after the final fall, so that it is visible [s]
 HASH = 16  # bytes of a hash
 TICKS_PER_SECOND = round(1.0 / CONTROL_PERIOD)
-
-
-@dataclass(frozen=True, slots=True)
-class RunOutcome:
-    """Outcome of a run.
-
-    Attributes:
-        exit_reason: goal, timeout, completed, fall, diverged or interrupted.
-        time: simulated time at the end [s].
-        state_hash: SHA-256 of the state of the world and the belief of the robot.
-    """
-
-    exit_reason: str
-    time: float
-    state_hash: str
 
 
 class Simulation:
@@ -82,6 +67,7 @@ class Simulation:
         exit_reason: goal, timeout, completed, fall, diverged or interrupted after the run; None
             before.
         tick: control ticks made so far.
+        truth: ground truth of the latest record; None before the first tick.
 
     Raises:
         ScenarioError: the seed is invalid, or the world cannot be drawn.
@@ -107,6 +93,8 @@ class Simulation:
         self.model = build_model(scenario, self.layout)
         self.exit_reason: str | None = None
         self.tick = 0
+        self.truth: Truth | None = None
+        self._begun: BegunTick | None = None
         self._body = build_body(scenario, self.seed, self.layout, self.model)
         self._robot = self._build_robot(planner, gaze, walker)
         self._watch = EventWatch(scenario.fault)
@@ -220,11 +208,63 @@ class Simulation:
         Raises:
             RuntimeError: the run has ended, or ``with`` is missing.
         """
+        with self._running("step"):
+            begun, self._begun = self._begun or self._begin(), None
+            return self._complete(begun)
+
+    def perceive(self) -> Situation | None:
+        """Begin a control tick and return the situation to decide in; None without a frame.
+
+        `step` decides and completes the tick; `look` and `command` in between replace decisions.
+
+        Raises:
+            RuntimeError: the run has ended, or ``with`` is missing.
+        """
+        with self._running("perceive"):
+            self._begun = self._begun or self._begin()
+            return self._begun.situation
+
+    def look(self, pan: float, tilt: float) -> None:
+        """Replace the gaze of this frame, after `perceive` and before `step`.
+
+        Args:
+            pan: left positive [rad]; the neck limits both angles.
+            tilt: up positive [rad].
+
+        Raises:
+            RuntimeError: `perceive` returned no situation.
+            UsageError: an angle is not a finite number.
+        """
+        self._require_begun("look").look(pan, tilt)
+
+    def command(self, vx: float, vy: float, wz: float) -> None:
+        """Replace the motion of this footstep, after `perceive` and before `step`.
+
+        Args:
+            vx: forward [m/s].
+            vy: to the left [m/s].
+            wz: yaw rate, counter-clockwise positive [rad/s].
+
+        Raises:
+            RuntimeError: `perceive` returned no situation in which a motion is due.
+            UsageError: a velocity is not a finite number, or the mission is a walk.
+        """
+        require_planner(self.scenario)
+        self._require_begun("command").command(vx, vy, wz)
+
+    def _require_begun(self, method: str) -> BegunTick:
+        if self._begun is None:
+            raise RuntimeError(f"{method}: the tick has not begun; expected perceive() before")
+        return self._begun
+
+    @contextmanager
+    def _running(self, method: str) -> Iterator[None]:
+        """Require a run that goes on, and add the simulated time to errors."""
         if not self._open or self.exit_reason is not None:
             reason = "the run has ended" if self.exit_reason else "enter `with simulation:` first"
-            raise RuntimeError(f"step: {reason}")
+            raise RuntimeError(f"{method}: {reason}")
         try:
-            return self._step()
+            yield
         except Exception as error:
             error.add_note(f"at {self._body.time:.3f} s of simulated time")
             raise
@@ -251,15 +291,23 @@ class Simulation:
         state.update(belief)
         return Second(self.tick, self._body.time, digest, state.digest(), self._body.saturation())
 
-    def _step(self) -> Tick:
+    def _begin(self) -> BegunTick:
         number, robot = self.tick, self._robot
         seconds = [self._mark()] if number % TICKS_PER_SECOND == 0 else []
         sensed = self._sense(number)
         started = perf_counter()
         targets = robot.walk(sensed)
         walking_time = perf_counter() - started
-        robot.perceive(sensed)
-        walker, setpoint = robot.walking, self._not_sent
+        situation = robot.perceive(sensed)
+        if number % self._record_ticks == 0:
+            self.truth = self._body.truth()
+        return BegunTick(seconds, sensed, targets, walking_time, situation)
+
+    def _complete(self, begun: BegunTick) -> Tick:
+        number, seconds, targets = self.tick, begun.seconds, begun.targets
+        if begun.situation is not None:
+            self._robot.decide(begun.situation, begun.motion, begun.gaze)
+        walker, setpoint = self._robot.walking, self._not_sent
         record, events = self._record(number)
         reason = self._reason(number)
         if not reason:
@@ -272,13 +320,13 @@ class Simulation:
             seconds.append(self._mark())
         return Tick(
             number=number,
-            time=sensed.time,
-            sensors=sensed.body,
+            time=begun.sensed.time,
+            sensors=begun.sensed.body,
             setpoint=setpoint,
             limits=walker.limits,
             zmp_depth=float(walker.zmp_depth),
             down=walker.down,
-            walking_time=walking_time,
+            walking_time=begun.walking_time,
             record=record,
             seconds=tuple(seconds),
             events=tuple(events),
@@ -286,9 +334,9 @@ class Simulation:
 
     def _record(self, number: int) -> tuple[TickRecord | None, list[Event]]:
         """Return the record that is due in this tick, if any, and the events."""
-        if number % self._record_ticks:
+        truth = self.truth
+        if truth is None or number % self._record_ticks:
             return None, []
-        truth = self._body.truth()
         frame = self._robot.frame if self._robot.frame is not self._published else None
         self._published = self._robot.frame
         self._end = self._end or self._scheduled_end(number, truth)

@@ -1,5 +1,6 @@
 """Ticks and records that the loop returns."""
 
+from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
@@ -94,3 +95,18 @@ class Tick:
     record: TickRecord | None
     seconds: tuple[Second, ...]
     events: tuple[Event, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class RunOutcome:
+    """Outcome of a run.
+
+    Attributes:
+        exit_reason: goal, timeout, completed, fall, diverged or interrupted.
+        time: simulated time at the end [s].
+        state_hash: SHA-256 of the state of the world and the belief of the robot.
+    """
+
+    exit_reason: str
+    time: float
+    state_hash: str

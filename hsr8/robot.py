@@ -2,15 +2,17 @@
 
 from collections import deque
 from collections.abc import Callable
+from functools import partial
 from operator import attrgetter
 from typing import Protocol
 
 import numpy as np
 
-from hsr8.decisions import DecisionContext, Decisions
+from hsr8.decisions import Decision, DecisionContext, Decisions, Situation
 from hsr8.frame_record import FrameRecord, Image
 from navigation.angles import wrap
 from navigation.belief.belief import Belief
+from navigation.decision import GazeDecision, MotionDecision
 from navigation.observation import CameraView, Frame, Observation
 from vision.camera import CameraPose
 from vision.detection import Detection
@@ -115,6 +117,7 @@ class Robot:
         self.head = HeadTarget()
         self._direction: float | None = None  # of a stabilized gaze in the odometry frame [rad]
         self.frame: FrameRecord | None = None
+        self._undecided: Callable[[Decision], FrameRecord] | None = None
 
     def walk(self, sensed: SensorFrame) -> JointTargets:
         """Run the walking engine for one control tick."""
@@ -128,10 +131,38 @@ class Robot:
             self._pending.append((sensed.time, self.walking_state()))
         return targets
 
-    def perceive(self, sensed: SensorFrame) -> None:
-        """Perceive and decide if a camera frame arrived; `walk` precedes."""
-        if sensed.image is not None or sensed.detections is not None:
-            self._perceive(sensed)
+    def perceive(self, sensed: SensorFrame) -> Situation | None:
+        """Return the situation to `decide` in if a camera frame arrived; `walk` precedes."""
+        if sensed.image is None and sensed.detections is None:
+            return None
+        captured_state = self._state_at(sensed.captured)
+        if captured_state.phase.down or self.walking.down:
+            self._wait()
+            return None
+        return self._perceive(sensed, captured_state)
+
+    def decide(
+        self,
+        situation: Situation,
+        motion: MotionDecision | None = None,
+        gaze: GazeDecision | None = None,
+    ) -> None:
+        """Decide once after each `perceive` that returned a situation.
+
+        Args:
+            situation: to decide in.
+            motion: replaces the decision of the motion planner, if one is due.
+            gaze: replaces the decision of the gaze planner.
+        """
+        assert self._undecided is not None
+        decision = self._decisions.decide(situation, motion, gaze)
+        if self._schedule is None:
+            self.command = VelocityCommand(*decision.motion.velocity.tolist())
+        chosen = decision.gaze
+        self.head = HeadTarget(chosen.pan, chosen.tilt)
+        self._direction = self.walking.yaw + chosen.pan if chosen.stabilized else None
+        self.frame, self._undecided = self._undecided(decision), None
+        self._frames += 1
 
     def walking_state(self) -> WalkingState:
         """Return the state of the walking engine."""
@@ -139,11 +170,7 @@ class Robot:
             self._state = self.walking.state()
         return self._state
 
-    def _perceive(self, sensed: SensorFrame) -> None:
-        captured_state = self._state_at(sensed.captured)
-        if captured_state.phase.down or self.walking.down:
-            self._wait()
-            return
+    def _perceive(self, sensed: SensorFrame, captured_state: WalkingState) -> Situation:
         image = None if sensed.image is None else sensed.image()
         if captured_state.camera.turn_rate > self._blind_above:
             detections: tuple[Detection, ...] = ()
@@ -159,23 +186,10 @@ class Robot:
         context = DecisionContext(
             sensed.time, _odometry(state), self._view(state), state.step_count
         )
-        decision = self._decisions.make(estimate, measured, context)
-        if self._schedule is None:
-            self.command = VelocityCommand(*decision.motion.velocity.tolist())
-        gaze = decision.gaze
-        self.head = HeadTarget(gaze.pan, gaze.tilt)
-        self._direction = self.walking.yaw + gaze.pan if gaze.stabilized else None
-        self.frame = FrameRecord(
-            index=self._frames,
-            time=sensed.time,
-            image=image,
-            detections=detections,
-            measured=measured,
-            estimate=estimate,
-            context=context,
-            decision=decision,
+        self._undecided = partial(
+            FrameRecord, self._frames, sensed.time, image, detections, measured, estimate, context
         )
-        self._frames += 1
+        return self._decisions.assess(estimate, measured, context)
 
     def _wait(self) -> None:
         """Pause perception and decisions: off its feet the robot does not know its camera pose."""

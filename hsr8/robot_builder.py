@@ -179,10 +179,7 @@ def build_decisions(
     gaze_planner: GazeController
     if schedule is not None:
         if planner is not None:
-            raise UsageError(
-                f"scenario {scenario.name!r}: mission.kind = 'walk' follows the section command "
-                "without a planner, got a planner; expected another kind of mission"
-            )
+            require_planner(scenario)
         mission, motion = ScheduledMission(), ScheduledPlanner(schedule)
     else:
         mission = Mission(layout.waypoints, layout.goal_heading, layout.endless, navigation.mission)
@@ -204,6 +201,19 @@ def build_decisions(
         ),
         footstep=limits.footstep,
     )
+
+
+def require_planner(scenario: Scenario) -> None:
+    """Require a mission whose motion a planner decides.
+
+    Raises:
+        UsageError: the mission is a walk.
+    """
+    if isinstance(scenario.mission, Walk):
+        raise UsageError(
+            f"scenario {scenario.name!r}: mission.kind = 'walk' follows the section command "
+            "without a planner, got a planner; expected another kind of mission"
+        )
 
 
 def known_beacons(scenario: Scenario, layout: Layout) -> dict[str, tuple[float, float]]:

@@ -276,7 +276,9 @@ class FastRun:
             turn @ camera.position + (x, y, 0.0),
             turn @ camera.rotation,
         )
-        self.robot.perceive(SensorFrame(time, None, captured=time, detections=detections))
+        sensed = SensorFrame(time, None, captured=time, detections=detections)
+        if (situation := self.robot.perceive(sensed)) is not None:
+            self.robot.decide(situation)
         frame = self.robot.frame
         assert frame is not None
         pan = frame.measured.view.pan
