@@ -18,8 +18,10 @@ from hsr8.robot_builder import field_of_view, head_camera
 from hsr8.scenario.loader import load_scenario
 from hsr8.scenario.schema import Scenario
 from hsr8.scenario.section import Section
+from hsr8.scenario.track import Track
 from hsr8.world.field.certificate import min_clearance, straight_length
 from hsr8.world.field.generator import FairWorld, draw_world
+from hsr8.world.field.layout import Obstacle
 from hsr8.world.field.motion import pace
 
 
@@ -94,7 +96,7 @@ def summarize(scenario: Scenario, world: FairWorld) -> dict[str, Any]:
         "obstacles": [
             {
                 "index": i,
-                "position_m": [round(v, 3) for v in o.position],
+                "position_m": None if _absent(o) else [round(v, 3) for v in o.position],
                 "radius_m": round(o.radius, 3),
                 "color": o.color,
                 "motion": type(o.motion).__name__.lower() if o.motion else None,
@@ -103,6 +105,11 @@ def summarize(scenario: Scenario, world: FairWorld) -> dict[str, Any]:
             for i, o in enumerate(layout.obstacles)
         ],
     }
+
+
+def _absent(obstacle: Obstacle) -> bool:
+    """Return whether a recorded mover is not in the world at the start."""
+    return isinstance(obstacle.motion, Track) and not obstacle.motion.present(0.0)
 
 
 def _set_values(section: Section) -> dict[str, Any]:

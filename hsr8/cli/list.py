@@ -5,6 +5,7 @@ from rich.console import Console
 from hsr8.cli import tables
 from hsr8.cli.options import List
 from hsr8.recorder.files import atomic
+from hsr8.scenario.crowd import n_placed
 from hsr8.scenario.loader import built_in_names, load_scenario
 from hsr8.scenario.schema import Scenario
 
@@ -27,7 +28,7 @@ def _entry(scenario: Scenario) -> dict[str, object]:
     return {
         "name": scenario.name,
         "static": world.n_static + len(world.obstacle) + walls,
-        "moving": world.n_moving + world.encounters.n + len(world.mover),
+        "moving": world.n_moving + world.encounters.n + n_placed(scenario),
         "mission": scenario.mission.kind,
         "duration_s": scenario.duration,
         "description": scenario.description,

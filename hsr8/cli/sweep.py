@@ -30,6 +30,7 @@ from hsr8.recorder.files import atomic
 from hsr8.robots.locate import digest
 from hsr8.scenario.loader import dump, load_scenario
 from hsr8.scenario.schema import Scenario
+from hsr8.scenario.track_file import track_digests
 
 
 def main(options: Sweep) -> int:
@@ -77,7 +78,10 @@ def _definitions(
             common,
             name=scenario.name,
             command_words=command_words(run_options(options, None, combinations[name])),
-            libraries=common.libraries | digests(scenario.plugin) | digest(scenario.robot.model),
+            libraries=common.libraries
+            | digests(scenario.plugin)
+            | digest(scenario.robot.model)
+            | track_digests(scenario.world.mover),
             scenario=dump(scenario),
         )
         for name, scenario in scenarios.items()

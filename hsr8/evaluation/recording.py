@@ -25,6 +25,7 @@ from hsr8.recorder.selection import Selection
 from hsr8.robots.locate import digest
 from hsr8.scenario.loader import dump
 from hsr8.scenario.schema import Scenario
+from hsr8.scenario.track_file import track_digests
 
 if TYPE_CHECKING:
     from hsr8.recorder.log.rerun_log import RerunLog
@@ -107,6 +108,7 @@ class Recording:
         """
         simulation, scenario = self._simulation, self._simulation.scenario
         libraries = manifest.libraries | digests(scenario.plugin) | digest(scenario.robot.model)
+        libraries |= track_digests(scenario.world.mover)
         manifest = replace(manifest, libraries=libraries, log=log or "")
         self._folder = RunFolder(path, manifest, dump(scenario))
         self._images = None if log is None else RATES[log]

@@ -2,11 +2,13 @@
 
 from dataclasses import replace
 from itertools import pairwise
+from math import inf
 
 import numpy as np
 
 from hsr8.render.canvas import Canvas, Point, framed
 from hsr8.render.text import Color, Image, draw_text
+from hsr8.scenario.track import Track
 from hsr8.world.field.certificate import Certificate
 from hsr8.world.field.layout import Layout, Obstacle
 from hsr8.world.field.motion import Appearing, Circle, Line, MotionLaw, Passage, Shuttle
@@ -23,6 +25,7 @@ PATH = (20, 125, 160)
 ROBOT = (250, 250, 250)
 MAX_LABELS = 12  # more waypoints than this are pale and without numbers
 AHEAD = 60.0  # length of the lane of a mover that never turns [s]
+TRACK_STEP = 0.05  # of the line along a recorded track [m]
 MARK_PERIOD = 10.0  # between two marks on the path of the certificate [s]
 PATH_WIDTH, PATH_DOT = 2, 0.025  # of the path of the certificate [pixel, m]
 POINT, GOAL, HEADING = 0.035, 0.10, 0.12  # sizes of a waypoint, the goal and an arrow [m]
@@ -73,6 +76,8 @@ class PlanView:
 
     def _obstacle(self, number: int, obstacle: Obstacle) -> None:
         motion = obstacle.motion
+        if isinstance(motion, Track) and not motion.present(0.0):
+            return
         if isinstance(motion, Appearing):
             obstacle = replace(
                 obstacle, position=motion.position(motion.start), motion=motion.motion
@@ -135,6 +140,8 @@ class PlanView:
             self._canvas.ring(motion.centre, motion.radius, LANE)
         elif isinstance(motion, Wander):
             self._canvas.line(motion.track, LANE, closed=True)
+        elif isinstance(motion, Track):
+            self._canvas.line(motion.sampled(-inf, inf, TRACK_STEP * self._scale)[1], LANE)
 
     def _robot(self) -> None:
         x, y, heading = self._layout.start

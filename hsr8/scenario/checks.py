@@ -10,7 +10,8 @@ from hsr8.scenario.mission import Course, Points, Tour, Walk
 from hsr8.scenario.problem import Problem
 from hsr8.scenario.schema import Scenario
 from hsr8.scenario.section import Point
-from hsr8.scenario.world import CircleMover, Mover, ShuttleMover
+from hsr8.scenario.track_checks import track_problems
+from hsr8.scenario.world import CircleMover, LineMover, ShuttleMover, TrackMover
 from vision.errors import VisionError
 
 MAX_CELLS = 1000
@@ -31,6 +32,7 @@ def check(scenario: Scenario) -> list[Problem]:
         *_gaps(scenario),
         *_overlaps(scenario),
         *_movers(scenario),
+        *track_problems(scenario),
     ]
 
 
@@ -148,6 +150,8 @@ def _places(scenario: Scenario) -> Iterator[tuple[Path, Point, float]]:
         yield ("world", "wall", i, "start"), wall.start, wall.radius
         yield ("world", "wall", i, "end"), wall.end, wall.radius
     for i, mover in enumerate(world.mover):
+        if isinstance(mover, TrackMover):
+            continue
         if isinstance(mover, CircleMover):
             room = mover.path_radius + mover.radius
             yield ("world", "mover", i, "centre"), mover.centre, room
@@ -198,6 +202,8 @@ def _overlaps(scenario: Scenario) -> Iterator[Problem]:
 def _movers(scenario: Scenario) -> Iterator[Problem]:
     start = scenario.robot.start.position
     for i, mover in enumerate(scenario.world.mover):
+        if isinstance(mover, TrackMover):
+            continue
         if isinstance(mover, ShuttleMover) and mover.start == mover.end:
             yield Problem(("world", "mover", i, "end"), "must differ from start")
         key, first = _initial_position(mover)
@@ -205,7 +211,7 @@ def _movers(scenario: Scenario) -> Iterator[Problem]:
             yield Problem(("world", "mover", i, key), "begins at the start of the robot")
 
 
-def _initial_position(mover: Mover) -> tuple[str, Point]:
+def _initial_position(mover: ShuttleMover | LineMover | CircleMover) -> tuple[str, Point]:
     """Key and position of a mover at time zero."""
     if not isinstance(mover, CircleMover):
         return "start", mover.start

@@ -5,6 +5,7 @@ from math import ceil
 
 from hsr8.robots.description import TRUNK
 from hsr8.robots.scale import DEFAULT_ROBOT
+from hsr8.scenario.crowd import n_placed
 from hsr8.scenario.fault import (
     JOINT_GROUPS,
     Bump,
@@ -31,7 +32,7 @@ MAX_LATENCY_MS = 500
 def fault_problems(scenario: Scenario) -> Iterator[Problem]:
     """Yield every fault that contradicts the rest of the scenario."""
     world, camera = scenario.world, scenario.camera
-    movers = len(world.mover) + world.n_moving + world.encounters.n
+    movers = n_placed(scenario) + world.n_moving + world.encounters.n
     latency_ticks = 0
     appearing: set[int] = set()
     for i, fault in enumerate(scenario.fault):

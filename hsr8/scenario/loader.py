@@ -16,16 +16,16 @@ from hsr8.robots.scale import DEFAULT_ROBOT, RobotDefaults, RobotScale
 from hsr8.scenario.checks import check
 from hsr8.scenario.constants import CONSTANTS, misplaced, placed, separated, with_constants
 from hsr8.scenario.key_lines import Path, depth, line_of
-from hsr8.scenario.presets import expand_presets, followers, under
+from hsr8.scenario.presets import expand_presets, followers, merged, under
 from hsr8.scenario.problem import Problem, dotted, problems_of
 from hsr8.scenario.renamed import renamed
 from hsr8.scenario.robot import located
 from hsr8.scenario.scaling import is_complete, scaled, with_scaled_defaults
 from hsr8.scenario.schema import Scenario
+from hsr8.scenario.track_file import legible, located_tracks, read_tracks
 from hsr8.suggestion import suggestion
 
 BUILT_IN = FilePath(__file__).resolve().parents[1] / "scenarios"
-KINDS = ("kind", "motion")  # keys that determine the other keys of their table
 
 Table = dict[str, Any]
 
@@ -105,7 +105,7 @@ def dump(scenario: Scenario) -> str:
     robot than HSR-VIII all are, so that nothing is left to scale.
     """
     data = json.loads(scenario.model_dump_json(exclude_none=True))
-    return tomlkit.dumps(separated(data))
+    return tomlkit.dumps(separated(legible(data)))
 
 
 @dataclass
@@ -162,7 +162,7 @@ class _Sources:
         for layer in self.layers:
             if layer.built_in:  # extends built-in scenarios only
                 draft.add(layer)
-        draft.data = _merged(placed(defaults.table), _for_scale(draft.data, defaults.scale))
+        draft.data = merged(placed(defaults.table), _for_scale(draft.data, defaults.scale))
         for layer in self.layers:
             if not layer.built_in:
                 draft.add(layer)
@@ -201,7 +201,8 @@ class _Draft:
 
     def add(self, layer: _Layer) -> None:
         """Merge a layer over the present tables."""
-        self.data = _merged(self.data, located(layer.table, FilePath(layer.source).parent))
+        folder = FilePath(layer.source).parent
+        self.data = merged(self.data, located_tracks(located(layer.table, folder), folder))
         self.layers.append(layer)
 
     def finish(self, name: str) -> Scenario:
@@ -222,6 +223,8 @@ class _Draft:
         if self.scale != RobotScale():
             data = with_scaled_defaults(data, self.scale.factor)
         data = expand_presets(data)
+        if problems := read_tracks(data):
+            return None, problems
         try:
             scenario = Scenario.model_validate_json(json.dumps(data, default=str))
         except ValidationError as error:
@@ -256,20 +259,6 @@ class _Draft:
 def _for_scale(table: Table, scale: RobotScale) -> Table:
     """Tables for HSR-VIII at another scale."""
     return table if scale == RobotScale() else scaled(table, scale.factor)
-
-
-def _merged(base: Table, over: Table) -> Table:
-    """`over` put over `base`, table by table."""
-    # Another kind of mission, fault or mover has other keys: the old ones are dropped.
-    changed = any(key in over and over[key] != base.get(key, over[key]) for key in KINDS)
-    merged = {} if changed else dict(base)
-    for key, value in over.items():
-        old = merged.get(key)
-        if isinstance(value, dict) and isinstance(old, dict):
-            merged[key] = _merged(old, value)
-        else:
-            merged[key] = value
-    return merged
 
 
 def _find(name_or_path: str) -> FilePath:
@@ -371,7 +360,7 @@ def _put(part: str, value: Any, old: Any, source: str) -> Any:
         raise ScenarioError(f"{source}: expected an index from 0 to {len(old) - 1}, got {part!r}")
     entry = old[int(part)]
     if isinstance(entry, dict) and isinstance(value, dict):
-        value = _merged(entry, value)
+        value = merged(entry, value)
     return [*old[: int(part)], value, *old[int(part) + 1 :]]
 
 

@@ -1,4 +1,4 @@
-"""Presets: the navigation profile, the camera, and defaults that follow other keys."""
+"""Presets: the navigation profile, the camera, defaults that follow other keys; merged tables."""
 
 from collections.abc import Mapping
 from dataclasses import asdict
@@ -10,6 +10,7 @@ from vision.parameters import VisionParameters
 
 Table = dict[str, Any]
 
+KINDS = ("kind", "motion")  # keys that determine the other keys of their table
 PROFILES = {"extended": NavigationParameters.extended, "paper": NavigationParameters.paper}
 
 
@@ -60,3 +61,19 @@ def under(given: Table, defaults: Table) -> Table:
         if isinstance(default, dict) and isinstance(given.get(key), dict):
             merged[key] = under(given[key], default)
     return merged
+
+
+def merged(base: Table, over: Table) -> Table:
+    """Return `over` put over `base`, table by table."""
+    # Another kind of mission, fault or mover has other keys: the old ones are dropped.
+    changed = any(key in over and over[key] != base.get(key, over[key]) for key in KINDS)
+    result = {} if changed else dict(base)
+    if over.get("file") != base.get("file") and "file" in over:
+        result.pop("data", None)  # of another track file
+    for key, value in over.items():
+        old = result.get(key)
+        if isinstance(value, dict) and isinstance(old, dict):
+            result[key] = merged(old, value)
+        else:
+            result[key] = value
+    return result

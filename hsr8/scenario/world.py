@@ -22,6 +22,7 @@ from hsr8.scenario.section import (
 
 Side = Annotated[float, Interval(ge=0.5, le=100.0), "m"]
 Bearing = Annotated[float, Interval(ge=0.0, le=180.0)]
+RecordedTime = Annotated[float, Interval(ge=-1e10, le=1e10)]
 BearingRange = Annotated[tuple[Bearing, Bearing], AfterValidator(ordered)]
 
 GAP_RATIO = 5.0 / 6.0  # default gap in a wall, relative to the diameter of the robot [1]
@@ -118,7 +119,37 @@ class Encounters(Section):
     """Speed of the nominal walk relative to `robot.speed.vx` [1]."""
 
 
-Mover = Annotated[ShuttleMover | LineMover | CircleMover, Field(discriminator="motion")]
+class TrackMover(Section):
+    """Along recorded tracks: one mover for each id of a file that enters the field."""
+
+    motion: Literal["track"]
+    file: Annotated[str, Len(1, 1000)]
+    """CSV file with the columns t [s], x [m], y [m] and id, next to the scenario or in the working
+    folder."""
+    data: Annotated[str, Len(0, 8_000_000)] = ""
+    """Content of the file, which saved scenarios have; default: read from the file."""
+    radius: Radius = 0.08
+    """Radius [m]."""
+    color: Color | None = None
+    """Colour; default: all colours in turn."""
+    scale: Annotated[float, Interval(ge=0.001, le=1000.0), "m"] | None = None
+    """Length in the world per length in the file; default: 1 [1]."""
+    time_scale: Annotated[float, Interval(ge=0.001, le=1000.0), "s"] | None = None
+    """Time in the world per time in the file; default: 1 [1]."""
+    offset: Point = (0.0, 0.0)
+    """Position of the origin of the file in W [m]."""
+    start: RecordedTime | None = None
+    """Time in the file at the start of the run; default: that of the first sample [s]."""
+    latest_start: RecordedTime | None = None
+    """The seed draws the start between `start` and this time in the file; default: `start` [s]."""
+    end: Literal["leave", "stay", "repeat"] = "leave"
+    """Before its first and after its last sample, a mover is absent (leave), or waits and stays
+    there (stay); repeat: as leave, and the recording begins again after its end."""
+
+
+Mover = Annotated[
+    ShuttleMover | LineMover | CircleMover | TrackMover, Field(discriminator="motion")
+]
 
 
 class World(Section):

@@ -20,6 +20,7 @@ from hsr8.version import VERSION
 
 PACKAGES = ("hsr8", "navigation", "walking", "vision")
 NOT_IN_DIGEST = ("cli", "render", "evaluation/sweep", "_models")  # folders and files of hsr8
+MAX_TEXT = 1000  # of a value in a message [characters]
 MAY_DIFFER = ("seed", "description")  # keys of a scenario, within a sweep
 
 Differences = dict[str, tuple[str, str]]
@@ -85,7 +86,7 @@ class Definition:
 def scenario_differences(one: Definition, other: Definition) -> Differences:
     """Return the scenario keys whose values differ, with both values as JSON; absent is ``-``."""
     tables = [flatten(tomllib.loads(_resolved(d.scenario))) for d in (one, other)]
-    texts = ({key: json.dumps(value, default=str) for key, value in t.items()} for t in tables)
+    texts = ({key: _text(value) for key, value in table.items()} for table in tables)
     differences = _differences(*texts)
     return {key: differences[key] for key in sorted(differences.keys() - set(MAY_DIFFER))}
 
@@ -122,6 +123,15 @@ def _files() -> Iterator[tuple[str, Path]]:
     for file in sorted(root.rglob("*")):
         if file.is_file() and file.suffix not in (".py", ".pyc", ".md"):
             yield f"models/{file.relative_to(root).as_posix()}", file
+
+
+def _text(value: object) -> str:
+    """Return a value as JSON; of a long one, such as a recorded crowd, its digest."""
+    text = json.dumps(value, default=str)
+    if len(text) <= MAX_TEXT:
+        return text
+    digest = hashlib.sha256(text.encode()).hexdigest()[:12]
+    return f"{len(text)} characters with the digest {digest}"
 
 
 def _differences(one: Mapping[str, str], other: Mapping[str, str]) -> Differences:

@@ -6,8 +6,10 @@ from math import cos, pi, radians, sin
 import numpy as np
 from numpy.typing import NDArray
 
+from hsr8.scenario.crowd import Recording
 from hsr8.scenario.mission import Course, Points, Tour
 from hsr8.scenario.schema import Scenario
+from hsr8.scenario.world import Mover, TrackMover
 from hsr8.world.field.encounter import NominalWalk, course_to, passage_through
 from hsr8.world.field.fairness import START_TURN, FairDistances
 from hsr8.world.field.lane import Lane, apart_at_all_times, distance, motion_law
@@ -68,7 +70,7 @@ class Attempt:
         world = self._world
         start = self._scenario.robot.start.position
         points = self._given_points()
-        self._lanes = [self._lane(motion_law(m), m.radius, m.color) for m in world.mover]
+        self._lanes = [lane for mover in world.mover for lane in self._placed(mover, start)]
         self._static = [self._cylinder(o.position, o.radius, o.color) for o in world.obstacle]
         for wall in world.wall:
             for k, position in enumerate(wall.positions(self._scenario.robot.radius)):
@@ -97,6 +99,26 @@ class Attempt:
     def _cylinder(self, position: Point, radius: float, color: str) -> Obstacle:
         """Return a static obstacle."""
         return Obstacle(position, radius, OBSTACLE_HEIGHT * self._world.scale, color)
+
+    def _placed(self, mover: Mover, start: Point | None) -> list[Lane]:
+        """Return the movers of a section; those of a recording begin at a drawn time."""
+        if not isinstance(mover, TrackMover):
+            return [self._lane(motion_law(mover), mover.radius, mover.color)]
+        recording = Recording(self._scenario, mover)
+        begin = recording.start
+        if mover.latest_start is not None:
+            begin = float(self._rng.uniform(begin, mover.latest_start))
+        lanes = [
+            self._lane(track, mover.radius, mover.color or COLORS[k % len(COLORS)])
+            for k, track in enumerate(recording.tracks(begin))
+        ]
+        if mover.latest_start is not None and start is not None:
+            room = mover.radius + self._fair.start_to_mover
+            if any(
+                distance(np.array([start]), [lane.obstacle.position])[0] < room for lane in lanes
+            ):
+                raise CrowdedError("the start among recorded movers")
+        return lanes
 
     def _lane(self, motion: MotionLaw, radius: float, color: str) -> Lane:
         """Return a mover with its lane."""

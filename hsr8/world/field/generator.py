@@ -20,6 +20,7 @@ from dataclasses import dataclass
 from hsr8.errors import ScenarioError
 from hsr8.scenario.mission import Course, Tour
 from hsr8.scenario.schema import Scenario
+from hsr8.scenario.world import TrackMover
 from hsr8.seeds import named_rng
 from hsr8.world.field.attempt import Attempt, CrowdedError
 from hsr8.world.field.certificate import Certificate, certify
@@ -97,4 +98,5 @@ def _draws(scenario: Scenario) -> bool:
     """Return whether another attempt gives another world."""
     world = scenario.world
     drawn = world.n_static + world.n_moving + world.encounters.n
-    return drawn > 0 or isinstance(scenario.mission, Course | Tour)
+    part = any(isinstance(m, TrackMover) and m.latest_start is not None for m in world.mover)
+    return drawn > 0 or part or isinstance(scenario.mission, Course | Tour)

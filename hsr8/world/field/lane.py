@@ -2,12 +2,14 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from math import cos, pi, radians, sin
+from math import cos, inf, pi, radians, sin
 
 import numpy as np
 from numpy.typing import NDArray
 
-from hsr8.scenario.world import LineMover, Mover, ShuttleMover
+from hsr8.scenario.crowd import SPACING
+from hsr8.scenario.track import Track
+from hsr8.scenario.world import CircleMover, LineMover, ShuttleMover
 from hsr8.world.field.layout import OBSTACLE_HEIGHT, Obstacle
 from hsr8.world.field.motion import Circle, Line, MotionLaw, Passage, Point, Shuttle
 from hsr8.world.field.wander import Wander
@@ -71,13 +73,16 @@ class Lane:
         if isinstance(motion, Wander):
             path = np.array(motion.track)
             return cls(obstacle, path, path, crosses=True)
+        if isinstance(motion, Track):
+            _, path = motion.sampled(-inf, inf, SPACING * scale)
+            return cls(obstacle, path, path[[0, -1]], crosses=True)
         times = np.linspace(0.0, OPEN_TIME * time_scale, SAMPLES).tolist()
         path = np.array([motion.position(time) for time in times])
         return cls(obstacle, path, path[:1])
 
 
-def motion_law(mover: Mover) -> MotionLaw:
-    """Return the motion laws of a mover placed by hand."""
+def motion_law(mover: ShuttleMover | LineMover | CircleMover) -> MotionLaw:
+    """Return the motion law of a mover placed by hand."""
     if isinstance(mover, ShuttleMover):
         return Shuttle(mover.start, mover.end, mover.speed)
     if isinstance(mover, LineMover):
@@ -99,8 +104,14 @@ def apart_at_all_times(lane: Lane, other: Lane, room: float, time_scale: float =
         np.array([motion.position(time) for time in times]) for motion in motions if motion
     )
     gaps = np.hypot(*(first - second).T)
-    # Between two checks each approaches by at most half of its motion.
-    speeds = sum(float(np.hypot(*np.diff(p, axis=0).T).max()) for p in (first, second))
+    # Between two checks each approaches by at most half of its motion. A recorded mover stands for
+    # longer than that where it appears and leaves.
+    speeds = 0.0
+    for motion, positions in zip(motions, (first, second), strict=True):
+        moved = float(np.hypot(*np.diff(positions, axis=0).T).max())
+        if isinstance(motion, Track):
+            moved = min(moved, motion.speed * INTERVAL * time_scale)
+        speeds += moved
     return bool((gaps >= room + 0.5 * speeds).all())
 
 

@@ -7,8 +7,9 @@ from math import hypot, inf
 import numpy as np
 from numpy.typing import NDArray
 
+from hsr8.scenario.crowd import AWAY
 from hsr8.scenario.fault import Bump, Fault, MoverAppears
-from hsr8.world.field.motion import AWAY, Appearing, MotionLaw, Movers, Point
+from hsr8.world.field.motion import Appearing, MotionLaw, Movers, Point
 
 Array = NDArray[np.float64]
 

@@ -6,12 +6,14 @@ from math import cos, fmod, hypot, inf, sin
 import numpy as np
 from numpy.typing import NDArray
 
+from hsr8.scenario.crowd import AWAY
+from hsr8.scenario.track import Track
+from hsr8.scenario.track_table import TrackTable
 from hsr8.world.field.wander import Wander
 
 Array = NDArray[np.float64]
 Point = tuple[float, float]
 
-AWAY = 60.0  # distance of an absent mover from its lane, out of sight, in a world of scale 1 [m]
 SAME_TIME = 1e-6  # times closer than this are equal [s]
 
 
@@ -166,11 +168,11 @@ class Appearing:
         return self.start <= time + SAME_TIME < self.end
 
 
-MotionLaw = Line | Shuttle | Circle | Passage | Wander | Appearing
+MotionLaw = Line | Shuttle | Circle | Passage | Wander | Appearing | Track
 
 
 def pace(motion: MotionLaw) -> float:
-    """Return the speed of a mover while it moves [m/s]."""
+    """Return the speed of a mover while it moves, of a recorded one the maximum [m/s]."""
     match motion:
         case Appearing():
             return pace(motion.motion)
@@ -182,7 +184,7 @@ def pace(motion: MotionLaw) -> float:
 class Movers:
     """All moving obstacles of a layout, evaluated together.
 
-    Lines, shuttles and circles are evaluated as arrays, other motions one by one.
+    Lines, shuttles, circles and tracks are evaluated as arrays, other motions one by one.
 
     Args:
         motions: in layout order.
@@ -192,6 +194,9 @@ class Movers:
         self.motions = motions
         straight = {k: _lane(w) for k, w in enumerate(motions) if isinstance(w, Line | Shuttle)}
         circles = {k: c for k, c in enumerate(motions) if isinstance(c, Circle)}
+        tracks = {k: track for k, track in enumerate(motions) if isinstance(track, Track)}
+        self._tracks = list(tracks)
+        self._table = TrackTable(list(tracks.values())) if tracks else None
         other = Passage | Wander | Appearing
         self._others = [
             (k, motion) for k, motion in enumerate(motions) if isinstance(motion, other)
@@ -221,6 +226,8 @@ class Movers:
             angle = self._angle + self._rate * times[..., None]
             unit = np.stack([np.cos(angle), np.sin(angle)], axis=-1)
             positions[..., self._circles, :] = self._centre + self._radius * unit
+        if self._table is not None:
+            positions[..., self._tracks, :] = self._table.positions(times)
         for k, motion in self._others:
             points = [motion.position(instant) for instant in times.ravel().tolist()]
             positions[..., k, :] = np.reshape(points, (*times.shape, 2))
@@ -237,6 +244,8 @@ class Movers:
             angle = self._angle + self._rate * time
             unit = np.stack([-np.sin(angle), np.cos(angle)], axis=1)
             velocities[self._circles] = self._circle_speed * unit
+        if self._table is not None:
+            velocities[self._tracks] = self._table.velocities(time)
         for k, motion in self._others:
             velocities[k] = motion.velocity(time)
         return velocities

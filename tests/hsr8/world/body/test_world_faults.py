@@ -4,11 +4,12 @@ import pytest
 
 from hsr8.robots.loaded import load_robot
 from hsr8.robots.tree import max_torque
+from hsr8.scenario.crowd import AWAY
 from hsr8.scenario.fault import Bump, LowFriction, MoverAppears, ServoWeak
 from hsr8.world.body.physics import place_robot
 from hsr8.world.body.world_faults import WorldFaults
 from hsr8.world.field.layout import Layout, Obstacle, with_faults
-from hsr8.world.field.motion import AWAY, Shuttle
+from hsr8.world.field.motion import Shuttle
 from hsr8.world.model.assembly import Optics, assemble
 from hsr8.world.model.index import ModelIndex
 

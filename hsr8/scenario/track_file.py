@@ -1,0 +1,255 @@
+"""CSV files of recorded tracks: reading, checks of the rows, samples of each track.
+
+The columns are t [s], x [m], y [m] and id. A scenario holds them as text, see `content`.
+"""
+
+import csv
+import hashlib
+import math
+import os
+from collections.abc import Iterable, Iterator, Mapping
+from dataclasses import dataclass
+from functools import lru_cache
+from itertools import pairwise
+from pathlib import Path
+from typing import Any
+
+import tomlkit
+
+from hsr8.scenario.problem import Problem
+from hsr8.scenario.section import Point
+from hsr8.scenario.world import TrackMover
+
+COLUMNS = ("t", "x", "y", "id")
+MAX_SIZE = 8_000_000  # of a file [byte]
+MAX_ROWS = 50_000
+MAX_ID = 32  # [characters]
+MAX_GAP = 1.0  # between the samples of a track [s]
+MAX_TIME = 1e10  # [s]
+MAX_COORDINATE = 1e5  # [m]
+
+Table = dict[str, Any]
+
+
+class TrackFileError(Exception):
+    """Invalid track file; the message has the line, the wrong value and the expected one."""
+
+
+@dataclass(frozen=True, slots=True)
+class RecordedTrack:
+    """Samples of one id.
+
+    Attributes:
+        id: in the file.
+        times: [s].
+        points: [m].
+    """
+
+    id: str
+    times: tuple[float, ...]
+    points: tuple[Point, ...]
+
+
+def located_tracks(table: Mapping[str, Any], folder: Path) -> Table:
+    """Return a scenario's tables with the absolute paths of the track files that exist.
+
+    Args:
+        table: with `world.mover` or without.
+        folder: in which a relative path begins; else it begins in the working folder.
+    """
+    world = table.get("world")
+    if not isinstance(world, dict) or not isinstance(world.get("mover"), list):
+        return dict(table)
+    movers = [_located(mover, folder) if _is_track(mover) else mover for mover in world["mover"]]
+    return {**table, "world": {**world, "mover": movers}}
+
+
+def _located(mover: Table, folder: Path) -> Table:
+    name = os.path.expanduser(mover["file"])
+    paths = (os.path.abspath(path) for path in (folder / name, name) if os.path.isfile(path))
+    return {**mover, "file": next(paths, mover["file"])}
+
+
+def read_tracks(tables: Table) -> list[Problem]:
+    """Put the content of track files into their movers; return the invalid files.
+
+    The content replaces the file: its name alone is kept.
+    """
+    world = tables.get("world")
+    if not isinstance(world, dict) or not isinstance(world.get("mover"), list):
+        return []
+    movers, problems = list(world["mover"]), []
+    for i, mover in enumerate(movers):
+        if not _is_track(mover):
+            continue
+        name, data = Path(mover["file"]).name, mover.get("data")
+        try:
+            text = data if isinstance(data, str) and data else _read(mover["file"])
+            movers[i] = {**mover, "file": name, "data": content(text)}
+        except TrackFileError as error:
+            problems.append(Problem(("world", "mover", i, "file"), f"{name}, {error}"))
+    tables["world"] = {**world, "mover": movers}
+    return problems
+
+
+def legible(tables: Table) -> Table:
+    """Return the tables of a scenario for TOML, with one line for each row of its recordings."""
+    movers = [
+        {**m, "data": tomlkit.string(f"\n{m['data']}", literal=True, multiline=True)}
+        if "data" in m  # TOML leaves out the first line feed
+        else m
+        for m in tables["world"]["mover"]
+    ]
+    return {**tables, "world": {**tables["world"], "mover": movers}}
+
+
+def _is_track(mover: Any) -> bool:
+    return (
+        isinstance(mover, dict)
+        and mover.get("motion") == "track"
+        and isinstance(mover.get("file"), str)
+    )
+
+
+def _read(file: str) -> str:
+    try:
+        with open(file, "rb") as stream:
+            raw = stream.read(MAX_SIZE + 1)
+        text = raw.decode("utf-8-sig")
+    except FileNotFoundError:
+        raise TrackFileError(
+            f"file does not exist, got {file!r}; expected a CSV file next to the scenario or in "
+            "the working folder"
+        ) from None
+    except OSError as error:
+        raise TrackFileError(
+            f"cannot be read, got {file!r}: {error.strerror}; expected a CSV file"
+        ) from None
+    except ValueError as error:
+        raise TrackFileError(f"not a text, got {file!r}: {error}; expected a CSV file") from None
+    if len(raw) > MAX_SIZE:
+        raise TrackFileError(f"{file!r} is too long; expected at most {MAX_SIZE:_} bytes")
+    return text
+
+
+def content(text: str) -> str:
+    """Return the four columns of a CSV text as CSV, without other columns and empty lines.
+
+    Raises:
+        TrackFileError: a column is missing, or a row is invalid.
+    """
+    rows = _rows(text)
+    lines = [",".join(COLUMNS), *(",".join(fields) for _, fields in rows)]
+    _check_tracks(rows)
+    return "\n".join(lines) + "\n"
+
+
+@lru_cache(maxsize=16)
+def recorded_tracks(data: str) -> tuple[RecordedTrack, ...]:
+    """Return the tracks of a `content`, in the order of their first rows."""
+    samples: dict[str, list[tuple[float, ...]]] = {}
+    for line in data.splitlines()[1:]:
+        t, x, y, name = line.split(",")
+        samples.setdefault(name, []).append((float(t), float(x), float(y)))
+    return tuple(
+        RecordedTrack(name, tuple(t for t, _, _ in rows), tuple((x, y) for _, x, y in rows))
+        for name, rows in samples.items()
+    )
+
+
+def track_digests(movers: Iterable[object]) -> dict[str, str]:
+    """Return the first 12 digits of the SHA-256 of each recording's `content`, by file name."""
+    return {
+        f"tracks {mover.file}": hashlib.sha256(mover.data.encode()).hexdigest()[:12]
+        for mover in movers
+        if isinstance(mover, TrackMover)
+    }
+
+
+Row = tuple[int, tuple[str, ...]]
+"""Number of the line, and the fields of the four columns."""
+
+
+def _rows(text: str) -> list[Row]:
+    """Return the rows with valid fields."""
+    reader = csv.reader(text.splitlines())
+    try:
+        header = [name.strip() for name in next(reader, [])]
+        for name in COLUMNS:
+            if header.count(name) != 1:
+                problem = "missing" if name not in header else "repeated"
+                raise TrackFileError(
+                    f"line 1: column {name!r} is {problem}, got {','.join(header)[:60]!r}; "
+                    "expected a header with t, x, y and id"
+                )
+        order = [header.index(name) for name in COLUMNS]
+        rows = [(reader.line_num, _fields(reader.line_num, row, order)) for row in reader if row]
+    except csv.Error as error:
+        raise TrackFileError(f"line {reader.line_num}: not CSV: {error}") from None
+    if not 1 <= len(rows) <= MAX_ROWS:
+        raise TrackFileError(f"got {len(rows)} rows; expected 1 to {MAX_ROWS}")
+    return rows
+
+
+def _fields(line: int, row: list[str], order: list[int]) -> tuple[str, ...]:
+    if len(row) <= max(order):
+        raise TrackFileError(
+            f"line {line}: a column is missing, got {len(row)} values; expected t, x, y and id"
+        )
+    fields = tuple(row[k].strip() for k in order)
+    for name, field in zip(COLUMNS[:3], fields, strict=False):
+        limit = MAX_TIME if name == "t" else MAX_COORDINATE
+        try:
+            valid = abs(float(field)) <= limit
+        except ValueError:
+            valid = False
+        if not valid:
+            unit = "seconds" if name == "t" else "metres"
+            raise TrackFileError(
+                f"line {line}: {name} is not valid, got {field[:60]!r}; "
+                f"expected {unit} from {-limit:g} to {limit:g}"
+            )
+    name = fields[3]
+    if not (0 < len(name) <= MAX_ID and all(c.isalnum() or c in "._-" for c in name)):
+        raise TrackFileError(
+            f"line {line}: id is not valid, got {name[:60]!r}; "
+            f"expected 1 to {MAX_ID} letters, digits, '.', '_' or '-'"
+        )
+    return fields
+
+
+def _check_tracks(rows: list[Row]) -> None:
+    """Check the times of each track."""
+    tracks: dict[str, list[tuple[int, float]]] = {}
+    for line, (t, _, _, name) in rows:
+        tracks.setdefault(name, []).append((line, float(t)))
+    problems = [problem for name, samples in tracks.items() for problem in _gaps(name, samples)]
+    if problems:
+        line, text = min(problems)
+        raise TrackFileError(f"line {line}, {text}")
+
+
+def _gaps(name: str, samples: list[tuple[int, float]]) -> Iterator[tuple[int, str]]:
+    """Yield line and text of every wrong time of a track."""
+    if len(samples) == 1:
+        line, t = samples[0]
+        yield line, f"id {name}: only one sample, got t = {t:g} s; expected at least 2"
+    for (_, before), (line, t) in pairwise(samples):
+        if t == before:
+            yield (
+                line,
+                f"id {name}: duplicate sample, got t = {t:g} s twice; "
+                "expected one row for each time and id",
+            )
+        elif t < before:
+            yield (
+                line,
+                f"id {name}: time decreases, got t = {t:g} s after {before:g} s; "
+                "expected increasing times within an id",
+            )
+        elif not math.isclose(t - before, MAX_GAP) and t - before > MAX_GAP:
+            yield (
+                line,
+                f"id {name}: gap between samples, got {t - before:g} s after t = {before:g} s; "
+                f"expected at most {MAX_GAP:g} s, or another id after the gap",
+            )
