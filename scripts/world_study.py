@@ -21,7 +21,7 @@ from hsr8.world.field.layout import Layout
 import numpy as np
 from study_page import RESULTS, add_seeds, command_line, environment
 
-PICTURED = "course crowd dense fast conflict behind corridor crossing blind-corner"
+PICTURED = "course crowd dense fast conflict behind corridor crossing blind-corner pedestrians"
 FAMILIES = f"{PICTURED} paper quick"
 PAGE = RESULTS / "worlds.md"
 PICTURES = PAGE.parents[1] / "images" / "worlds"

@@ -144,8 +144,9 @@ def _phrase(key: str, given: Node, shared: Node, variant: Node) -> str:
     """A key of one variant, in a cell: its differences from the shared key."""
     node, required = resolve(given, None), key in variant.get("required", [])
     details = ["required"] if required and "default" in shared else []
-    if not required and given.get("default") != shared.get("default"):
-        details = [f"default {_default(given, node)}"]
+    default = _default(given, node)
+    if default and not required and given.get("default") != shared.get("default"):
+        details = [f"default {default}"]
     text = ""
     if not _same(given, shared):
         text = ": " + str(given.get("description", "")).replace("\n", " ").rstrip(".")

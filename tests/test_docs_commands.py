@@ -113,7 +113,9 @@ def commands(text):
 
 def files(text):
     """Files that a page prints below their names: name and content."""
-    return re.findall(r"`([\w-]+\.(?:toml|py))`[^`\n]*:\n\n```\w+\n(.*?)^```", text, re.M | re.S)
+    return re.findall(
+        r"`([\w-]+\.(?:toml|py|csv))`[^`\n]*:\n\n```\w+\n(.*?)^```", text, re.M | re.S
+    )
 
 
 @cache

@@ -95,9 +95,7 @@ def read_tracks(tables: Table) -> list[Problem]:
 def legible(tables: Table) -> Table:
     """Return the tables of a scenario for TOML, with one line for each row of its recordings."""
     movers = [
-        {**m, "data": tomlkit.string(f"\n{m['data']}", literal=True, multiline=True)}
-        if "data" in m  # TOML leaves out the first line feed
-        else m
+        {**m, "data": tomlkit.string(m["data"], literal=True, multiline=True)} if "data" in m else m
         for m in tables["world"]["mover"]
     ]
     return {**tables, "world": {**tables["world"], "mover": movers}}

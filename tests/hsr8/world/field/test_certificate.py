@@ -87,7 +87,7 @@ def mirrored(world):
 
 
 @pytest.mark.parametrize(
-    "name", ["quick", "course", "crowd", "dense", "conflict", "behind", "corridor"]
+    "name", ["quick", "course", "crowd", "dense", "conflict", "behind", "corridor", "pedestrians"]
 )
 def test_the_path_of_a_certificate_has_no_contact(name):
     scenario = load_scenario(name)

@@ -5,6 +5,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from hsr8.scenario.track import Track
 from hsr8.world.field.motion import Appearing, Circle, Line, Movers, Passage, Shuttle, pace
 from hsr8.world.field.wander import draw_wander
 
@@ -72,6 +73,30 @@ def test_many_times_at_once_are_each_alone(chosen, instants):
     movers = Movers(tuple(chosen))
     together = movers.positions(np.array(instants))
     assert np.array_equal(together, np.array([movers.positions(time) for time in instants]))
+
+
+TRACK = Track(
+    id="1",
+    times=(1.0, 3.0, 4.0),
+    points=((0.0, 1.0), (1.0, 1.5), (2.0, 1.0)),
+    rates=((0.5, 0.25), (0.7, 0.0), (1.0, -0.5)),
+    speed=1.2,
+    begin=-2.0,
+    stays=False,
+    linger=0.5,
+    away=60.0,
+)
+
+
+@given(st.lists(st.sampled_from([TRACK, Appearing(TRACK, 3.0), PASSAGE]), max_size=5), times)
+def test_recorded_movers_are_evaluated_with_the_others(chosen, time):
+    movers = Movers(tuple(chosen))
+    for instant in (time, 0.01 * time):
+        positions = np.array([motion.position(instant) for motion in chosen]).reshape(-1, 2)
+        velocities = np.array([motion.velocity(instant) for motion in chosen]).reshape(-1, 2)
+        assert movers.positions(instant) == pytest.approx(positions, abs=1e-9)
+        assert movers.velocities(instant) == pytest.approx(velocities, abs=1e-9)
+    assert movers.top_speeds().tolist() == [pace(motion) for motion in chosen]
 
 
 @given(motions, times)

@@ -14,10 +14,10 @@ from hsr8.world.field.generator import draw_world
 FAST = {"walking": {"limits": dict.fromkeys(("vx", "vx_backward", "vy", "wz"), 9.0)}}
 LENGTHS = {
     *("position", "radius", "height", "start", "end", "centre", "track", "side", "offset", "away"),
-    *("field_size", "waypoints", "known"),
+    *("field_size", "waypoints", "known", "points"),
 }
-TIMES = {"depart"}
-SPEEDS = {"speed", "rate"}
+TIMES = {"depart", "times", "begin", "linger", "first", "period"}
+SPEEDS = {"speed", "rate", "rates"}
 
 
 @pytest.fixture(params=[(2.0, 1.0), (2.0, 3.0), (0.5, 0.25), (2.9, 1.7)], ids=str)
