@@ -16,7 +16,8 @@ from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
 
 from hsr8.errors import ScenarioError
-from hsr8.evaluation.paired import PairedDifference, compare_successes, compare_values
+from hsr8.evaluation.efficiency import spl
+from hsr8.evaluation.paired import compare_successes, compare_values
 from hsr8.evaluation.proportion import Proportion
 from hsr8.loop import Simulation
 from hsr8.scenario.loader import load_scenario
@@ -92,8 +93,8 @@ def _line(arm: str, runs: Sequence[Row], first: Sequence[Row], families: Sequenc
     weighted, theirs = weights(runs), weights(first)
     p = ps = ""
     if runs is not first and list(runs) != list(first):
-        p = difference(compare_successes([bool(run["success"]) for run in first], good))
-        ps = difference(compare_values(theirs, weighted))
+        p = compare_successes([bool(run["success"]) for run in first], good).points()
+        ps = compare_values(theirs, weighted).points()
     contacts = [run["contact"] for run in runs]
     times = [float(str(run["time"])) for run in runs if run["success"]]
     cells += [
@@ -112,15 +113,8 @@ def _line(arm: str, runs: Sequence[Row], first: Sequence[Row], families: Sequenc
 
 def weights(runs: Sequence[Row]) -> np.ndarray:
     """Return success times shortest time over time of every run (n,) [1]."""
-    ratio = [float(str(r["shortest"])) / float(str(r["time"])) for r in runs]
-    success = [bool(r["success"]) for r in runs]
-    return np.minimum(1.0, ratio) * success
-
-
-def difference(pair: PairedDifference) -> str:
-    """Return for example ``-12.0 [-20.1, -3.9], p 0.004``, in points."""
-    low, high = 100.0 * pair.low, 100.0 * pair.high
-    return f"{100.0 * pair.difference:+.1f} [{low:+.1f}, {high:+.1f}], p {pair.p_value:.2g}"
+    times = [(float(str(r["shortest"])), float(str(r["time"]))) for r in runs]
+    return np.array([spl(bool(r["success"]), *pair) for r, pair in zip(runs, times, strict=True)])
 
 
 def settings_of(arguments: argparse.Namespace, arm: Sequence[str]) -> list[str]:

@@ -43,6 +43,7 @@ STANDS_FOR = {
 IN_SHORT = {
     "run": ["--duration", "0.1"],
     "sweep": ["--seeds", "0:2"],
+    "bench": ["--quick"],
     "plot": ["--what", "zmp"],
     "render": ["--size", "64x64", "--fps", "10"],
     "replay": ["--time", "0.1"],
@@ -139,7 +140,7 @@ def installed(robot):
 def hsr8(words, capsys):
     """Execute a command of ours; what it prints."""
     given = [STANDS_FOR.get(word, word) for word in words[1:]]
-    if " ".join(given) in COMMANDS and given[0] not in WITHOUT_ARGUMENTS:
+    if " ".join(given) in {*COMMANDS, "bench compare"} and given[0] not in WITHOUT_ARGUMENTS:
         given = [*given, "--help"]  # no more than its name
     elif (
         ONLY_READ & set(given)
@@ -155,7 +156,7 @@ def hsr8(words, capsys):
         if given[0] == "run" and any("start=" in word or word == "--view" for word in given):
             options = parse(given)
             given = ["check", options.scenario, *(f"--set={word}" for word in settings(options))]
-        given += IN_SHORT.get(given[0], [])
+        given += IN_SHORT.get(given[0], []) if given[1:2] != ["compare"] else []
         if given[0] == "run" and "--camera" not in given:
             given += ["--camera", "analytic"]
     capsys.readouterr()

@@ -4,12 +4,12 @@ from collections.abc import Iterable, Sequence
 from dataclasses import fields, replace
 from typing import Any
 
-from hsr8.cli.options import Check, Run, Sweep
+from hsr8.cli.options import Bench, Check, Run, Sweep
 from hsr8.errors import UsageError
 from hsr8.recorder.log_level import LogLevel
 
 
-def settings(options: Run | Check | Sweep) -> tuple[str, ...]:
+def settings(options: Run | Check | Sweep | Bench) -> tuple[str, ...]:
     """Return every ``key=value`` of every ``--set``.
 
     Raises:
@@ -25,12 +25,15 @@ def flat(groups: Iterable[Iterable[str]]) -> tuple[str, ...]:
     return tuple(value for group in groups for value in group)
 
 
-def command_words(options: Run | Sweep) -> tuple[str, ...]:
+def command_words(options: Run | Sweep | Bench) -> tuple[str, ...]:
     """Return the words of the command line with these options and the default output."""
     options = replace(options, json=False, quiet=False)
-    words = ["hsr8", type(options).__name__.lower(), options.scenario]
-    for field in fields(options)[1:]:
+    words = ["hsr8", type(options).__name__.lower()]
+    for field in fields(options):
         flag, value = f"--{field.name.replace('_', '-')}", getattr(options, field.name)
+        if field.name == "scenario":
+            words.append(value)
+            continue
         if value == field.default:
             continue
         for group in value if isinstance(value, tuple) else [(value,)]:

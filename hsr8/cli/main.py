@@ -14,7 +14,7 @@ from typing import Any, get_args
 import tyro
 
 from hsr8.cli.crash import crash_report
-from hsr8.cli.options import Command, Robot, RobotAction
+from hsr8.cli.options import BenchCompare, Command, Robot, RobotAction
 from hsr8.cli.renamed import require_present_names
 from hsr8.errors import Hsr8Error, UsageError
 from hsr8.suggestion import suggestion
@@ -38,9 +38,14 @@ CONFIG = (
     tyro.conf.OmitArgPrefixes,
     tyro.conf.OmitSubcommandPrefixes,
 )
-COMMANDS: dict[str, type[Command]] = {
-    re.sub(r"(?<=[a-z])(?=[A-Z])", "-", kind.__name__).lower(): kind for kind in get_args(Command)
-}
+
+
+def _words(kind: type[object], separator: str) -> str:
+    """Return the words of a class name in lower case."""
+    return re.sub(r"(?<=[a-z])(?=[A-Z])", separator, kind.__name__).lower()
+
+
+COMMANDS: dict[str, type[Command]] = {_words(kind, "-"): kind for kind in get_args(Command)}
 
 ACTIONS = [kind.__name__.removeprefix("Robot").lower() for kind in get_args(RobotAction)]
 
@@ -81,9 +86,9 @@ def _run(words: list[str]) -> int:
             command = parse(words)
             if command is None:
                 return 0
-            name = next(name for name, kind in COMMANDS.items() if isinstance(command, kind))
             # Not before: MuJoCo, Rerun and SciPy take seconds.
-            module = importlib.import_module(f"hsr8.cli.{name.replace('-', '_')}")
+            name = _words(type(command), "_")
+            module = importlib.import_module(f"hsr8.cli.{name}")
             code: int = module.main(command)
     except Hsr8Error as error:
         notes = getattr(error, "__notes__", [])
@@ -97,11 +102,11 @@ def _run(words: list[str]) -> int:
     return code
 
 
-def parse(words: Sequence[str]) -> Command | None:
+def parse(words: Sequence[str]) -> Command | BenchCompare | None:
     """Parse a command line.
 
     Returns:
-        The command with its options; None where help, version or a completion script was printed.
+        The options of the command; None where help, version or a completion script was printed.
 
     Raises:
         UsageError: the command line is wrong.
@@ -111,6 +116,8 @@ def parse(words: Sequence[str]) -> Command | None:
     if name == "--version":
         print(f"hsr8 {VERSION}")
         return None
+    if words[:2] == ["bench", "compare"]:
+        return _parse(BenchCompare, "hsr8 bench compare", words[2:])
     if name in COMMANDS:
         words = _action(rest) if COMMANDS[name] is Robot else []
         help_wanted = not {"-h", "--help"}.isdisjoint(rest)
@@ -141,12 +148,16 @@ def _action(words: Sequence[str]) -> list[str]:
     return []
 
 
-def _parse(kind: Any, prog: str, words: Sequence[str], **options: Any) -> Command | None:
+def _parse(
+    kind: Any, prog: str, words: Sequence[str], **options: Any
+) -> Command | BenchCompare | None:
     """Let tyro parse; turn the box that it prints about a mistake into a `UsageError`."""
     box = io.StringIO()
     try:
         with redirect_stderr(box):
-            command: Command = tyro.cli(kind, prog=prog, args=words, config=CONFIG, **options)
+            command: Command | BenchCompare = tyro.cli(
+                kind, prog=prog, args=words, config=CONFIG, **options
+            )
             return command
     except SystemExit as stop:
         if not stop.code:

@@ -1,71 +1,30 @@
 """Commands and their options; no heavy import, so that ``--help`` is fast."""
 
-from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Annotated, Any, Literal
+from typing import Annotated, Literal
 
 from tyro.conf import Positional, UseAppendAction, arg, subcommand
-from tyro.constructors import PrimitiveConstructorSpec
 
-
-def _optional(
-    kind: Callable[[str], Any], metavar: str, choices: tuple[str, ...] | None = None
-) -> PrimitiveConstructorSpec[Any]:
-    """Parse one value of an option whose default is None; the word ``None`` is not a value."""
-    return PrimitiveConstructorSpec(
-        nargs=1,
-        metavar=metavar,
-        instance_from_str=lambda words: kind(words[0]),
-        is_instance=lambda value: value is not None,
-        str_from_instance=lambda value: [str(value)],
-        choices=choices,
-    )
-
-
-def _choice(*choices: str) -> PrimitiveConstructorSpec[Any]:
-    return _optional(str, f"{{{','.join(choices)}}}", choices)
-
-
-NO_DEFAULT = arg(help_behavior_hint="")  # in the help
-Integer = Annotated[int | None, _optional(int, "N"), NO_DEFAULT]
-Number = Annotated[float | None, _optional(float, "X"), NO_DEFAULT]
-Seconds = Annotated[float | None, _optional(float, "S"), NO_DEFAULT]
-Text = Annotated[str | None, _optional(str, "TEXT"), NO_DEFAULT]
-File = Annotated[Path | None, _optional(Path, "FILE"), NO_DEFAULT]
-Body = Annotated[Literal["full", "kinematic"] | None, _choice("full", "kinematic"), NO_DEFAULT]
-Camera = Annotated[
-    Literal["rendered", "analytic", "neck-reach", "omnidirectional"] | None,
-    _choice("rendered", "analytic", "neck-reach", "omnidirectional"),
-    NO_DEFAULT,
-]
-Level = Annotated[
-    Literal["minimal", "standard", "full"] | None,
-    _choice("minimal", "standard", "full"),
-    NO_DEFAULT,
-]
-View = Annotated[Literal["native", "web"] | None, _choice("native", "web"), NO_DEFAULT]
-Flag = Annotated[bool, NO_DEFAULT]
-Scenario = Positional[
-    Annotated[str, arg(metavar="SCENARIO", help="name (see `hsr8 list`) or TOML file")]
-]
-RobotName = Positional[
-    Annotated[str, arg(metavar="ROBOT", help="name (see `hsr8 robot list`) or description file")]
-]
-RunPath = Positional[
-    Annotated[Path, arg(metavar="RUN", help="run folder, or a parent folder for its newest run")]
-]
-SETTINGS = arg(
-    metavar="KEY=VALUE",
-    help="Any setting, such as world.n_moving=8; may be repeated.",
-    help_behavior_hint="",
+from hsr8.cli.option_types import (
+    Body,
+    Camera,
+    File,
+    Flag,
+    Integer,
+    Json,
+    Level,
+    Number,
+    Quiet,
+    RobotName,
+    RunPath,
+    Scenario,
+    Seconds,
+    Settings,
+    Text,
+    Values,
+    View,
 )
-Settings = UseAppendAction[Annotated[tuple[tuple[str, ...], ...], SETTINGS]]
-Values = UseAppendAction[
-    Annotated[tuple[tuple[str, ...], ...], arg(metavar="KEY=V1,V2,...", help_behavior_hint="")]
-]
-Json = Annotated[bool, arg(help="Print one JSON object on standard output.", help_behavior_hint="")]
-Quiet = Annotated[bool, arg(help="Print neither progress nor results.", help_behavior_hint="")]
 
 
 @dataclass(frozen=True)
@@ -150,6 +109,49 @@ class Compare:
         Annotated[tuple[str, ...], arg(metavar="KEY", help_behavior_hint="")]
     ] = ()
     """Numeric key of metrics.json; may be repeated; default: the usual ones."""
+    json: Json = False
+
+
+@dataclass(frozen=True)
+class Bench:
+    """Benchmark a planner, gaze or walker: six families of worlds with fixed seeds.
+
+    Writes bench.json, report.md and a sweep folder per family. Runs with a result in the folder
+    are not repeated: the same command line continues a stopped benchmark.
+    `hsr8 bench compare A B` compares two entries on their common worlds.
+    """
+
+    quick: Flag = False
+    """Only the first seeds of every family: a few minutes on two cores."""
+    name: Text = None
+    """Name of the entry in tables; default: its settings, or "default"."""
+    set: Settings = ()
+    body: Body = None
+    """Full physics in place of the standard, footsteps that land exactly as planned."""
+    camera: Camera = None
+    """Camera in place of the standard, analytic."""
+    suite: File = None
+    """Suite, a TOML file; default: the one shipped."""
+    out: File = None
+    """Folder of the entry; default: bench/, the name of a custom suite, and that of the entry."""
+    workers: Integer = None
+    """Parallel runs; default: number of CPUs."""
+    timeout: Seconds = None
+    """Wall-clock limit per run [s]; default: 60 s + 20 x its duration."""
+    keep: Literal["all", "failed", "none"] = "none"
+    """Run folders to keep, 100 kB per simulated second; one with a traceback always is."""
+    json: Json = False
+    quiet: Quiet = False
+
+
+@dataclass(frozen=True)
+class BenchCompare:
+    """Compare two entries of `hsr8 bench` on their common worlds: paired differences with tests."""
+
+    a: Positional[Annotated[Path, arg(metavar="A")]]
+    """Folder of an entry, or its bench.json."""
+    b: Positional[Annotated[Path, arg(metavar="B")]]
+    """Entry to compare with A."""
     json: Json = False
 
 
@@ -365,4 +367,5 @@ class Robot:
 
 RobotAction = RobotList | RobotInspect | RobotCheck | RobotCalibrate
 OfRun = Verify | Info | Diff | Render | Replay | Plot | Export
-Command = Run | Sweep | Compare | List | Check | OfRun | Robot | ColorTable | Schema | Doctor
+OfMany = Sweep | Compare | Bench
+Command = Run | OfMany | List | Check | OfRun | Robot | ColorTable | Schema | Doctor

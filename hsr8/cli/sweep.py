@@ -3,7 +3,6 @@
 import itertools
 import shlex
 from collections.abc import Sequence
-from dataclasses import replace
 from pathlib import Path
 
 from rich.console import Console
@@ -14,23 +13,20 @@ from hsr8.cli.options import Sweep
 from hsr8.cli.sweep_runs import (
     INTERRUPTED,
     Execution,
+    definitions,
     folder_name,
     report_lost_runs,
     require_no_seed,
     run_sweeps,
 )
 from hsr8.errors import Hsr8Error, UsageError
-from hsr8.evaluation.sweep.definition import Definition
 from hsr8.evaluation.sweep.folder import REPORT
 from hsr8.evaluation.sweep.report import headline, report_of_values
 from hsr8.evaluation.sweep.seeds import parse_seeds, parse_shard, parse_values
 from hsr8.evaluation.sweep.summary import Summary, summarize
-from hsr8.plugin_file import digests
 from hsr8.recorder.files import atomic
-from hsr8.robots.locate import digest
-from hsr8.scenario.loader import dump, load_scenario
+from hsr8.scenario.loader import load_scenario
 from hsr8.scenario.schema import Scenario
-from hsr8.scenario.track_file import track_digests
 
 
 def main(options: Sweep) -> int:
@@ -54,12 +50,15 @@ def main(options: Sweep) -> int:
     combinations = _combinations(options)
     scenarios = {name: _scenario(options, more) for name, more in combinations.items()}
     out = options.out or Path("sweeps") / next(iter(scenarios.values())).name
-    definitions = _definitions(scenarios, options, combinations)
-    runs = run_sweeps(out, scenarios, definitions, execution)
+    commands = {
+        name: command_words(run_options(options, None, more)) for name, more in combinations.items()
+    }
+    defined = definitions(scenarios, commands)
+    runs = run_sweeps(out, scenarios, defined, execution)
     summaries = {name: summarize(results) for name, results in runs.results.items()}
     if options.vary:
         keys = ", ".join(parse_values(text)[0] for text in flat(options.vary))
-        made_with = next(iter(definitions.values())).made_with()
+        made_with = next(iter(defined.values())).made_with()
         page = report_of_values(keys, summaries, execution.command, made_with)
         try:
             atomic.write_text(out / REPORT, page)
@@ -67,25 +66,6 @@ def main(options: Sweep) -> int:
             raise Hsr8Error(f"{out / REPORT}: cannot write: {error.strerror}") from error
     _print(options, out, summaries, interrupted=runs.interrupted)
     return INTERRUPTED if runs.interrupted else _exit_code(list(summaries.values()))
-
-
-def _definitions(
-    scenarios: dict[str, Scenario], options: Sweep, combinations: dict[str, tuple[str, ...]]
-) -> dict[str, Definition]:
-    common = Definition.now("", (), "")
-    return {
-        name: replace(
-            common,
-            name=scenario.name,
-            command_words=command_words(run_options(options, None, combinations[name])),
-            libraries=common.libraries
-            | digests(scenario.plugin)
-            | digest(scenario.robot.model)
-            | track_digests(scenario.world.mover),
-            scenario=dump(scenario),
-        )
-        for name, scenario in scenarios.items()
-    }
 
 
 def _combinations(options: Sweep) -> dict[str, tuple[str, ...]]:

@@ -6,7 +6,7 @@ import re
 import sys
 from collections.abc import Iterable, Mapping, Sequence
 from contextlib import ExitStack, closing
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 from hsr8.cli import termination
@@ -22,8 +22,11 @@ from hsr8.evaluation.sweep.progress import SweepProgress
 from hsr8.evaluation.sweep.report import report
 from hsr8.evaluation.sweep.summary import Summary
 from hsr8.gl import require_gl
-from hsr8.plugin_file import require_plugins
+from hsr8.plugin_file import digests, require_plugins
+from hsr8.robots.locate import digest
+from hsr8.scenario.loader import dump
 from hsr8.scenario.schema import Scenario
+from hsr8.scenario.track_file import track_digests
 
 PRELOAD = "hsr8.cli.sweep_preload"
 START_TIME = 60.0  # default limits: for the start of a process [s]
@@ -130,6 +133,34 @@ def run_sweeps(
     return SweepRuns(results, interrupted)
 
 
+def definitions(
+    scenarios: Mapping[str, Scenario], commands: Mapping[str, tuple[str, ...]]
+) -> dict[str, Definition]:
+    """Return the definitions of sweeps with the installed versions.
+
+    Args:
+        scenarios: by name of the folder.
+        commands: command line of one run without its seed, by name of the folder.
+
+    Raises:
+        UsageError: a plugin cannot be read.
+    """
+    common = Definition.now("", (), "")
+    return {
+        name: replace(
+            common,
+            name=scenario.name,
+            command_words=commands[name],
+            libraries=common.libraries
+            | digests(scenario.plugin)
+            | digest(scenario.robot.model)
+            | track_digests(scenario.world.mover),
+            scenario=dump(scenario),
+        )
+        for name, scenario in scenarios.items()
+    }
+
+
 def _run(jobs: Sequence[Job], folders: Sequence[SweepFolder], execution: Execution) -> bool:
     """Run the jobs; return whether they were interrupted."""
     total = len(pending(execution.seeds, (), execution.shard)) * len(folders)
@@ -178,15 +209,22 @@ def folder_name(settings: Sequence[str]) -> str:
     return f"{name[: MAX_NAME - 9]}-{digest}"
 
 
-def require_no_seed(option: str, settings: Iterable[str]) -> None:
+def require_no_seed(option: str, settings: Iterable[str], expected: str = "--seeds") -> None:
     """Check that no setting is the seed.
+
+    Args:
+        option: named in the message.
+        settings: KEY=VALUE.
+        expected: named in the message.
 
     Raises:
         UsageError: a setting is.
     """
     for setting in settings:
         if setting.partition("=")[0].strip() == "seed":
-            raise UsageError(f"{option}: the seed is not a setting, got {setting}; use --seeds")
+            raise UsageError(
+                f"{option}: the seed is not a setting, got {setting}; expected {expected}"
+            )
 
 
 def report_lost_runs(summaries: Iterable[Summary], where: Path) -> None:

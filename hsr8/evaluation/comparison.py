@@ -1,7 +1,7 @@
 """Comparison of two sweeps, or two runs, on their common seeds."""
 
 import tomllib
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import asdict, dataclass
 from math import isfinite
 from pathlib import Path
@@ -42,6 +42,8 @@ ON_ARRIVAL = ("time_to_goal_s", "arrival_error_deg", "path_length_m")  # where b
 SAME_WORLD = ("world.", "mission.")  # sections that must agree for seeds to pair
 APPEARANCE = ("world.brightness", "world.beacons", "world.beacon_displacement")  # except these keys
 
+Seed = int | str
+
 
 @dataclass(frozen=True, slots=True)
 class Side:
@@ -64,12 +66,12 @@ class MetricDifference(PairedDifference):
 
     Attributes:
         metric: name.
-        only_a, only_b: for a proportion, seeds on which only one side succeeded.
+        only_a, only_b: for a proportion, the seeds on which only one side succeeded.
     """
 
     metric: str
-    only_a: tuple[int, ...] = ()
-    only_b: tuple[int, ...] = ()
+    only_a: tuple[Seed, ...] = ()
+    only_b: tuple[Seed, ...] = ()
 
 
 @dataclass(frozen=True, slots=True)
@@ -160,16 +162,32 @@ def compare(a: Side, b: Side, metrics: Sequence[str] = ()) -> Comparison:
         raise UsageError(f"no common seed: A has {_range(a.runs)}, B has {_range(b.runs)}")
     for metric in metrics:
         _require_metric(metric, [side.runs[seed] for side in (a, b) for seed in seeds])
-    differences = (_difference(metric, a, b, seeds) for metric in metrics or METRICS)
+    differences = paired_differences(metrics or METRICS, a.runs, b.runs, seeds)
     versions = version_differences(a.definition, b.definition)
     if not (a.definition.code and b.definition.code):  # unknown for a run folder
         versions.pop("code", None)
     plugins = _plugin(a), _plugin(b)
     if plugins[0] != plugins[1]:
         versions["decisions"] = plugins
-    return Comparison(
-        a, b, seeds, settings, versions, tuple(d for d in differences if d is not None)
-    )
+    return Comparison(a, b, seeds, settings, versions, differences)
+
+
+def paired_differences(
+    metrics: Sequence[str],
+    a: Mapping[Any, RunResult],
+    b: Mapping[Any, RunResult],
+    seeds: Sequence[Seed],
+) -> tuple[MetricDifference, ...]:
+    """Return the difference B - A of every metric that both sides have.
+
+    Args:
+        metrics: names of metrics.
+        a: results by seed.
+        b: results by seed.
+        seeds: common seeds.
+    """
+    differences = (_difference(metric, a, b, seeds) for metric in metrics)
+    return tuple(d for d in differences if d is not None)
 
 
 def _plugin(side: Side) -> str:
@@ -178,11 +196,13 @@ def _plugin(side: Side) -> str:
     return command if command.startswith(CALL) else "-"
 
 
-def _difference(metric: str, a: Side, b: Side, seeds: Sequence[int]) -> MetricDifference | None:
+def _difference(
+    metric: str, a: Mapping[Any, RunResult], b: Mapping[Any, RunResult], seeds: Sequence[Seed]
+) -> MetricDifference | None:
     """Return None if no seed has the metric on both sides."""
     if metric in ON_ARRIVAL:
-        seeds = [s for s in seeds if a.runs[s].get("success") and b.runs[s].get("success")]
-    pairs = {s: (_value(a.runs[s], metric), _value(b.runs[s], metric)) for s in seeds}
+        seeds = [s for s in seeds if a[s].get("success") and b[s].get("success")]
+    pairs = {s: (_value(a[s], metric), _value(b[s], metric)) for s in seeds}
     pairs = {s: pair for s, pair in pairs.items() if None not in pair}
     if not pairs:
         return None

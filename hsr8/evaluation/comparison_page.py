@@ -1,9 +1,10 @@
 """A comparison as a page of Markdown, and as plain values."""
 
+from collections.abc import Sequence
 from dataclasses import asdict
 from typing import Any
 
-from hsr8.evaluation.comparison import Comparison, MetricDifference
+from hsr8.evaluation.comparison import Comparison, MetricDifference, Seed
 
 MAX_LISTED = 20  # seeds listed by number
 
@@ -22,13 +23,18 @@ def page(comparison: Comparison, command: str) -> str:
         lines += [f"| `{key}` | {x} | {y} |" for key, (x, y) in changed.items()]
     else:
         lines += ["Scenario and versions are equal."]
-    lines += ["", "| metric | n | A | B | B - A | 95 % interval | p | test |", "|---" * 8 + "|"]
-    lines += [_row(metric) for metric in comparison.metrics]
-    for metric in comparison.metrics:
+    return "\n".join([*lines, "", *difference_table(comparison.metrics), ""])
+
+
+def difference_table(metrics: Sequence[MetricDifference]) -> list[str]:
+    """Return the lines of a table of differences, and the seeds of only one side."""
+    lines = ["| metric | n | A | B | B - A | 95 % interval | p | test |", "|---" * 8 + "|"]
+    lines += [_row(metric) for metric in metrics]
+    for metric in metrics:
         for name, only in (("A", metric.only_a), ("B", metric.only_b)):
             if only:
                 lines += ["", f"`{metric.metric}` in {name} only: {_seeds(only)}"]
-    return "\n".join([*lines, ""])
+    return lines
 
 
 def to_json(comparison: Comparison) -> dict[str, Any]:
@@ -65,6 +71,6 @@ def _row(metric: MetricDifference) -> str:
     return "| " + " | ".join(row) + " |"
 
 
-def _seeds(seeds: tuple[int, ...]) -> str:
+def _seeds(seeds: Sequence[Seed]) -> str:
     more = f" and {len(seeds) - MAX_LISTED} more" if len(seeds) > MAX_LISTED else ""
     return ", ".join(map(str, seeds[:MAX_LISTED])) + more

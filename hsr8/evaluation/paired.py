@@ -36,6 +36,11 @@ class PairedDifference:
     high: float
     p_value: float
 
+    def points(self) -> str:
+        """Return the difference in points, for example ``-12.0 [-20.1, -3.9], p 0.004``."""
+        low, high = 100.0 * self.low, 100.0 * self.high
+        return f"{100.0 * self.difference:+.1f} [{low:+.1f}, {high:+.1f}], p {self.p_value:.2g}"
+
 
 def compare_values(a: Array, b: Array) -> PairedDifference:
     """Compare numbers (n,) in the same order by the Wilcoxon signed-rank test; deterministic.

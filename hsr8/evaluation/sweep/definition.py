@@ -19,8 +19,9 @@ from hsr8.scenario.loader import dump, loads
 from hsr8.version import VERSION
 
 PACKAGES = ("hsr8", "navigation", "walking", "vision")
-NOT_IN_DIGEST = ("cli", "render", "evaluation/sweep", "_models")  # folders and files of hsr8
 MAX_TEXT = 1000  # of a value in a message [characters]
+# Folders and files of hsr8:
+NOT_IN_DIGEST = ("cli", "render", "evaluation/sweep", "evaluation/bench", "_models")
 MAY_DIFFER = ("seed", "description")  # keys of a scenario, within a sweep
 
 Differences = dict[str, tuple[str, str]]
@@ -74,6 +75,15 @@ class Definition:
         libraries = dict(value["libraries"])
         return cls(**{**value, "command_words": words, "libraries": libraries}, scenario=scenario)
 
+    def versions(self) -> dict[str, str]:
+        """Return all versions by name."""
+        return {
+            "hsr8": self.hsr8,
+            "code": self.code,
+            "processor": self.processor,
+            **self.libraries,
+        }
+
     def made_with(self) -> str:
         """Return the versions as one line."""
         names = ("mujoco", "numpy", "scipy", "pin")
@@ -93,12 +103,7 @@ def scenario_differences(one: Definition, other: Definition) -> Differences:
 
 def version_differences(one: Definition, other: Definition) -> Differences:
     """Return the versions that differ, with both values."""
-    return _differences(
-        *(
-            {"hsr8": d.hsr8, "code": d.code, "processor": d.processor, **d.libraries}
-            for d in (one, other)
-        )
-    )
+    return _differences(one.versions(), other.versions())
 
 
 def code_digest() -> str:

@@ -9,8 +9,12 @@ MAX_RUNS = 1_000_000
 MAX_SEED = 2**63 - 1
 
 
-def parse_seeds(text: str) -> tuple[int, ...]:
+def parse_seeds(text: str, option: str = "--seeds") -> tuple[int, ...]:
     """Return the seeds of ``1000:1200``, ``1,5,9`` or ``0:10,42``; ranges exclude their end.
+
+    Args:
+        text: as on the command line.
+        option: named in messages.
 
     Raises:
         UsageError: `text` is malformed, or names no seed or one twice.
@@ -22,18 +26,18 @@ def parse_seeds(text: str) -> tuple[int, ...]:
         stop = int(match[2]) if match and match[2] else first + 1
         if match is None or stop <= first:
             raise UsageError(
-                f"--seeds: not a seed or a range, got {part.strip()!r}; expected A:B for A to B-1 "
+                f"{option}: not a seed or a range, got {part.strip()!r}; expected A:B for A to B-1 "
                 "or a list, such as 1000:1200 or 1,5,9"
             )
         if len(seeds) + stop - first > MAX_RUNS or stop - 1 > MAX_SEED:
             raise UsageError(
-                f"--seeds: too many or too large, got {text}; expected at most {MAX_RUNS:,} seeds "
+                f"{option}: too many or too large, got {text}; expected at most {MAX_RUNS:,} seeds "
                 "below 2^63"
             )
         seeds += range(first, stop)
     seed, count = Counter(seeds).most_common(1)[0]
     if count > 1:
-        raise UsageError(f"--seeds: seed {seed} is repeated, got {text}")
+        raise UsageError(f"{option}: seed {seed} is repeated, got {text}")
     return tuple(seeds)
 
 

@@ -104,8 +104,8 @@ def summarize(results: Sequence[RunResult]) -> Summary:
     counted = [r for r in results if r["outcome"] != REFUSED]
     complete = [r for r in counted if r["outcome"] != CRASHED]
     successes = [r for r in complete if r.get("success")]
-    arrival_errors = _values(successes, "arrival_error_deg")
-    metres = fsum(_values(complete, "path_length_m"))
+    arrival_errors = measured(successes, "arrival_error_deg")
+    metres = fsum(measured(complete, "path_length_m"))
 
     def proportion(runs: Sequence[RunResult], test: Callable[[RunResult], bool]) -> Proportion:
         return Proportion.counted(sum(map(test, runs)), len(runs))
@@ -133,7 +133,7 @@ def summarize(results: Sequence[RunResult]) -> Summary:
         quantities={
             key: Distribution.of(values)
             for key in QUANTITIES
-            if (values := _values(successes if key in OF_SUCCESSES else complete, key))
+            if (values := measured(successes if key in OF_SUCCESSES else complete, key))
         },
     )
 
@@ -157,5 +157,6 @@ def worst_first(results: Sequence[RunResult]) -> list[RunResult]:
     return sorted((r for r in results if r["outcome"] != REFUSED), key=badness)
 
 
-def _values(results: Sequence[RunResult], key: str) -> list[float]:
+def measured(results: Sequence[RunResult], key: str) -> list[float]:
+    """Return the values of a metric in the runs that have it."""
     return [float(r[key]) for r in results if r.get(key) is not None]

@@ -16,52 +16,6 @@ from hsr8.scenario.loader import load_scenario
 
 TINY = ["--body", "kinematic", "--camera", "analytic"]
 FAST = ["sweep", "quick", *TINY, "--duration", "0.3", "--quiet"]
-GOOD = {
-    "success": True,
-    "collisions": 0,
-    "falls": 0,
-    "path_length_m": 2.0,
-    "min_clearance_m": 0.2,
-    "exit_reason": "goal",
-}
-
-
-class Instant:
-    """Executor whose runs succeed at once, except for the outcomes by seed."""
-
-    def __init__(self, outcomes):
-        self.outcomes, self.queue, self.ran = outcomes, [], []
-        self.closed = False
-
-    def submit(self, job):
-        self.queue.append(job)
-        self.ran.append(job)
-
-    def wait(self, seconds):
-        job = self.queue.pop(0)
-        outcome = self.outcomes.get(job.seed, "passed")
-        if isinstance(outcome, BaseException):
-            raise outcome
-        if callable(outcome):
-            outcome()
-        result = {"seed": job.seed, "outcome": outcome, "attempts": job.attempt, "worker": "here"}
-        return [(job, result | (GOOD if outcome in ("passed", "failed") else {"error": "oh no"}))]
-
-    def close(self):
-        self.closed = True
-
-
-@pytest.fixture
-def instant(monkeypatch, tmp_path):
-    """Replace the executor; the command runs in `tmp_path`."""
-    monkeypatch.chdir(tmp_path)
-
-    def use(outcomes=None):
-        executor = Instant(outcomes or {})
-        monkeypatch.setattr("hsr8.cli.sweep_runs.open_executor", lambda name, workers: executor)
-        return executor
-
-    return use
 
 
 def test_two_workers_give_the_states_of_single_runs(tmp_path, capsys):
@@ -284,5 +238,6 @@ def test_the_examples_of_the_documentation_work(instant, monkeypatch, capsys):
 def test_the_seed_is_not_a_setting_of_a_sweep(instant, capsys, option):
     assert entry([*FAST, "--seeds", "0:2", option, "seed=1"]) == 2
     assert (
-        f"{option}: the seed is not a setting, got seed=1; use --seeds" in capsys.readouterr().err
+        f"{option}: the seed is not a setting, got seed=1; expected --seeds"
+        in capsys.readouterr().err
     )

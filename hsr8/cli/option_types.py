@@ -1,0 +1,67 @@
+"""Types of command-line options."""
+
+from collections.abc import Callable
+from pathlib import Path
+from typing import Annotated, Any, Literal
+
+from tyro.conf import Positional, UseAppendAction, arg
+from tyro.constructors import PrimitiveConstructorSpec
+
+
+def _optional(
+    kind: Callable[[str], Any], metavar: str, choices: tuple[str, ...] | None = None
+) -> PrimitiveConstructorSpec[Any]:
+    """Parse one value of an option whose default is None; the word ``None`` is not a value."""
+    return PrimitiveConstructorSpec(
+        nargs=1,
+        metavar=metavar,
+        instance_from_str=lambda words: kind(words[0]),
+        is_instance=lambda value: value is not None,
+        str_from_instance=lambda value: [str(value)],
+        choices=choices,
+    )
+
+
+def _choice(*choices: str) -> PrimitiveConstructorSpec[Any]:
+    return _optional(str, f"{{{','.join(choices)}}}", choices)
+
+
+NO_DEFAULT = arg(help_behavior_hint="")  # in the help
+Integer = Annotated[int | None, _optional(int, "N"), NO_DEFAULT]
+Number = Annotated[float | None, _optional(float, "X"), NO_DEFAULT]
+Seconds = Annotated[float | None, _optional(float, "S"), NO_DEFAULT]
+Text = Annotated[str | None, _optional(str, "TEXT"), NO_DEFAULT]
+File = Annotated[Path | None, _optional(Path, "FILE"), NO_DEFAULT]
+Body = Annotated[Literal["full", "kinematic"] | None, _choice("full", "kinematic"), NO_DEFAULT]
+Camera = Annotated[
+    Literal["rendered", "analytic", "neck-reach", "omnidirectional"] | None,
+    _choice("rendered", "analytic", "neck-reach", "omnidirectional"),
+    NO_DEFAULT,
+]
+Level = Annotated[
+    Literal["minimal", "standard", "full"] | None,
+    _choice("minimal", "standard", "full"),
+    NO_DEFAULT,
+]
+View = Annotated[Literal["native", "web"] | None, _choice("native", "web"), NO_DEFAULT]
+Flag = Annotated[bool, NO_DEFAULT]
+Scenario = Positional[
+    Annotated[str, arg(metavar="SCENARIO", help="name (see `hsr8 list`) or TOML file")]
+]
+RobotName = Positional[
+    Annotated[str, arg(metavar="ROBOT", help="name (see `hsr8 robot list`) or description file")]
+]
+RunPath = Positional[
+    Annotated[Path, arg(metavar="RUN", help="run folder, or a parent folder for its newest run")]
+]
+SETTINGS = arg(
+    metavar="KEY=VALUE",
+    help="Any setting, such as world.n_moving=8; may be repeated.",
+    help_behavior_hint="",
+)
+Settings = UseAppendAction[Annotated[tuple[tuple[str, ...], ...], SETTINGS]]
+Values = UseAppendAction[
+    Annotated[tuple[tuple[str, ...], ...], arg(metavar="KEY=V1,V2,...", help_behavior_hint="")]
+]
+Json = Annotated[bool, arg(help="Print one JSON object on standard output.", help_behavior_hint="")]
+Quiet = Annotated[bool, arg(help="Print neither progress nor results.", help_behavior_hint="")]

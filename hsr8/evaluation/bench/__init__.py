@@ -1,0 +1,1 @@
+"""The benchmark: suites, entries, their scores and their comparison."""

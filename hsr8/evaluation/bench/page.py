@@ -1,0 +1,129 @@
+"""Pages of Markdown: one entry, a table of several, and a comparison of two."""
+
+from collections.abc import Sequence
+
+from hsr8.errors import UsageError
+from hsr8.evaluation.bench.comparison import (
+    EntryComparison,
+    compare_entries,
+    differing,
+    require_same_suite,
+)
+from hsr8.evaluation.bench.entry import ALL, Entry
+from hsr8.evaluation.bench.score import Score
+from hsr8.evaluation.comparison_page import difference_table
+from hsr8.evaluation.proportion import Proportion
+
+SCORES = (
+    *("collisions [%]", "timeouts [%]", "falls [%]", "SPL", "T*/T", "min clearance [m]"),
+    *("head travel [rad/s]", "time [s]"),
+)
+SHOWN = ("hsr8", "code", "mujoco", "numpy", "scipy", "pin", "processor", "arithmetic")
+STATED = ("robot.body", "camera.source", "camera.preset")  # settings named with an entry
+
+
+def entry_page(entry: Entry) -> str:
+    """Return the page of one entry: a line per family."""
+    lines = [f"# {entry.name} in {_suite(entry)}, {entry.seeds} seeds", "", f"    {entry.command}"]
+    lines += ["", f"{_versions(entry)}.", "", *_settings(entry)]
+    head = ("family", "runs", "success", "95 % interval", *SCORES)
+    rows = [
+        (name, str(part.runs), *_success(part.success), *_cells(part))
+        for name, part in entry.scores().items()
+    ]
+    return "\n".join([*lines, *_table(head, rows), ""])
+
+
+def entries_table(entries: Sequence[Entry]) -> list[str]:
+    """Return the lines of a table with a line per entry, and the command of each.
+
+    Args:
+        entries: of one suite; the first is the reference of the paired differences.
+
+    Raises:
+        UsageError: the entries are not comparable.
+    """
+    first = entries[0]
+    for entry in entries:
+        require_same_suite(first, entry)
+        if entry.seeds != first.seeds:
+            raise UsageError(
+                f"{entry.name}: other seeds, got {entry.seeds}; expected {first.seeds}"
+            )
+    families = list(first.runs)
+    difference = f"difference from {first.name} [points], p"
+    head = ("entry", "success", "95 % interval", difference, *families, *SCORES)
+    rows = []
+    for entry in entries:
+        scores = entry.scores()
+        pair = "" if entry is first else compare_entries(first, entry).metrics[0].points()
+        counts = [f"{scores[f].success.count} of {scores[f].runs}" for f in families]
+        whole = scores[ALL]
+        rows.append((_name(entry), *_success(whole.success), pair, *counts, *_cells(whole)))
+    lines = [f"{_suite(first)}, {first.seeds} seeds. {_versions(first)}.", "", *_table(head, rows)]
+    lines += ["", *_table(("entry", "command"), [(e.name, f"`{e.command}`") for e in entries])]
+    return lines
+
+
+def comparison_page(comparison: EntryComparison, command: str) -> str:
+    """Return the page of a comparison; `command` repeats it."""
+    a, b = comparison.a, comparison.b
+    lines = [f"# {b.name} against {a.name}", "", f"    {command}", ""]
+    lines += [f"- {_suite(a)}, {len(comparison.worlds)} common worlds"]
+    lines += [f"- {side}: {entry.name}, `{entry.command}`" for side, entry in (("A", a), ("B", b))]
+    changed = [(f"`{key}`", *pair) for key, pair in differing(a, b).items()]
+    lines += ["", *(_table(("differs", "A", "B"), changed) if changed else _equal()), ""]
+    rows = [
+        (f, str(d.n), f"{100 * d.a:.1f} %", f"{100 * d.b:.1f} %", d.points())
+        for f, d in comparison.families.items()
+    ]
+    lines += _table(("success in", "n", "A", "B", "B - A [points], p (McNemar)"), rows)
+    return "\n".join([*lines, "", *difference_table(comparison.metrics), ""])
+
+
+def _equal() -> list[str]:
+    return ["Settings and versions are equal."]
+
+
+def _suite(entry: Entry) -> str:
+    return f"suite {entry.suite} {entry.suite_version} ({entry.suite_hash})"
+
+
+def _versions(entry: Entry) -> str:
+    known = [f"{name} {entry.versions[name]}" for name in SHOWN if entry.versions.get(name)]
+    return ", ".join(known)
+
+
+def _settings(entry: Entry) -> list[str]:
+    if not entry.settings:
+        return ["All settings are those of the standard.", ""]
+    rows = [(f"`{key}`", old, new) for key, (old, new) in entry.settings.items()]
+    return [*_table(("setting", "standard", "entry"), rows), ""]
+
+
+def _name(entry: Entry) -> str:
+    """Return the name of an entry, with body and camera unless they are the standard."""
+    changed = [f"{key}={entry.settings[key][1]}" for key in STATED if key in entry.settings]
+    return f"{entry.name} ({', '.join(changed)})".replace('"', "") if changed else entry.name
+
+
+def _success(success: Proportion) -> tuple[str, str]:
+    interval = f"{100 * success.low:.1f} to {100 * success.high:.1f} %"
+    return f"{100 * success.fraction:.1f} %", interval
+
+
+def _cells(part: Score) -> list[str]:
+    rates = [f"{100 * p.fraction:.1f}" for p in (part.collision, part.timeout, part.fall)]
+    ratios = ["" if v is None else f"{v:.3f}" for v in (part.spl, part.optimal_time_ratio)]
+    medians = [
+        f"{part.quantities[key].median:.{digits}f}" if key in part.quantities else ""
+        for key, digits in (("min_clearance_m", 3), ("head_travel_radps", 2), ("time_to_goal_s", 1))
+    ]
+    return [*rates, *ratios, *medians]
+
+
+def _table(head: Sequence[str], rows: Sequence[Sequence[str]]) -> list[str]:
+    lines = [
+        "| " + " | ".join(c.replace("|", "\\|") for c in cells) + " |" for cells in (head, *rows)
+    ]
+    return [lines[0], "|---" * len(head) + "|", *lines[1:]]

@@ -1,0 +1,92 @@
+"""Score of an entry in one family or in all."""
+
+from collections.abc import Callable, Sequence
+from dataclasses import asdict, dataclass
+from typing import Any
+
+from hsr8.evaluation.efficiency import optimal_time_ratio, spl
+from hsr8.evaluation.proportion import Proportion
+from hsr8.evaluation.sums import mean
+from hsr8.evaluation.sweep.job import CRASHED, REFUSED, RunResult
+from hsr8.evaluation.sweep.summary import Distribution, measured
+
+QUANTITIES = ("min_clearance_m", "head_travel_radps", "time_to_goal_s")
+
+
+@dataclass(frozen=True, slots=True)
+class Score:
+    """Score of runs.
+
+    Attributes:
+        runs: number of runs; crashed and diverged ones count as failures.
+        refused: number of seeds without a run, for example without a valid world.
+        success: of all runs.
+        collision: runs with at least one collision, of the runs that did not crash.
+        timeout, fall: of the runs that did not crash.
+        spl: success weighted by path length, mean of all runs [1]; None without runs.
+        optimal_time_ratio: success times certified over actual time, mean of all runs [1].
+        quantities: distribution of `QUANTITIES`; times are those of the successes.
+    """
+
+    runs: int
+    refused: int
+    success: Proportion
+    collision: Proportion
+    timeout: Proportion
+    fall: Proportion
+    spl: float | None
+    optimal_time_ratio: float | None
+    quantities: dict[str, Distribution]
+
+    def to_json(self) -> dict[str, Any]:
+        """Return plain values by name."""
+        return asdict(self)
+
+
+def score(results: Sequence[RunResult]) -> Score:
+    """Return the score of runs with the metrics of a sweep."""
+    runs = [scored(r) for r in results if r["outcome"] != REFUSED]
+    complete = [r for r in runs if r["outcome"] != CRASHED]
+
+    def proportion(of: Sequence[RunResult], test: Callable[[RunResult], Any]) -> Proportion:
+        return Proportion.counted(sum(bool(test(r)) for r in of), len(of))
+
+    successes = [r for r in runs if r["success"]]
+    return Score(
+        runs=len(runs),
+        refused=len(results) - len(runs),
+        success=proportion(runs, lambda r: r["success"]),
+        collision=proportion(complete, lambda r: r["collision"]),
+        timeout=proportion(complete, lambda r: r["timeout"]),
+        fall=proportion(complete, lambda r: r["fall"]),
+        spl=mean(measured(runs, "spl")),
+        optimal_time_ratio=mean(measured(runs, "optimal_time_ratio")),
+        quantities={
+            key: Distribution.of(values)
+            for key in QUANTITIES
+            if (values := measured(successes if key == "time_to_goal_s" else complete, key))
+        },
+    )
+
+
+def scored(result: RunResult) -> RunResult:
+    """Return the result of a run with the quantities of a score.
+
+    A crashed run is a failure without ``collision``, ``timeout`` and ``fall``. A success in a
+    world without a certified path has neither ``spl`` nor ``optimal_time_ratio``.
+    """
+    crashed = result["outcome"] == CRASHED
+    success = not crashed and bool(result.get("success"))
+    ratios: dict[str, float | None] = {"spl": None, "optimal_time_ratio": None}
+    if not success:
+        ratios = dict.fromkeys(ratios, 0.0)
+    elif result.get("certified_time_s") is not None:
+        length, time = result["certified_length_m"], result["certified_time_s"]
+        ratios["spl"] = spl(success, length, result["path_length_m"])
+        ratios["optimal_time_ratio"] = optimal_time_ratio(success, time, result["time_to_goal_s"])
+    rates = {
+        "collision": bool(result.get("collisions")),
+        "timeout": result.get("exit_reason") == "timeout",
+        "fall": bool(result.get("falls")),
+    }
+    return {**result, "success": success, **ratios, **({} if crashed else rates)}

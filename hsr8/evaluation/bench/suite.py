@@ -1,0 +1,157 @@
+"""Suite of a benchmark: families of worlds, seeds and standard settings, from a small TOML file."""
+
+import hashlib
+import json
+import tomllib
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from typing import Annotated, Any
+
+from annotated_types import Interval, Len
+from pydantic import Field, ValidationError
+
+from hsr8.errors import UsageError
+from hsr8.evaluation.sweep.definition import Definition, scenario_differences
+from hsr8.evaluation.sweep.seeds import parse_seeds
+from hsr8.evaluation.sweep.table import flatten
+from hsr8.scenario.loader import dump, load_scenario
+from hsr8.scenario.schema import Scenario
+from hsr8.scenario.section import Section
+
+SHIPPED = Path(__file__).with_name("suite.toml")
+FREE = ("walking", "vision", "belief", "navigation", "plugin", "recorder", "description", "seed")
+"""Sections and keys that do not belong to the suite, with the following exceptions."""
+NOT_FREE = ("walking.head", "navigation.mission.r_via", "navigation.mission.r_goal")
+CONDITIONS = ("robot.body", "camera", "sensors", "walking.head")
+"""Sections and keys of the suite that an entry may change; its results name them."""
+
+Differences = dict[str, tuple[str, str]]
+
+
+class Suite(Section):
+    """Families of worlds with their seeds and the standard robot, body and camera."""
+
+    name: Annotated[str, Len(1, 64), Field(pattern=r"^[A-Za-z0-9][A-Za-z0-9._-]*$")]
+    """Name of the suite."""
+    version: Annotated[int, Interval(ge=1)]
+    """Version; results of different versions are not comparable."""
+    quick: str
+    """Seeds of every family with ``--quick``, such as ``1000:1008``."""
+    full: str
+    """Seeds of every family otherwise."""
+    settings: tuple[str, ...] = ()
+    """Standard settings as KEY=VALUE."""
+    families: Annotated[dict[str, str], Len(min_length=1)]
+    """What each scenario tests, by the scenario's name or its file next to the suite."""
+
+    def paths(self, file: Path) -> dict[str, str]:
+        """Return name or file of every scenario by the name of its family.
+
+        Args:
+            file: of the suite.
+        """
+        return {
+            Path(name).stem: str(file.parent / name) if name.endswith(".toml") else name
+            for name in self.families
+        }
+
+    def scenarios(self, file: Path, settings: Sequence[str] = ()) -> dict[str, Scenario]:
+        """Return the scenario of every family by name.
+
+        Args:
+            file: of the suite.
+            settings: KEY=VALUE, which override those of the suite.
+
+        Raises:
+            ScenarioError: a scenario or a setting is invalid.
+        """
+        words = [*self.settings, *settings]
+        return {name: load_scenario(path, words) for name, path in self.paths(file).items()}
+
+    def digest(self, standard: Mapping[str, Scenario]) -> str:
+        """Return the first digits of the SHA-256 of all that makes results comparable.
+
+        These are name, version, seeds, and of every family the world, mission, robot and camera
+        with all defaults; not the settings of the algorithms.
+
+        Args:
+            standard: scenarios of the suite without settings of an entry.
+        """
+        fixed = {
+            family: {key: value for key, value in _keys(scenario).items() if not _free(key)}
+            for family, scenario in standard.items()
+        }
+        return _sha256([self.name, self.version, self.quick, self.full, fixed])
+
+
+def read_suite(file: Path) -> Suite:
+    """Read a suite.
+
+    Raises:
+        UsageError: the file is not a suite.
+    """
+    try:
+        data = tomllib.loads(file.read_text(encoding="utf-8"))
+        suite = Suite.model_validate_json(json.dumps(data, default=str))
+    except OSError as error:
+        raise UsageError(f"--suite {file}: cannot be read: {error.strerror}") from error
+    except ValidationError as error:
+        lines = [
+            f"{'.'.join(map(str, e['loc']))}: {e['msg'].lower()}, got {e['input']}"
+            for e in error.errors()
+        ]
+        raise UsageError("\n  ".join([f"--suite {file}: not a suite", *lines])) from error
+    except (ValueError, RecursionError) as error:
+        raise UsageError(f"--suite {file}: invalid TOML: {error}") from error
+    for key in ("quick", "full"):
+        parse_seeds(getattr(suite, key), f"--suite {file}: {key}")
+    return suite
+
+
+def changed_settings(
+    standard: Mapping[str, Scenario], scenarios: Mapping[str, Scenario]
+) -> Differences:
+    """Return the settings in which the scenarios of an entry differ from the standard.
+
+    Args:
+        standard: scenarios of the suite.
+        scenarios: those of the entry.
+
+    Raises:
+        UsageError: a setting changes the worlds, the mission or the criteria.
+    """
+    changed: Differences = {}
+    for family, scenario in scenarios.items():
+        one, other = (
+            Definition(family, (), "", "", "", {}, dump(s)) for s in (standard[family], scenario)
+        )
+        changed |= scenario_differences(one, other)
+    wrong = [key for key in changed if not (_free(key) or _within(key, CONDITIONS))]
+    if wrong:
+        lines = [f"{key}: {changed[key][1]}; expected {changed[key][0]}" for key in wrong]
+        raise UsageError("\n  ".join(["--set: settings change the suite, got", *lines]))
+    return changed
+
+
+def scenario_hash(scenario: Scenario) -> str:
+    """Return the first digits of the SHA-256 of a scenario without its seed."""
+    return _sha256(_keys(scenario.with_seed(0)))
+
+
+def _keys(scenario: Scenario) -> dict[str, Any]:
+    return flatten(tomllib.loads(dump(scenario)))
+
+
+def _free(key: str) -> bool:
+    return _within(key, FREE) and not _within(key, NOT_FREE)
+
+
+def _within(key: str, sections: Sequence[str]) -> bool:
+    """Return whether a key, also one of ``[constants]``, belongs to one of `sections`."""
+    key = f"{key.removeprefix('constants.')}."
+    return any(key.startswith(f"{section}.") for section in sections)
+
+
+def _sha256(value: Any) -> str:
+    text = json.dumps(value, sort_keys=True, default=str)
+    return hashlib.sha256(text.encode()).hexdigest()[:12]

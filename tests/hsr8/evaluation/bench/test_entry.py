@@ -1,0 +1,60 @@
+import json
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from hsr8.errors import UsageError
+from hsr8.evaluation.bench.entry import Entry, read_entry
+
+OUTCOMES = st.lists(
+    st.sampled_from(["success", "timeout", "collision", "fall", "crashed", "refused"])
+)
+
+
+@given(
+    course=OUTCOMES,
+    crowd=OUTCOMES,
+    name=st.text(),
+    settings=st.dictionaries(st.text(), st.tuples(st.text(), st.text()), max_size=3),
+)
+def test_the_file_holds_the_whole_entry(make_entry, course, crowd, name, settings):
+    entry = make_entry(name, course, crowd, settings=settings)
+    assert Entry.from_json(json.loads(entry.text())) == entry
+    assert json.loads(entry.text()) == json.loads(json.dumps(entry.to_json()))
+
+
+def test_an_entry_is_read_from_its_folder_or_its_file(make_entry, tmp_path):
+    (tmp_path / "bench.json").write_text(make_entry().text())
+    assert read_entry(tmp_path) == read_entry(tmp_path / "bench.json") == make_entry()
+
+
+def test_all_is_the_score_of_all_families(make_entry):
+    scores = make_entry(course=("success", "timeout"), crowd=("collision",)).scores()
+    assert list(scores) == ["course", "crowd", "all"]
+    assert [part.runs for part in scores.values()] == [2, 1, 3]
+    assert scores["all"].success.count == 1
+
+
+@pytest.mark.parametrize(
+    ("change", "message"),
+    [
+        (lambda value: value.update(format=2), "format: got 2; expected 1"),
+        (lambda value: value.pop("versions"), "versions"),
+        (lambda value: value["runs"]["course"][0].update(outcome="good"), "outcome: got 'good'"),
+        (lambda value: value["runs"]["course"][0].pop("falls"), "runs without falls"),
+        (lambda value: value.update(runs=[1]), "is not an entry"),
+    ],
+)
+def test_other_files_are_refused(make_entry, tmp_path, change, message):
+    value = json.loads(make_entry().text())
+    change(value)
+    file = tmp_path / "bench.json"
+    file.write_text(json.dumps(value))
+    with pytest.raises(UsageError, match=message):
+        read_entry(file)
+
+
+def test_a_missing_file_is_named(tmp_path):
+    with pytest.raises(UsageError, match=r"not an entry of `hsr8 bench`, .*bench.json is missing"):
+        read_entry(tmp_path)
