@@ -69,16 +69,13 @@ say "installing the locked packages (about a minute the first time)"
 say "installing hsr8 itself, editable"
 "${pip[@]}" install -qq --no-deps --no-build-isolation --no-index --editable .
 
-source=rendered
 if ! gl_draws && ! { apt_install libegl1 libgl1 && gl_draws; }; then
     warn "no OpenGL to draw with: camera and videos need it; as root: apt-get install libegl1 libgl1"
-    source=analytic
 fi
 
-say "compiling the kernels (once, about half a minute)"
-env -u MUJOCO_GL "$venv/bin/python" -c "import hsr8
-scenario = hsr8.load_scenario('quick', ['duration=6', 'camera.source=$source'])
-hsr8.Simulation(scenario, scenario.seed).run()"
+"$venv/bin/python" -c '
+from hsr8.cli.kernel_progress import compile_announced
+compile_announced(quiet=False)'
 
 echo "$fingerprint" >"$stamp"
 say "ready after $((SECONDS - started)) s"

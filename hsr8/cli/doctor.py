@@ -7,6 +7,7 @@ import subprocess
 import sys
 from dataclasses import asdict, dataclass
 from pathlib import Path
+from time import perf_counter
 
 from hsr8.cli.options import Doctor
 from hsr8.errors import Hsr8Error
@@ -40,7 +41,7 @@ class Finding:
 
 def main(options: Doctor) -> int:
     """Report the findings; 0 where a full run can be made, else 2."""
-    findings = examine()
+    findings = [*examine(), *([_kernels(options)] if options.compile else [])]
     if options.json:
         print(atomic.dumps({"findings": [asdict(finding) for finding in findings]}))
     else:
@@ -108,6 +109,18 @@ def _requested_opengl(backend: str) -> list[Finding]:
     if renderer is None:
         return [Finding(name, "missing", "is set, but does not draw here: unset MUJOCO_GL")]
     return [Finding(name, "ok", f"is set and draws: {renderer}")]
+
+
+def _kernels(options: Doctor) -> Finding:
+    """Compile the kernels that are not on disk."""
+    from hsr8.cli.kernel_progress import compile_announced  # noqa: PLC0415  loads Numba
+
+    started = perf_counter()
+    compiled = compile_announced(quiet=options.json)
+    text = "all compiled before"
+    if compiled:
+        text = f"{compiled} compiled in {perf_counter() - started:.0f} s"
+    return Finding("kernels", "ok", text)
 
 
 def _models() -> Finding:

@@ -309,6 +309,8 @@ class Schema:
 class Doctor:
     """Check the installation: OpenGL, libraries, models, disk."""
 
+    compile: Flag = False
+    """Also compile the kernels, which the first run does otherwise."""
     json: Json = False
 
 

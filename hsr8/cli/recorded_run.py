@@ -8,6 +8,7 @@ from types import FrameType
 
 from hsr8.cli import report
 from hsr8.cli.crash import crash_report
+from hsr8.cli.kernel_progress import compile_announced
 from hsr8.cli.options import Run
 from hsr8.cli.output_file import writing
 from hsr8.cli.progress import Progress
@@ -15,6 +16,7 @@ from hsr8.cli.termination import like_ctrl_c, on_signals
 from hsr8.evaluation.recording import Recording, Result, renderer_of
 from hsr8.evaluation.verdict import exit_code
 from hsr8.export.bag import require_rosbags, write_bag
+from hsr8.kernel_compilation import CompilationWatch
 from hsr8.loop import Simulation
 from hsr8.recorder.files import atomic
 from hsr8.recorder.log_level import LogLevel
@@ -44,6 +46,11 @@ def start(options: Run, scenario: Scenario, log: LogLevel | None, command: Seque
     """
     if options.bag:
         require_rosbags()
+    with CompilationWatch(lambda: compile_announced(quiet=options.quiet)):
+        return _start(options, scenario, log, command)
+
+
+def _start(options: Run, scenario: Scenario, log: LogLevel | None, command: Sequence[str]) -> int:
     manifest = Manifest.now(scenario.name, scenario.seed, command, renderer_of(scenario))
     simulation = Simulation(scenario, scenario.seed)
     recording = Recording(simulation)

@@ -12,6 +12,7 @@ from hsr8.errors import RecordingFailed
 from hsr8.evaluation import metrics
 from hsr8.evaluation.verdict import Criterion, evaluate_criteria
 from hsr8.gl import require_gl
+from hsr8.kernel_compilation import CompilationWatch
 from hsr8.loop import Simulation
 from hsr8.plugin_file import digests
 from hsr8.record import Tick
@@ -158,6 +159,7 @@ class Recording:
                 listeners=[selection] if self._log is None else [selection, self._log.add],
                 period=self._period,
             )
+            compiling = stack.enter_context(CompilationWatch())
             with suppress(KeyboardInterrupt), ExitStack() as open_:
                 open_.callback(self._note, recorder)
                 open_.callback(self._close_log)
@@ -168,7 +170,7 @@ class Recording:
                     if on_tick is not None:
                         on_tick(tick)
                     diverged = next((e.text for e in tick.events if e.kind == "diverged"), "")
-            wall_time = perf_counter() - self._started
+            wall_time = perf_counter() - self._started - compiling.seconds
         outcome = simulation.outcome()
         results = metrics.metrics(
             selection.tables(),

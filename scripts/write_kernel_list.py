@@ -1,0 +1,32 @@
+"""Write hsr8/kernels.txt: the kernels of a run of `quick`, with the types of their arguments."""
+
+import os
+import subprocess
+import sys
+
+from hsr8.kernel_compilation import LIST
+
+RUN = """
+import sys
+import hsr8
+hsr8.run("quick")
+for name, module in list(sys.modules.items()):
+    if name.endswith("_kernel"):
+        for kernel in vars(module).values():
+            if hasattr(kernel, "py_func") and kernel.__module__ == name:
+                for signature in kernel.stats.cache_hits:
+                    print(f"{name}.{kernel.__name__} {signature}")
+"""
+
+
+def loaded() -> list[str]:
+    """Return the kernels that a run loads from disk after a run that compiled them."""
+    for _ in range(2):
+        done = subprocess.run(
+            [sys.executable, "-c", RUN], capture_output=True, text=True, check=True, env=os.environ
+        )
+    return sorted(done.stdout.splitlines())
+
+
+if __name__ == "__main__":
+    LIST.write_text("\n".join([*loaded(), ""]), encoding="utf-8")
