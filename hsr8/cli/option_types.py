@@ -59,6 +59,13 @@ SETTINGS = arg(
     help="Any setting, such as world.n_moving=8; may be repeated.",
     help_behavior_hint="",
 )
+ENTRY_SETTINGS = arg(
+    metavar="KEY=VALUE",
+    help="A setting, such as navigation.gaze.mode=steps or plugin.planner=mine.py:Mine; may be "
+    "repeated.",
+    help_behavior_hint="",
+)
+EntrySettings = UseAppendAction[Annotated[tuple[tuple[str, ...], ...], ENTRY_SETTINGS]]
 Settings = UseAppendAction[Annotated[tuple[tuple[str, ...], ...], SETTINGS]]
 Values = UseAppendAction[
     Annotated[tuple[tuple[str, ...], ...], arg(metavar="KEY=V1,V2,...", help_behavior_hint="")]

@@ -9,6 +9,7 @@ from tyro.conf import Positional, UseAppendAction, arg, subcommand
 from hsr8.cli.option_types import (
     Body,
     Camera,
+    EntrySettings,
     File,
     Flag,
     Integer,
@@ -125,7 +126,7 @@ class Bench:
     """Only the first seeds of every family: a few minutes on two cores."""
     name: Text = None
     """Name of the entry in tables; default: its settings, or "default"."""
-    set: Settings = ()
+    set: EntrySettings = ()
     body: Body = None
     """Full physics in place of the standard, footsteps that land exactly as planned."""
     camera: Camera = None

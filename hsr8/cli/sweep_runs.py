@@ -171,7 +171,7 @@ def _run(jobs: Sequence[Job], folders: Sequence[SweepFolder], execution: Executi
         folder = by_path[job.folder]
         folder.append(result | {"command": folder.definition.command(job.seed)})
         if progress is not None:
-            progress.on_result(result)
+            progress.on_result(result, folder.path.name if len(folders) > 1 else "")
 
     with ExitStack() as stack:
         if progress is not None:

@@ -30,13 +30,19 @@ class SweepProgress:
             self._live = Live(console=console, auto_refresh=False, transient=True)
             self._live.start()
 
-    def on_result(self, result: RunResult) -> None:
-        """Count a run that ended."""
+    def on_result(self, result: RunResult, sweep: str = "") -> None:
+        """Count a run that ended.
+
+        Args:
+            result: of the run.
+            sweep: name of its sweep, if there are several.
+        """
         self._ended += 1
         self._left -= 1
         self._succeeded += bool(result.get("success"))
         self._crashed += result["outcome"] == CRASHED
-        text = f"seed {result['seed']}: {problem(result) or 'success'}"
+        run = f"{sweep} seed {result['seed']}".lstrip()
+        text = f"{run}: {problem(result) or 'success'}"
         if self._live is None:
             print(f"{self._line()}   {text}", file=sys.stderr, flush=True)
         elif problem(result):
