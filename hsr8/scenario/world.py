@@ -143,8 +143,8 @@ class TrackMover(Section):
     latest_start: RecordedTime | None = None
     """The seed draws the start between `start` and this time in the file; default: `start` [s]."""
     end: Literal["leave", "stay", "repeat"] = "leave"
-    """Before its first and after its last sample, a mover is absent (leave), or waits and stays
-    there (stay); repeat: as leave, and the recording begins again after its end."""
+    """Before and after its samples, a mover is absent (leave), or waits and stays there (stay).
+    repeat: as leave, and the recording begins again after its end."""
 
 
 Mover = Annotated[

@@ -95,6 +95,12 @@ def test_equal_steps_on_a_line_are_walked_at_constant_velocity():
     assert track.speed == pytest.approx(hypot(1.0, 0.5))
 
 
+def test_the_velocity_at_a_sample_has_the_direction_of_the_parabola_through_its_neighbours():
+    times = [0.0, 0.3, 1.2]
+    vx, vy = track_of(times, [(t, 0.5 * t * t) for t in times]).velocity(0.3)
+    assert vy / vx == pytest.approx(0.3)
+
+
 def test_a_turning_point_is_not_overshot():
     track = track_of([0.0, 1.0, 2.0], [(0.0, 0.0), (1.0, 0.0), (0.0, 0.0)])
     assert max(track.position(time)[0] for time in np.linspace(0.0, 2.0, 201).tolist()) == 1.0
