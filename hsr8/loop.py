@@ -18,7 +18,13 @@ from hsr8.frame_record import FrameRecord
 from hsr8.plugin_walker import CustomWalker
 from hsr8.record import Event, RunOutcome, Second, Tick, TickRecord
 from hsr8.robot import Robot, SensorFrame
-from hsr8.robot_builder import build_robot, field_of_view, head_camera, require_planner
+from hsr8.robot_builder import (
+    build_robot,
+    camera_sight,
+    field_of_view,
+    head_camera,
+    require_planner,
+)
 from hsr8.robots.loaded import load_robot
 from hsr8.scenario.schema import Scenario
 from hsr8.seeds import named_rng
@@ -117,6 +123,7 @@ class Simulation:
                 self._camera_rng,
                 self._camera_faults,
                 fov=field_of_view(scenario, optics)[0],
+                sight=camera_sight(scenario),
             )
         self._feed = CameraFeed(camera, named_rng(self.seed, "camera_feed"), self._camera_faults)
         self._record_ticks = round(scenario.recorder.period_ms / 1000 / CONTROL_PERIOD)

@@ -13,7 +13,7 @@ from hsr8.frame_record import FrameRecord, Image
 from navigation.angles import wrap
 from navigation.belief.belief import Belief
 from navigation.decision import GazeDecision, MotionDecision
-from navigation.observation import CameraView, Frame, Observation
+from navigation.observation import CameraView, Frame, Observation, Sight
 from vision.camera import CameraPose
 from vision.detection import Detection
 from vision.parameters import PoseParameters
@@ -78,6 +78,7 @@ class Robot:
     Args:
         walking: walking engine.
         fov: horizontal and vertical field of view of the head camera [rad].
+        sight: what an image must show of an obstacle.
         vision: detector; unused when the frames carry detections.
         pose: uncertainty of the camera pose.
         shutter: exposure time [s].
@@ -92,6 +93,7 @@ class Robot:
         *,
         walking: Walker,
         fov: tuple[float, float],
+        sight: Sight,
         vision: Detector,
         pose: PoseParameters,
         shutter: float,
@@ -101,7 +103,7 @@ class Robot:
         schedule: CommandSource | None = None,
     ) -> None:
         self.walking = walking
-        self._fov = fov
+        self._fov, self._sight = fov, sight
         self._vision = vision
         self._pose = pose
         self._shutter = shutter
@@ -218,6 +220,7 @@ class Robot:
             pan_rate=head.pan_rate,
             tilt_rate=head.tilt_rate,
             blind=head.turn_rate > self._blind_above,
+            sight=self._sight,
         )
 
     def _frame(self, time: float, state: WalkingState, detections: tuple[Detection, ...]) -> Frame:

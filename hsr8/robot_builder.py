@@ -17,6 +17,7 @@ from hsr8.plugin_decisions import PluginGaze, PluginPlanner
 from hsr8.plugin_file import load_plugin
 from hsr8.plugin_walker import CustomWalker, PluginEngine, PluginWalker, RobotInfo
 from hsr8.robot import Robot
+from hsr8.robots.arms import ground_shadow
 from hsr8.robots.loaded import LoadedRobot, load_robot
 from hsr8.scenario.mission import Walk
 from hsr8.scenario.schema import Scenario
@@ -27,6 +28,7 @@ from navigation.belief.estimator import Estimator
 from navigation.gaze.planner import GazePlanner
 from navigation.mission import Mission
 from navigation.motion.landmark_obstacles import LandmarkObstacles
+from navigation.observation import Sight
 from vision.camera import PinholeCamera
 from vision.detector import Detector
 from vision.self_mask import BodyPart
@@ -46,6 +48,14 @@ def field_of_view(scenario: Scenario, camera: PinholeCamera) -> tuple[float, flo
     if scenario.camera.source == "neck-reach":
         return 2.0 * scenario.navigation.gaze.max_pan + camera.horizontal_fov, pi
     return camera.horizontal_fov, camera.vertical_fov
+
+
+def camera_sight(scenario: Scenario) -> Sight:
+    """Return what the robot's camera must show of an obstacle in `scenario`."""
+    humanoid = load_robot(scenario.robot.model)
+    body = humanoid.model
+    height = humanoid.height + float(body.frame_pose(body.tree.camera, body.ready)[1][2])
+    return Sight(scenario.vision.obstacle_height, ground_shadow(humanoid.arms, height))
 
 
 def build_robot(
@@ -73,6 +83,7 @@ def build_robot(
     return Robot(
         walking=build_walker(scenario, walker),
         fov=field_of_view(scenario, camera),
+        sight=camera_sight(scenario),
         vision=Detector(camera, scenario.vision, tuple(BodyPart(*arm) for arm in humanoid.arms)),
         pose=scenario.vision.pose,
         shutter=1e-3 * scenario.camera.shutter_ms,

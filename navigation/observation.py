@@ -2,10 +2,11 @@
 
 from dataclasses import field
 from functools import partial
+from math import pi
 from typing import Literal
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
 from navigation.value import value
 
@@ -49,6 +50,26 @@ class Observation:
 
 
 @value
+class Sight:
+    """What an image must show of an obstacle: its top seen from above, or its foot.
+
+    Attributes:
+        top: height of the obstacles; 0: only the foot counts [m].
+        shadow: distance from the camera up to which the robot's own body hides the floor, in equal
+            steps of the bearing in R, from 0 to the left (n,) [m].
+    """
+
+    top: float = 0.0
+    shadow: Array = field(default_factory=partial(np.zeros, 1))
+
+    def shadow_at(self, bearings: ArrayLike) -> Array:
+        """Return the reach of the shadow at bearings in R [rad], shaped like them [m]."""
+        steps = np.rint(np.asarray(bearings) * (len(self.shadow) / (2.0 * pi))).astype(int)
+        reach: Array = self.shadow[steps % len(self.shadow)]
+        return reach
+
+
+@value
 class CameraView:
     """Pose and field of view of the camera in the robot frame R at the capture of a frame.
 
@@ -61,6 +82,7 @@ class CameraView:
         yaw_sigma: standard deviation of the camera's yaw [rad]. All bearings of the frame share
             this error; their covariances include it.
         blind: whether the camera turned too fast for its image to show anything.
+        sight: what the image must show of an obstacle.
     """
 
     rotation: Array
@@ -73,6 +95,7 @@ class CameraView:
     pan_rate: float = 0.0
     tilt_rate: float = 0.0
     blind: bool = False
+    sight: Sight = Sight()
 
 
 @value

@@ -11,7 +11,13 @@ from math import atan2, cos, degrees, hypot, inf, sin
 from hsr8.decisions import DecisionContext, GazeController, MotionPlanner
 from hsr8.loop import Simulation
 from hsr8.robot import Robot, SensorFrame
-from hsr8.robot_builder import build_decisions, build_robot, field_of_view, head_camera
+from hsr8.robot_builder import (
+    build_decisions,
+    build_robot,
+    camera_sight,
+    field_of_view,
+    head_camera,
+)
 from hsr8.robots.loaded import load_robot
 from hsr8.scenario.schema import Scenario
 from hsr8.seeds import named_rng
@@ -220,6 +226,7 @@ class FastRun:
             named_rng(seed, "camera"),
             CameraFaults(()),
             fov=field_of_view(scenario, optics)[0],
+            sight=camera_sight(scenario),
         )
         self._frame_ticks = max(1, round(1e-3 * scenario.camera.period_ms / TICK))
         self._ticks = round(scenario.duration / TICK)

@@ -19,10 +19,10 @@ from hsr8.recorder.rows import TABLES, FrameRow
 from hsr8.recorder.run.run_reader import Run
 from hsr8.recorder.table import Table
 from hsr8.recorder.table_difference import first_cell
-from hsr8.robot_builder import build_decisions, build_estimator, build_schedule
+from hsr8.robot_builder import build_decisions, build_estimator, build_schedule, camera_sight
 from hsr8.seeds import named_rng
 from hsr8.world.field.generator import draw_layout
-from navigation.observation import CameraView, Frame, Observation
+from navigation.observation import CameraView, Frame, Observation, Sight
 from vision.detection import Detection
 from walking.parameters import CONTROL_PERIOD
 from walking.targets import JointTargets
@@ -136,7 +136,7 @@ def _computed(run: Run) -> Iterator[RecordedFrame]:
     schedule = build_schedule(scenario, named_rng(run.seed, "command"))
     decisions = build_decisions(scenario, layout, run.seed, schedule)
     sampler = FrameSampler(layout.scale)
-    inputs = zip(_inputs(run.frames), run.frames["first_plan"], strict=True)
+    inputs = zip(_inputs(run.frames, camera_sight(scenario)), run.frames["first_plan"], strict=True)
     for index, ((detections, measured, context), first_plan) in enumerate(inputs):
         try:
             estimate = estimator.update(measured)
@@ -159,15 +159,17 @@ def _computed(run: Run) -> Iterator[RecordedFrame]:
         )
 
 
-def _inputs(frames: Table) -> Iterator[tuple[tuple[Detection, ...], Frame, DecisionContext]]:
+def _inputs(
+    frames: Table, sight: Sight
+) -> Iterator[tuple[tuple[Detection, ...], Frame, DecisionContext]]:
     """Yield the inputs of estimator and decisions of every frame."""
     items = frames["detections"]
     columns = [_values(items[field.name]) for field in fields(Detection)]
     detections = (Detection(*values) for values in zip(*columns, strict=True))
     for row, count in enumerate(items.counts.tolist()):
         detected = tuple(islice(detections, count))
-        capture = _view(frames, row, "capture", "capture_")
-        now = _view(frames, row, "camera", "")
+        capture = _view(frames, row, "capture", "capture_", sight)
+        now = _view(frames, row, "camera", "", sight)
         measured = Frame(
             time=float(frames["captured"][row]),
             odometry=frames["capture_odometry"][row],
@@ -184,7 +186,7 @@ def _inputs(frames: Table) -> Iterator[tuple[tuple[Detection, ...], Frame, Decis
         yield detected, measured, context
 
 
-def _view(frames: Table, row: int, camera: str, head: str) -> CameraView:
+def _view(frames: Table, row: int, camera: str, head: str, sight: Sight) -> CameraView:
     pan, tilt = frames[f"{head}head"][row].tolist()
     pan_rate, tilt_rate = frames[f"{head}head_rate"][row].tolist()
     horizontal_fov, vertical_fov = frames["fov"][row].tolist()
@@ -199,6 +201,7 @@ def _view(frames: Table, row: int, camera: str, head: str) -> CameraView:
         pan_rate=pan_rate,
         tilt_rate=tilt_rate,
         blind=bool(frames[f"{head}blind"][row]),
+        sight=sight,
     )
 
 

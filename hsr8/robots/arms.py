@@ -1,5 +1,8 @@
 """Extent of a robot: its arms as spheres for the self mask of vision, its radius and height."""
 
+from collections.abc import Sequence
+from math import asin, atan2, hypot, pi, tan
+
 import mujoco
 import numpy as np
 from numpy.typing import NDArray
@@ -17,6 +20,8 @@ ROUND = (
     mujoco.mjtGeom.mjGEOM_ELLIPSOID,
 )
 SWING = 0.12  # room for the motion of an arm, per distance from the shoulder [1]
+BEARINGS = 72  # steps of the shadow [1]
+FAR = 100.0  # reach of the shadow of an arm that the camera sees above the horizon [m]
 
 
 def arm_spheres(robot: Posed, roles: Roles) -> list[tuple[Array, Array]]:
@@ -37,6 +42,29 @@ def arm_spheres(robot: Posed, roles: Roles) -> list[tuple[Array, Array]]:
         away = np.linalg.norm(centres - data.xanchor[model.joint(shoulder).id], axis=1)
         arms.append((centres, np.array([radius for _, radius in spheres]) + SWING * away))
     return [arm for arm in arms if len(arm[1])]
+
+
+def ground_shadow(arms: Sequence[tuple[Array, Array]], height: float) -> Array:
+    """Return the distance from the camera up to which the arms hide the floor (BEARINGS,) [m].
+
+    Args:
+        arms: see `arm_spheres`; the camera is above their origin.
+        height: of the camera [m].
+    """
+    shadow = np.zeros(BEARINGS)
+    bearings = np.arange(BEARINGS) * 2.0 * pi / BEARINGS
+    for centre, radius in ((c, r) for arm in arms for c, r in zip(*arm, strict=True)):
+        x, y, z = (centre - (0.0, 0.0, height)).tolist()
+        away = hypot(x, y)
+        elevation, half = atan2(z, away), asin(min(1.0, float(radius) / hypot(away, z)))
+        if elevation - half >= 0.0:
+            continue  # above the horizon
+        edge = -(elevation + half)
+        reach = FAR if FAR * tan(edge) <= height else height / tan(edge)
+        off = np.abs((bearings - atan2(y, x) + pi) % (2.0 * pi) - pi)
+        hides = off <= asin(min(1.0, float(radius) / away))
+        shadow[hides] = np.maximum(shadow[hides], reach)
+    return shadow
 
 
 def _seen(model: mujoco.MjModel, geom: int) -> bool:

@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from navigation.belief import visibility_kernel
-from navigation.observation import CameraView
+from navigation.observation import CameraView, Sight
 from navigation.transform import yaw_rotation
 from navigation.value import value
 
@@ -24,6 +24,8 @@ class Viewpoint:
         horizontal_half, vertical_half: half the fields of view [rad]. A horizontal half of pi/2
             or more means a panoramic camera, which also sees up and down.
         range: maximum distance of a detection along the floor, 0 for a blind camera [m].
+        heading: of the robot [rad].
+        sight: what an image must show of an obstacle.
     """
 
     rotation: Array
@@ -31,6 +33,8 @@ class Viewpoint:
     horizontal_half: float
     vertical_half: float
     range: float
+    heading: float = 0.0
+    sight: Sight = Sight()
 
     @classmethod
     def of(cls, view: CameraView, pose: Array, reach: float) -> "Viewpoint":
@@ -52,12 +56,14 @@ class Viewpoint:
             0.5 * view.horizontal_fov,
             0.5 * view.vertical_fov,
             0.0 if view.blind else reach,
+            heading,
+            view.sight,
         )
 
     def in_clear_view(
         self, points: Array, centres: Array, radii: Array, *, margin: float, occlusion_margin: float
     ) -> Mask:
-        """Return whether the foot of an obstacle at each point is in clear view (n,).
+        """Return whether an obstacle at each point is in clear view: its top or its foot (n,).
 
         Args:
             points: in W (n, 2) [m].
@@ -66,9 +72,8 @@ class Viewpoint:
             margin: distance from the border of the image [rad].
             occlusion_margin: enlargement of every disc [m].
         """
-        return visibility_kernel.in_clear_view(
-            points, self.position, self._camera(margin), centres, radii, occlusion_margin
-        )
+        seen_from = self.position, self._camera(margin), self.sight.shadow
+        return visibility_kernel.in_clear_view(points, *seen_from, centres, radii, occlusion_margin)
 
     def observed_cells(
         self, corner: tuple[int, int], cell: float, count: int, centres: Array, radii: Array
@@ -83,12 +88,11 @@ class Viewpoint:
             radii: (m,) [m].
         """
         first = np.array(corner, np.float64)
-        return visibility_kernel.observed_cells(
-            first, cell, count, self.position, self._camera(0.0), centres, radii
-        )
+        seen_from = self.position, self._camera(0.0), self.sight.shadow
+        return visibility_kernel.observed_cells(first, cell, count, *seen_from, centres, radii)
 
     def _camera(self, margin: float) -> visibility_kernel.Camera:
-        """Camera in the format of `visibility_kernel.in_view`, for points of the floor (13)."""
+        """Camera in the format of `visibility_kernel.in_view` (15)."""
         panoramic = self.horizontal_half >= 0.5 * pi
         return (
             *self.rotation.ravel().tolist(),
@@ -98,4 +102,6 @@ class Viewpoint:
             if panoramic
             else tan(max(self.vertical_half - margin, 0.0)),
             float(self.range),
+            self.sight.top - float(self.position[2]) if self.sight.top > 0.0 else 0.0,
+            float(self.heading),
         )

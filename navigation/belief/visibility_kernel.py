@@ -1,5 +1,7 @@
 """Compiled part of visibility: field of view, range and occlusion of points of the floor."""
 
+from math import atan2, pi
+
 import numpy as np
 from numba import njit
 from numpy.typing import NDArray
@@ -13,28 +15,51 @@ UNSEEN, FREE, OCCUPIED = 0, 1, 2
 
 
 @njit(cache=True)
-def in_view(dx: float, dy: float, camera: Camera) -> bool:
-    """Return whether a point projects into the image and lies within range.
-
-    Args:
-        dx: from the camera along x of W [m].
-        dy: from the camera along y [m].
-        camera: rows of R_WC (9,), height of the point above the camera [m], tangents of half
-            the fields of view, and range [m] (13). A panoramic camera has a negative horizontal
-            tangent, then the cosine of half its horizontal field of view.
-    """
-    if dx * dx + dy * dy > camera[12] * camera[12]:
-        return False
-    if camera[10] < 0.0:
-        across = (camera[2] ** 2 + camera[5] ** 2) * (dx * dx + dy * dy)
-        return bool(camera[2] * dx + camera[5] * dy >= camera[11] * across**0.5)
-    dz = camera[9]
+def in_image(dx: float, dy: float, dz: float, camera: Camera) -> bool:
+    """Return whether a point projects into the image; its position from the camera [m]."""
     forward = (camera[2] * dx + camera[8] * dz) + camera[5] * dy
     if forward <= 0.0:
         return False
     right = (camera[0] * dx + camera[6] * dz) + camera[3] * dy
     down = (camera[1] * dx + camera[7] * dz) + camera[4] * dy
     return bool(abs(right) <= camera[10] * forward and abs(down) <= camera[11] * forward)
+
+
+@njit(cache=True)
+def in_shadow(dx: float, dy: float, heading: float, shadow: Array) -> bool:
+    """Return whether the robot's own body hides a point of the floor.
+
+    Args:
+        dx: from the camera along x of W [m].
+        dy: from the camera along y [m].
+        heading: of the robot [rad].
+        shadow: distance up to which the body hides the floor, in equal steps of the bearing (n,).
+    """
+    step = round((atan2(dy, dx) - heading) * len(shadow) / (2.0 * pi))
+    return bool(dx * dx + dy * dy < shadow[int(step) % len(shadow)] ** 2)
+
+
+@njit(cache=True)
+def in_view(dx: float, dy: float, camera: Camera, shadow: Array) -> bool:
+    """Return whether the image shows an obstacle at a point of the floor: its top or its foot.
+
+    Args:
+        dx: from the camera along x of W [m].
+        dy: from the camera along y [m].
+        camera: rows of R_WC (9,), height of the floor above the camera [m], tangents of half
+            the fields of view, range [m], height of the top of an obstacle above the camera, 0
+            where only the foot counts [m], and heading [rad] (15). A panoramic camera has a
+            negative horizontal tangent, then the cosine of half its horizontal field of view.
+        shadow: see `in_shadow`.
+    """
+    if dx * dx + dy * dy > camera[12] * camera[12]:
+        return False
+    if camera[10] < 0.0:
+        across = (camera[2] ** 2 + camera[5] ** 2) * (dx * dx + dy * dy)
+        return bool(camera[2] * dx + camera[5] * dy >= camera[11] * across**0.5)
+    if camera[13] < 0.0 and in_image(dx, dy, camera[13], camera):
+        return True
+    return in_image(dx, dy, camera[9], camera) and not in_shadow(dx, dy, camera[14], shadow)
 
 
 @njit(cache=True)
@@ -78,7 +103,13 @@ def relative_discs(eye: Array, centres: Array, radii: Array, margin: float) -> A
 
 @njit(cache=True)
 def in_clear_view(
-    points: Array, eye: Array, camera: Camera, centres: Array, radii: Array, margin: float
+    points: Array,
+    eye: Array,
+    camera: Camera,
+    shadow: Array,
+    centres: Array,
+    radii: Array,
+    margin: float,
 ) -> Mask:
     """Return whether points of the floor are in view and not occluded (n,).
 
@@ -86,6 +117,7 @@ def in_clear_view(
         points: in W (n, 2) [m].
         eye: position of the camera in W (3,) [m].
         camera: see `in_view`.
+        shadow: see `in_shadow`.
         centres: of the discs in W (m, 2) [m].
         radii: (m,) [m].
         margin: enlargement of every disc [m].
@@ -94,13 +126,20 @@ def in_clear_view(
     clear = np.empty(len(points), np.bool_)
     for i in range(len(points)):
         dx, dy = points[i, 0] - eye[0], points[i, 1] - eye[1]
-        clear[i] = in_view(dx, dy, camera) and not occluded(dx, dy, discs)
+        clear[i] = in_view(dx, dy, camera, shadow) and not occluded(dx, dy, discs)
     return clear
 
 
 @njit(cache=True)
 def observed_cells(
-    corner: Array, cell: float, count: int, eye: Array, camera: Camera, centres: Array, radii: Array
+    corner: Array,
+    cell: float,
+    count: int,
+    eye: Array,
+    camera: Camera,
+    shadow: Array,
+    centres: Array,
+    radii: Array,
 ) -> Marks:
     """Return which cells of a square grid a frame shows.
 
@@ -110,6 +149,7 @@ def observed_cells(
         count: cells along a side.
         eye: position of the camera in W (3,) [m].
         camera: see `in_view`.
+        shadow: see `in_shadow`.
         centres: of the detected discs in W (m, 2) [m].
         radii: (m,) [m].
 
@@ -124,7 +164,7 @@ def observed_cells(
         for column in range(count):
             x = (corner[0] + column + 0.5) * cell
             dx, dy = x - eye[0], y - eye[1]
-            if not in_view(dx, dy, camera):
+            if not in_view(dx, dy, camera, shadow):
                 continue
             for j in range(len(radii)):
                 across, up, reach = x - centres[j, 0], y - centres[j, 1], radii[j] + 0.5 * cell

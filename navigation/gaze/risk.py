@@ -19,6 +19,7 @@ from navigation.gaze.policy import Gaze, GazeContext, GazePolicy
 from navigation.gaze.undetected import Undetected
 from navigation.gaze.view_kernel import view_values
 from navigation.motion.unseen_ground import ground_points
+from navigation.observation import CameraView
 from navigation.obstacle_set import possible_positions
 from navigation.parameters.navigation import NavigationParameters
 from navigation.partial_evaluation import psi_self
@@ -27,6 +28,7 @@ from navigation.transform import points_to_robot, velocity_in_world
 Array = NDArray[np.float64]
 
 ARRIVED = 0.1  # distance from the chosen gaze at which a fixation begins [rad]
+PAN_TOLERANCE = 0.1  # beyond the maximum pan, of a view that a turn moves there [rad]
 MAX_AGE = 1e3  # of ground never seen [s]
 MAX_HALF_FOV = 1.5  # of a panoramic camera, as a pinhole camera [rad]
 
@@ -70,7 +72,7 @@ class RiskGaze(GazePolicy):
 
     def look(self, context: GazeContext, now: Gaze) -> tuple[Array, Gaze]:
         p, view = self._parameters.gaze.risk, context.scene.belief.view
-        pose = _after_saccade(context, p.saccade_time)
+        pose = context.scene.belief.pose
         half_fov = (0.5 * view.horizontal_fov, 0.5 * view.vertical_fov)
         lens = np.array([tan(min(half, MAX_HALF_FOV) - p.border) for half in half_fov])
         seen_from = (
@@ -80,12 +82,13 @@ class RiskGaze(GazePolicy):
             lens,
             np.array([view.pan, view.pan_rate, view.tilt, view.tilt_rate, *self._neck]),
             np.array([p.look_time, p.max_urgency, p.exponent, p.disc_edge]),
+            self._turn(context),
         )
         values = view_values(self._grid.pan, self._grid.tilt, *seen_from)
         if self._fixates(context.scene.belief, now):
             return values, now
         present = view_values(np.array([now[0]]), np.array([now[1]]), *seen_from)
-        if present[0, 0] >= values.max():
+        if present[0, 0] * self._parameters.gaze.switch_ratio >= values.max():
             return values, now
         row, column = np.unravel_index(int(np.argmax(values)), values.shape)
         return values, (float(self._grid.pan[column]), float(self._grid.tilt[row]))
@@ -98,6 +101,11 @@ class RiskGaze(GazePolicy):
             self._fixated = belief.time
             return False
         return belief.time - self._fixated < self._parameters.gaze.dwell
+
+    def _turn(self, context: GazeContext) -> Array:
+        """Return turn rate of the body, 0 without a neck [rad/s], and maximum pan [rad] (2,)."""
+        rate = 0.0 if context.motion is None or self.steady else float(context.motion.velocity[2])
+        return np.array([rate, self._parameters.gaze.max_pan + PAN_TOLERANCE])
 
     def _looks(self, context: GazeContext, pose: Array) -> Array:
         """Return all looks, see `view_kernel.view_values` (n, 7)."""
@@ -117,7 +125,7 @@ class RiskGaze(GazePolicy):
         twist = np.zeros(3) if motion is None else motion.velocity
         velocity = velocity_in_world(belief.pose, twist)[:2]
         cells = self._undetected.risks(belief.pose[:2], velocity, self._parameters.gaze.risk)
-        return _looks(points_to_robot(pose, cells[:, :2]), cells[:, 2])
+        return _looks(belief.view, points_to_robot(pose, cells[:, :2]), cells[:, 2])
 
     def _path_looks(self, context: GazeContext, pose: Array) -> Array:
         """Return the looks at the ground ahead: its age over the time until the robot is there."""
@@ -128,7 +136,7 @@ class RiskGaze(GazePolicy):
         gap = np.hypot(points[:, 0], points[:, 1]) - self._parameters.univector.s_robot
         rate = 1.0 / (p.look_ratio * np.maximum(p.min_time, gap / self._speed))
         age = np.minimum(belief.local_map.age_at(ahead), MAX_AGE) + p.min_age
-        looks = _looks(points, np.full(len(points), p.path_weight / len(points)))
+        looks = _looks(belief.view, points, np.full(len(points), p.path_weight / len(points)))
         looks[:, 3], looks[:, 4] = age * rate, rate
         return looks
 
@@ -144,7 +152,9 @@ class RiskGaze(GazePolicy):
         reach = self._parameters.gaze.max_pan + 0.5 * belief.view.horizontal_fov
         near &= np.abs(np.arctan2(points[:, 1], points[:, 0])) <= reach
         weights = np.full(int(near.sum()), value / max(1, int(near.sum())))
-        return _looks(points[near], weights, p.beacon_height, -1.0)
+        looks = _looks(belief.view, points[near], weights)
+        looks[:, 5], looks[:, 6] = p.beacon_height, -1.0
+        return looks
 
     def _obstacle_looks(self, context: GazeContext, pose: Array) -> Array:
         """Return the looks at tracks, and at the particles of lost ones.
@@ -174,7 +184,7 @@ class RiskGaze(GazePolicy):
         weights = weights * np.where(static, p.static_weight, 1.0)
         # The side that faces the robot is seen first.
         points *= np.maximum(0.0, 1.0 - 0.5 * radius / np.maximum(distance, radius))[:, None]
-        looks = _looks(points, weights, p.top_height, p.top_credit)
+        looks = _looks(belief.view, points, weights)
         looks[:, 3], looks[:, 4] = age * rate, rate
         return looks[distance <= self._parameters.evaluation.attention_range]
 
@@ -191,17 +201,14 @@ class RiskGaze(GazePolicy):
         return discs
 
 
-def _looks(points: Array, weights: Array, top: float = 0.0, credit: float = 0.0) -> Array:
-    """Return looks of constant value at points in R, see `view_kernel.view_values` (n, 7)."""
-    looks = np.zeros((len(points), 7))
+def _looks(view: CameraView, points: Array, weights: Array) -> Array:
+    """Return looks of constant value at obstacles in R, see `view_kernel.view_values` (n, 7).
+
+    A camera that is not above the obstacles sees their feet only.
+    """
+    looks, sight = np.zeros((len(points), 7)), view.sight
     looks[:, :2], looks[:, 2], looks[:, 3] = points, weights, 1.0
-    looks[:, 5], looks[:, 6] = top, credit
+    looks[:, 5] = sight.top if sight.top < view.position[2] else 0.0
+    shadow = sight.shadow_at(np.arctan2(points[:, 1], points[:, 0]))
+    looks[:, 6] = np.hypot(points[:, 0], points[:, 1]) >= shadow
     return looks
-
-
-def _after_saccade(context: GazeContext, time: float) -> Array:
-    """Return the pose of the robot that has turned for `time` [s] (3,) [m, m, rad]."""
-    pose = context.scene.belief.pose.copy()
-    if context.motion is not None:
-        pose[2] += time * float(context.motion.velocity[2])
-    return pose

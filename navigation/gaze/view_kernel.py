@@ -78,23 +78,22 @@ def visible_part(
     tilt: tuple[float, float],
     lens: Array,
 ) -> float:
-    """Return the value of what an image shows of an upright object, 1 for its foot.
+    """Return the value of what an image shows of an upright object, 1 for its top.
 
     Args:
         ahead: from the camera along the pan [m].
         aside: across the pan [m].
         height: of the camera [m].
         top: height of the top of the object [m].
-        credit: value of the top alone; negative where the image must show foot and top.
+        credit: value of the foot alone; negative where the image must show foot and top.
         tilt: of the camera, its cosine and sine.
         lens: tangents of half the fields of view (2,).
     """
-    if in_image(ahead, aside, -height, tilt, lens):
-        whole = credit >= 0.0 or in_image(ahead, aside, top - height, tilt, lens)
-        return 1.0 if whole else 0.0
-    if credit > 0.0 and in_image(ahead, aside, top - height, tilt, lens):
-        return credit
-    return 0.0
+    if credit < 0.0 and not in_image(ahead, aside, -height, tilt, lens):
+        return 0.0
+    if in_image(ahead, aside, top - height, tilt, lens):
+        return 1.0
+    return credit if credit > 0.0 and in_image(ahead, aside, -height, tilt, lens) else 0.0
 
 
 @njit(cache=True)
@@ -107,23 +106,26 @@ def view_values(
     lens: Array,
     neck: Array,
     limits: Array,
+    turn: Array,
 ) -> Array:
     """Return the value of every view over the time of its saccade and look (tilts, pans) [1/s].
 
     The value of a look is weight x min(max_urgency, base + rate x time)^exponent at the end of
-    the saccade.
+    the saccade. The head keeps the direction of a view while the body turns; a view that it
+    cannot keep until the end of the look is worth nothing.
 
     Args:
         pans: of the views [rad].
         tilts: of the views [rad].
         looks: position in R [m], weight, base, rate [1/s], height of the top [m], and value of a
-            view of the top without the foot, negative where a view must show both (n, 7).
+            view of the foot without the top, negative where a view must show both (n, 7).
         discs: that hide the looks behind them, see `hidden`.
         eye: distance of the camera from the pan axis, and its height [m] (2,).
         lens: tangents of half the fields of view (2,).
         neck: present pan [rad] and its rate [rad/s], the same of the tilt, maximum rate [rad/s]
             and acceleration [rad/s²] (6,).
         limits: duration of a look [s], maximum urgency and its exponent, edge of a disc [m] (4,).
+        turn: turn rate of the body [rad/s] and maximum pan [rad] (2,).
     """
     look_time, max_urgency, exponent, edge = limits
     times = saccade_times(pans, tilts, neck)
@@ -145,8 +147,12 @@ def view_values(
                     values[t, p] += part * weight * urgency**exponent
                 elif part > 0.0:
                     values[t, p] += part * steady
-    rates: Array = values / (times + look_time)
-    return rates
+    for p, pan in enumerate(pans):
+        for t in range(len(tilts)):
+            duration = times[t, p] + look_time
+            kept = abs(pan - turn[0] * duration) <= turn[1]
+            values[t, p] = values[t, p] / duration if kept else 0.0
+    return values
 
 
 @njit(cache=True)

@@ -44,8 +44,6 @@ class RiskParameters:
     fresh_bonus: Annotated[float, "s"] = 3.0
     fresh_hits: int = 8  # number of detections below which they are few [1]
     static_weight: float = 0.12  # weight of static obstacles [1]
-    top_credit: float = 0.7  # value of a view of an obstacle without its foot [1]
-    top_height: Annotated[float, "m"] = 0.17  # of the part of it that such a view shows
     max_disc_age: Annotated[float, "s"] = 1.0  # age up to which an obstacle occludes others
     path_weight: float = 0.3  # weight of the ground ahead [1]
     beacon_weight: float = 1.6  # of all beacons in a view together [1]
@@ -56,4 +54,3 @@ class RiskParameters:
     beacon_height: Annotated[float, "m"] = 0.60  # of a beacon, whole in a view
     disc_edge: Annotated[float, "m"] = 0.14  # distance from an obstacle that it does not hide
     border: float = 0.05  # distance from the border of the image [rad]
-    saccade_time: Annotated[float, "s"] = 0.25  # prediction time of the body's turn

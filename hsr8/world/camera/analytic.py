@@ -1,7 +1,8 @@
 """Analytic camera: detections from the geometry of the cylinders, without rendering.
 
-It needs no OpenGL. Occlusion, image borders, range, noise and missed detections are modelled;
-colours are always recognised. Panoramic cameras differ in their field of view alone.
+It needs no OpenGL. Occlusion, also by the robot's arms, image borders, range, noise and missed
+detections are modelled; colours are always recognised. Panoramic cameras see past the arms, and
+differ else in their field of view alone.
 """
 
 from collections.abc import Sequence
@@ -19,6 +20,7 @@ from hsr8.world.camera.faults import CameraFaults
 from hsr8.world.field.layout import Beacon, Layout, Obstacle
 from hsr8.world.rotation import heading
 from navigation.angles import wrap
+from navigation.observation import Sight
 from vision.camera import PinholeCamera
 from vision.color import COLOR_CLASSES
 from vision.detection import Detection
@@ -55,6 +57,7 @@ class AnalyticCamera:
         rng: generator of noise and misses.
         faults: of the images.
         fov: horizontal field of view, more than that of `camera` if panoramic [rad].
+        sight: what the robot's own body hides.
     """
 
     def __init__(
@@ -66,8 +69,9 @@ class AnalyticCamera:
         faults: CameraFaults,
         *,
         fov: float,
+        sight: Sight,
     ) -> None:
-        self._camera = camera
+        self._camera, self._sight = camera, sight
         self._scale = layout.scale
         self._rng = rng
         self._fault_rng = rng.spawn(1)[0]
@@ -136,6 +140,8 @@ class AnalyticCamera:
                 continue
             x, y = self._positions[i].tolist()
             polar = _polar(x, y, robot)
+            if isinstance(cylinder, Obstacle) and self._behind_body(polar, top=box[1]):
+                continue
             in_sector = not self._panoramic or abs(wrap(polar[1])) <= self._half_fov
             if box[2] and in_sector:
                 detections.append(
@@ -149,6 +155,13 @@ class AnalyticCamera:
                     )
                 )
         return detections
+
+    def _behind_body(self, polar: tuple[float, float], *, top: float) -> bool:
+        """Return whether the robot's body hides the foot of an obstacle whose top is cut off."""
+        distance, bearing = polar
+        if self._panoramic or top > 0.0:
+            return False
+        return distance < float(self._sight.shadow_at(bearing))
 
     def _false_detections(self, robot: Pose, mean: float) -> list[Detection]:
         """Return false detections of obstacles, `mean` on average."""

@@ -1,5 +1,6 @@
 """Compiled against plain Python bit for bit, and against formulas over whole arrays."""
 
+from dataclasses import replace
 from math import tan
 
 import numpy as np
@@ -7,6 +8,7 @@ import pytest
 
 from navigation.belief import visibility_kernel as kernel
 from navigation.belief.visibility import Viewpoint
+from navigation.observation import Sight
 
 
 @pytest.fixture
@@ -15,22 +17,32 @@ def scene(view):
 
     def drawn(seed, *, wide=False):
         rng = np.random.default_rng(seed)
-        camera = view(pan=rng.uniform(-1, 1), tilt=-0.4, hfov=7.0 if wide else 1.5)
+        sight = Sight(0.3, rng.uniform(0.0, 1.5, 36))
+        camera = view(pan=rng.uniform(-1, 1), tilt=-0.6, hfov=7.0 if wide else 1.5, vfov=0.8)
+        camera = replace(camera, sight=sight)
         viewpoint = Viewpoint.of(camera, rng.uniform(-1, 1, 3), 2.5)
         points = rng.uniform(-3, 3, (200, 2))
         centres, radii = rng.uniform(-2, 2, (20, 2)), rng.uniform(0.05, 0.2, 20)
-        return points, viewpoint, viewpoint._camera(0.05), centres, radii
+        return points, viewpoint, (viewpoint._camera(0.05), sight.shadow), centres, radii
 
     return drawn
 
 
 def contained(points, v, margin):
-    d = np.column_stack([points - v.position[:2], np.full(len(points), -v.position[2])])
-    near = np.hypot(d[:, 0], d[:, 1]) <= v.range
+    offset = points - v.position[:2]
+    distance = np.hypot(offset[:, 0], offset[:, 1])
+    bearing = np.arctan2(offset[:, 1], offset[:, 0]) - v.heading
+    foot = distance >= v.sight.shadow_at(bearing)
+    foot &= shown(offset, -v.position[2], v, margin)
+    return (distance <= v.range) & (foot | shown(offset, v.sight.top - v.position[2], v, margin))
+
+
+def shown(offset, up, v, margin):
+    d = np.column_stack([offset, np.full(len(offset), up)])
     right, down, forward = (d @ v.rotation).T
     inside = np.abs(right) <= tan(v.horizontal_half - margin) * forward
     inside &= np.abs(down) <= tan(v.vertical_half - margin) * forward
-    return near & inside & (forward > 0.0)
+    return inside & (forward > 0.0)
 
 
 def hidden(points, v, centres, radii, slack):
@@ -45,10 +57,10 @@ def hidden(points, v, centres, radii, slack):
 def test_compiled_and_plain_agree(scene, wide):
     points, v, camera, centres, radii = scene(0, wide=wide)
     for function, arguments in (
-        (kernel.in_clear_view, (points, v.position, camera, centres, radii, 0.05)),
+        (kernel.in_clear_view, (points, v.position, *camera, centres, radii, 0.05)),
         (
             kernel.observed_cells,
-            (np.array([-9.0, -8.0]), 0.15, 16, v.position, camera, centres, radii),
+            (np.array([-9.0, -8.0]), 0.15, 16, v.position, *camera, centres, radii),
         ),
     ):
         assert np.array_equal(function(*arguments), function.py_func(*arguments))
@@ -58,7 +70,7 @@ def test_compiled_and_plain_agree(scene, wide):
 def test_points_agree_with_the_formulas_over_arrays(scene, seed):
     points, v, camera, centres, radii = scene(seed)
     inside, blocked = contained(points, v, 0.05), hidden(points, v, centres, radii, 0.03)
-    clear = kernel.in_clear_view(points, v.position, camera, centres, radii, 0.03)
+    clear = kernel.in_clear_view(points, v.position, *camera, centres, radii, 0.03)
     assert np.array_equal(clear, inside & ~blocked)
     assert 0 < clear.sum() < inside.sum()
 

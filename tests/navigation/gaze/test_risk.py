@@ -113,16 +113,20 @@ def test_the_gaze_map_turns_with_the_world(belief, track, limits, task):
         assert turned.gaze_map == pytest.approx(plain.gaze_map)
 
 
-def test_a_turning_body_looks_where_the_obstacle_will_be(belief, track, limits, task):
-    side = belief([track((0.0, 0.9), (0.0, -0.1), age=2.0)])
+def test_a_turning_body_does_not_look_where_the_neck_cannot_stay(belief, track, limits, task):
+    """The head keeps its direction while the body turns, up to the limit of the neck."""
+    aside = belief([track((-0.2, 0.7), (0.1, 0.0), age=2.0)])
 
-    def centre(turn_rate):
+    def extremes(turn_rate):
         gaze = GazePlanner(known(), limits, {}, FOV, NECK)
         motion = MotionDecision(np.array([0.0, 0.0, turn_rate]))
-        columns = gaze.choose(side, task(), motion).gaze_map.max(axis=0)
-        return np.average(gaze.grid.pan, weights=columns > 0.0)
+        seen = gaze.choose(aside, task(), motion).gaze_map.max(axis=0) > 0.0
+        return gaze.grid.pan[seen].min(), gaze.grid.pan[seen].max()
 
-    assert centre(0.8) < centre(0.0) <= centre(-0.8)
+    still = extremes(0.0)
+    assert extremes(0.8) == still
+    assert extremes(-0.8)[0] == still[0]
+    assert extremes(-0.8)[1] < still[1] - 0.2
 
 
 def test_the_gaze_stays_where_no_other_view_is_worth_the_saccade(belief, track, limits, task, view):

@@ -47,9 +47,13 @@ def look(x, y, weight=1.0, base=1.0, rate=0.0, *, top=0.0, credit=0.0):
     return np.array([[x, y, weight, base, rate, top, credit]])
 
 
-def values(looks, *, pans=(0.0,), tilts=(-0.4,), discs=NO_DISCS, neck=(0.0, 0.0, -0.4, 0.0)):
+STILL = (0.0, 0.0, -0.4, 0.0)
+
+
+def values(looks, *, pans=(0.0,), tilts=(-0.4,), discs=NO_DISCS, neck=STILL, turn=(0.0, 1.6)):
     motion = np.array([*neck, RATE, ACCELERATION])
-    return view_values(np.array(pans), np.array(tilts), looks, discs, EYE, LENS, motion, LIMITS)
+    views = np.array(pans), np.array(tilts)
+    return view_values(*views, looks, discs, EYE, LENS, motion, LIMITS, np.array(turn))
 
 
 @pytest.mark.parametrize("pan", [-1.2, 0.0, 0.6])
@@ -102,14 +106,26 @@ def test_a_disc_hides_what_is_behind_it_but_not_itself_or_a_beacon():
     assert values(beacon, discs=disc, tilts=[-0.2], neck=(0.0, 0.0, -0.2, 0.0))[0, 0] > 0.0
 
 
-def test_a_top_alone_has_its_credit_and_a_beacon_must_be_whole():
+@pytest.mark.parametrize("rate", [-0.8, 0.8])
+def test_a_view_that_the_turning_body_moves_out_of_reach_is_worth_nothing(rate):
+    ring = np.vstack([look(np.cos(a), np.sin(a)) for a in np.linspace(-1.9, 1.9, 40)])
+    pans = np.linspace(-1.5, 1.5, 31)
+    still, turning = (values(ring, pans=pans, turn=(r, 1.5))[0] for r in (0.0, rate))
+    times = np.array([move_time(pan, 0.0, RATE, ACCELERATION) for pan in pans]) + LIMITS[0]
+    kept = np.abs(pans - rate * times) <= 1.5
+    assert 0 < kept.sum() < len(pans)
+    assert turning == pytest.approx(np.where(kept, still, 0.0))
+
+
+def test_a_foot_alone_has_its_credit_and_a_beacon_must_be_whole():
     def part(distance, tilt, top, credit):
         tilted = (np.cos(tilt), np.sin(tilt))
         return visible_part(distance, 0.0, EYE[1], top, credit, tilted, LENS)
 
-    assert part(0.3, -0.9, 0.17, 0.7) == 1.0
-    assert part(0.3, -0.3, 0.17, 0.7) == 0.0
-    assert part(0.5, -0.2, 0.17, 0.7) == 0.7
-    assert part(0.5, -0.2, 0.17, 0.0) == 0.0
+    assert part(0.3, -0.9, 0.40, 0.7) == 0.7
+    assert part(0.3, -0.9, 0.40, 0.0) == 0.0
+    assert part(0.3, -0.3, 0.40, 0.7) == 0.0
+    assert part(0.5, -0.2, 0.40, 0.7) == 1.0
+    assert part(0.5, -0.2, 0.40, 0.0) == 1.0
     assert part(3.0, 0.0, 0.6, -1.0) == 1.0
     assert part(3.0, -0.5, 0.6, -1.0) == 0.0

@@ -9,9 +9,11 @@ from hsr8.world.body.kinematic import KinematicBody
 from hsr8.world.camera.analytic import AnalyticCamera
 from hsr8.world.camera.faults import CameraFaults
 from hsr8.world.field.layout import Obstacle
+from navigation.observation import Sight
 from vision.camera import PinholeCamera
 
 AHEAD = Camera(source="analytic")
+OPEN = Sight()
 CAMERA = PinholeCamera.from_vertical_fov(320, 240, np.radians(70.0))
 
 
@@ -19,13 +21,23 @@ CAMERA = PinholeCamera.from_vertical_fov(320, 240, np.radians(70.0))
 def see(world, silent):
     """Detections over many frames of a robot that looks down a little."""
 
-    def make(*obstacles, start=(0.0, 0.0, 0.0), frames=60, tilt=-0.35, settings=AHEAD):
+    def make(
+        *obstacles,
+        start=(0.0, 0.0, 0.0),
+        frames=60,
+        pan=0.0,
+        tilt=-0.35,
+        settings=AHEAD,
+        sight=OPEN,
+    ):
         layout, model = world(*obstacles, start=start)
         body = KinematicBody(model, load_robot("hsr8"), layout, silent, np.random.default_rng(0))
+        body.data.joint("head_pan").qpos[0] = pan
         body.data.joint("head_tilt").qpos[0] = tilt
         fov = {"analytic": CAMERA.horizontal_fov, "neck-reach": 4.2}.get(settings.source, 2.0 * pi)
         rng = np.random.default_rng(1)
-        camera = AnalyticCamera(layout, CAMERA, settings, rng, CameraFaults(), fov=fov)
+        faults = CameraFaults()
+        camera = AnalyticCamera(layout, CAMERA, settings, rng, faults, fov=fov, sight=sight)
         return [camera.capture(body) for _ in range(frames)]
 
     return make
@@ -136,3 +148,20 @@ def test_a_camera_within_reach_of_the_neck_sees_to_both_sides_but_not_behind(see
 
     assert all(seen(angle) for angle in (0.0, 115.0, -115.0))
     assert not any(seen(angle) for angle in (125.0, -125.0, 180.0))
+
+
+@pytest.mark.parametrize("start", [(0.0, 0.0, 0.0), (1.0, -0.5, 2.2)])
+def test_the_body_hides_the_foot_of_an_obstacle_but_not_its_top(see, start):
+    """The shadow of the body counts only where the border of the image cuts the top off."""
+    hidden = Sight(0.3, np.full(72, 0.7))
+
+    def seen_at(distance):
+        angle = start[2] + 1.2
+        x, y = start[0] + distance * np.cos(angle), start[1] + distance * np.sin(angle)
+        return Obstacle((float(x), float(y)), 0.08, 0.3, "red")
+
+    near, far = seen_at(0.5), seen_at(0.85)
+    assert obstacles_in(see(near, start=start, pan=1.2, tilt=-1.0))
+    assert not obstacles_in(see(near, start=start, pan=1.2, tilt=-1.0, sight=hidden))
+    assert obstacles_in(see(near, start=start, pan=1.2, tilt=-0.35, sight=hidden))
+    assert obstacles_in(see(far, start=start, pan=1.2, tilt=-1.0, sight=hidden))
