@@ -62,6 +62,7 @@ class Outcome:
         unaware: part of it without a track of the mover [s].
         head_travel: mean rate of the pan [rad/s].
         sharp: fraction of the frames that showed something [1].
+        legs: fraction of the legs without a contact [1].
         detail: last contact, for people.
     """
 
@@ -73,6 +74,7 @@ class Outcome:
     unaware: float
     head_travel: float
     sharp: float
+    legs: float
     detail: str = ""
 
 
@@ -237,7 +239,7 @@ class FastRun:
             )
         self._near = self._unaware = self._travel = 0.0
         self._frames = self._sharp = 0
-        self._pan = 0.0
+        self._pan, self._leg = 0.0, 0
 
     def run(self) -> Outcome:
         """Walk until the goal, a contact or the time limit."""
@@ -270,6 +272,7 @@ class FastRun:
             unaware=round(self._unaware, 2),
             head_travel=round(self._travel / time, 3),
             sharp=round(self._sharp / max(1, self._frames), 3),
+            legs=1.0 if done else round(self._leg / len(self.layout.waypoints), 3),
             detail=detail,
         )
 
@@ -293,6 +296,7 @@ class FastRun:
         self._pan = pan
         self._frames += 1
         self._sharp += not frame.measured.view.blind
+        self._leg = frame.task.index
         return frame.task.done
 
     def _decide(self, time: float) -> bool:
@@ -304,6 +308,7 @@ class FastRun:
         context = DecisionContext(time, odometry, belief.view, self.engine.steps)
         decision = self._exact.make(belief, frame, context)
         self.robot.command = VelocityCommand(*decision.motion.velocity.tolist())
+        self._leg = decision.task.index
         return decision.task.done
 
     def _watch(self, gaps: Array, time: float) -> None:

@@ -88,7 +88,7 @@ class RiskGaze(GazePolicy):
         if self._fixates(context.scene.belief, now):
             return values, now
         present = view_values(np.array([now[0]]), np.array([now[1]]), *seen_from)
-        if present[0, 0] * self._parameters.gaze.switch_ratio >= values.max():
+        if present[0, 0] * p.switch_ratio >= values.max():
             return values, now
         row, column = np.unravel_index(int(np.argmax(values)), values.shape)
         return values, (float(self._grid.pan[column]), float(self._grid.tilt[row]))
