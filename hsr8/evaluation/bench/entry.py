@@ -4,24 +4,46 @@ import json
 from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any, Self
+from typing import Annotated, Any, Literal, Self
+
+from annotated_types import Interval
+from pydantic import TypeAdapter, ValidationError
 
 from hsr8.errors import UsageError
 from hsr8.evaluation.bench.score import Score, score
 from hsr8.evaluation.sweep.definition import Differences
-from hsr8.evaluation.sweep.job import CRASHED, OUTCOMES, REFUSED, RunResult
+from hsr8.evaluation.sweep.job import RunResult
 from hsr8.recorder.files import atomic
+from hsr8.scenario.section import Section
 
 FILE = "bench.json"  # in the folder of an entry
 FORMAT = 1
 ALL = "all"  # name of the score of all families
-COLUMNS = (
-    *("seed", "outcome", "success", "exit_reason", "collisions", "collisions_moving", "falls"),
-    *("time_to_goal_s", "certified_time_s", "path_length_m", "certified_length_m"),
-    *("min_clearance_m", "head_travel_radps", "state_hash"),
-)
-"""Kept of every run."""
 DIGITS = 4  # of numbers of runs, after the point
+
+Outcome = Literal["passed", "failed", "diverged", "crashed", "refused"]
+Count = Annotated[int, Interval(ge=0)]
+Positive = Annotated[float, Interval(gt=0.0)]
+NotNegative = Annotated[float, Interval(ge=0.0)]
+
+
+class Run(Section):
+    """What an entry keeps of a run; None is not measured."""
+
+    seed: Count
+    outcome: Outcome
+    success: bool | None
+    exit_reason: str | None
+    collisions: Count | None
+    collisions_moving: Count | None
+    falls: Count | None
+    time_to_goal_s: Positive | None
+    certified_time_s: Positive | None
+    path_length_m: NotNegative | None
+    certified_length_m: Positive | None
+    min_clearance_m: float | None
+    head_travel_radps: NotNegative | None
+    state_hash: str | None
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -38,7 +60,7 @@ class Entry:
         settings: settings that differ from the standard, with both values as JSON.
         versions: versions of hsr8, its libraries and plugins.
         scenarios: digest of the scenario by family.
-        runs: results of the runs by family, with `COLUMNS`.
+        runs: results of the runs by family, each a `Run`.
     """
 
     name: str
@@ -96,11 +118,11 @@ class Entry:
         if value["format"] != FORMAT:
             raise ValueError(f"format: got {value['format']}; expected {FORMAT}")
         fields = {key: value[key] for key in cls.__dataclass_fields__}
-        settings = {str(key): (str(a), str(b)) for key, (a, b) in value["settings"].items()}
-        for runs in value["runs"].values():
+        entry = TypeAdapter(cls).validate_json(json.dumps(fields), strict=True)
+        for runs in entry.runs.values():
             for run in runs:
-                _require_result(run)
-        return cls(**fields | {"settings": settings})
+                Run.model_validate(run)
+        return entry
 
 
 def read_entry(path: Path) -> Entry:
@@ -115,20 +137,18 @@ def read_entry(path: Path) -> Entry:
     except FileNotFoundError:
         raise UsageError(f"{path}: not an entry of `hsr8 bench`, {file} is missing") from None
     except OSError as error:
-        raise UsageError(f"{path}: cannot read {file}: {error.strerror}") from error
-    except (ValueError, KeyError, TypeError, AttributeError, RecursionError) as error:
+        raise UsageError(f"{file}: cannot be read: {error.strerror}") from error
+    except ValidationError as error:
+        first = error.errors()[0]
+        key = ".".join(map(str, first["loc"]))
+        text = f"{key}: {first['msg'].lower()}, got {first['input']}"
+        raise UsageError(f"{file}: not an entry of `hsr8 bench`, {text}") from error
+    except (ValueError, KeyError, TypeError, RecursionError) as error:
         text = f"{type(error).__name__}: {error}"
-        raise UsageError(f"{path}: {file} is not an entry of `hsr8 bench`, {text}") from error
+        raise UsageError(f"{file}: not an entry of `hsr8 bench`, {text}") from error
 
 
 def row(result: RunResult) -> RunResult:
     """Return what an entry keeps of the result of a run."""
-    values = {key: result.get(key) for key in COLUMNS}
+    values = {key: result.get(key) for key in Run.model_fields}
     return {k: round(v, DIGITS) if isinstance(v, float) else v for k, v in values.items()}
-
-
-def _require_result(run: RunResult) -> None:
-    if run["outcome"] not in (*OUTCOMES.values(), CRASHED, REFUSED):
-        raise ValueError(f"outcome: got {run['outcome']!r}")
-    if missing := set(COLUMNS) - run.keys():
-        raise ValueError(f"runs without {', '.join(sorted(missing))}")

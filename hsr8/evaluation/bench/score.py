@@ -77,16 +77,26 @@ def scored(result: RunResult) -> RunResult:
     """
     crashed = result["outcome"] == CRASHED
     success = not crashed and bool(result.get("success"))
-    ratios: dict[str, float | None] = {"spl": None, "optimal_time_ratio": None}
+    ratios: dict[str, float | None] = {
+        "spl": _ratio(spl, result, "certified_length_m", "path_length_m"),
+        "optimal_time_ratio": _ratio(
+            optimal_time_ratio, result, "certified_time_s", "time_to_goal_s"
+        ),
+    }
     if not success:
         ratios = dict.fromkeys(ratios, 0.0)
-    elif result.get("certified_time_s") is not None:
-        length, time = result["certified_length_m"], result["certified_time_s"]
-        ratios["spl"] = spl(success, length, result["path_length_m"])
-        ratios["optimal_time_ratio"] = optimal_time_ratio(success, time, result["time_to_goal_s"])
     rates = {
         "collision": bool(result.get("collisions")),
         "timeout": result.get("exit_reason") == "timeout",
         "fall": bool(result.get("falls")),
     }
     return {**result, "success": success, **ratios, **({} if crashed else rates)}
+
+
+def _ratio(
+    measure: Callable[[bool, float, float], float], result: RunResult, shortest: str, actual: str
+) -> float | None:
+    """Return a measure of a success; None if a metric is missing."""
+    if result.get(shortest) is None or result.get(actual) is None:
+        return None
+    return measure(True, result[shortest], result[actual])

@@ -175,7 +175,7 @@ def test_invalid_options_are_one_message(bench, capsys, more, message):
         ("compare a", "B"),
         ("compare a a", "a: not an entry of `hsr8 bench`, a is missing"),
         ("compare . .", "not an entry of `hsr8 bench`, bench.json is missing"),
-        ("compare mine.py mine.py", "mine.py: mine.py is not an entry"),
+        ("compare mine.py mine.py", "mine.py: not an entry"),
         ("compar a b", "Unrecognized options: compar"),
     ],
 )

@@ -41,9 +41,13 @@ def test_all_is_the_score_of_all_families(make_entry):
     [
         (lambda value: value.update(format=2), "format: got 2; expected 1"),
         (lambda value: value.pop("versions"), "versions"),
-        (lambda value: value["runs"]["course"][0].update(outcome="good"), "outcome: got 'good'"),
-        (lambda value: value["runs"]["course"][0].pop("falls"), "runs without falls"),
-        (lambda value: value.update(runs=[1]), "is not an entry"),
+        (lambda value: value.update(suite_version="1"), "suite_version: .*, got 1"),
+        (lambda value: value.update(settings={"a": ["b"]}), "settings.a"),
+        (lambda value: value["runs"]["course"][0].update(outcome="good"), "outcome: .*, got good"),
+        (lambda value: value["runs"]["course"][0].update(path_length_m="far"), "got far"),
+        (lambda value: value["runs"]["course"][0].update(time_to_goal_s=0.0), "got 0.0"),
+        (lambda value: value["runs"]["course"][0].pop("falls"), "falls: field required"),
+        (lambda value: value.update(runs=[1]), "runs: input should be"),
     ],
 )
 def test_other_files_are_refused(make_entry, tmp_path, change, message):
