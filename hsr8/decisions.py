@@ -40,13 +40,17 @@ class Situation:
         belief: the estimate, predicted to the time of the decision.
         task: current destination.
         context: state of the robot.
+        motion: latest motion decision; None before the first.
         motion_due: whether a motion is decided, once per footstep.
+        image: that arrived (height, width, 3); None with an analytic camera.
     """
 
     belief: Belief
     task: Task
     context: DecisionContext
+    motion: MotionDecision | None
     motion_due: bool
+    image: NDArray[np.uint8] | None = None
 
 
 @value
@@ -122,6 +126,7 @@ class Decisions:
         self._landmarks = landmarks
         self._footstep = footstep
         self._motion: MotionDecision | None = None
+        self._fresh = True
         self._look: float | None = None
         self._planned_at = -np.inf
         self._planned_step = -1
@@ -146,7 +151,7 @@ class Decisions:
         task = self._mission.update(belief.pose)
         elapsed = context.time - self._planned_at
         due = context.step_count != self._planned_step or elapsed >= self._footstep
-        return Situation(belief, task, context, motion_due=due or self._motion is None)
+        return Situation(belief, task, context, self._motion, motion_due=due or self._fresh)
 
     def decide(
         self,
@@ -163,7 +168,8 @@ class Decisions:
             motion: replaces the decision of the motion planner, if one is due.
             gaze: replaces the decision of the gaze planner.
         """
-        belief, task, fresh = situation.belief, situation.task, self._motion is None
+        belief, task = situation.belief, situation.task
+        fresh, self._fresh = self._fresh, False
         if situation.motion_due or self._motion is None:
             avoided = self._landmarks.added_to(belief)
             self._motion = motion or self._planner.plan(avoided, task, self._look)
@@ -174,5 +180,5 @@ class Decisions:
         return Decision(belief, task, self._motion, gaze, fresh)
 
     def forget(self) -> None:
-        """Drop the motion decision in force."""
-        self._motion, self._look = None, None
+        """Decide motion again at the next frame."""
+        self._fresh, self._look = True, None

@@ -13,13 +13,28 @@ from numpy.typing import NDArray
 
 from hsr8.decisions import GazeController, MotionPlanner
 from hsr8.errors import UsageError
+from hsr8.plugin_file import start_plugin
 from hsr8.plugin_method import PluginMethod, number, numbers, shown
 from navigation.belief.belief import Belief
-from navigation.decision import GazeDecision, MotionDecision, Task
+from navigation.decision import GazeDecision, MotionDecision, SpeedLimits, Task
+from walking.value import value
 
 Array = NDArray[np.float64]
 
 VELOCITY = "vx, vy and wz [m/s, m/s, rad/s]"
+
+
+@value
+class Limits:
+    """Limits that a planner or gaze may receive before a run, by its method ``start(limits)``.
+
+    Attributes:
+        speed: of the built-in planners.
+        neck: lower and upper limit of pan and tilt (2, 2) [rad].
+    """
+
+    speed: SpeedLimits
+    neck: Array
 
 
 class PluginPlanner:
@@ -27,13 +42,16 @@ class PluginPlanner:
 
     Args:
         planner: user-defined planner.
+        limits: for its optional method `start`.
 
     Raises:
-        UsageError: `planner` has no method plan; from `plan`: the decision is invalid.
+        UsageError: `planner` has no method plan, or its start failed; from `plan`: the decision
+            is invalid.
     """
 
-    def __init__(self, planner: MotionPlanner) -> None:
+    def __init__(self, planner: MotionPlanner, limits: Limits) -> None:
         self._plan = PluginMethod(planner, "planner", "plan(belief, task)", MotionDecision)
+        start_plugin(planner, self._plan.name, limits)
 
     def plan(self, belief: Belief, task: Task, look: float | None = None) -> MotionDecision:
         """Return the validated motion for the next footstep."""
@@ -55,13 +73,16 @@ class PluginGaze:
 
     Args:
         gaze: user-defined gaze.
+        limits: for its optional method `start`.
 
     Raises:
-        UsageError: `gaze` has no method choose; from `choose`: the decision is invalid.
+        UsageError: `gaze` has no method choose, or its start failed; from `choose`: the decision
+            is invalid.
     """
 
-    def __init__(self, gaze: GazeController) -> None:
+    def __init__(self, gaze: GazeController, limits: Limits) -> None:
         self._choose = PluginMethod(gaze, "gaze", "choose(belief, task, motion)", GazeDecision)
+        start_plugin(gaze, self._choose.name, limits)
 
     def choose(self, belief: Belief, task: Task, motion: MotionDecision | None) -> GazeDecision:
         """Return the validated gaze for this frame."""

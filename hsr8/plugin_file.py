@@ -59,6 +59,29 @@ def digests(plugin: "Plugin") -> dict[str, str]:
     return {name: hashlib.sha256(_content(name)).hexdigest()[:12] for name in plugin.named}
 
 
+def start_plugin(plugin: object, name: str, argument: object) -> None:
+    """Call the optional method `start` of a plugin.
+
+    Args:
+        plugin: user-defined object.
+        name: of the plugin, for messages.
+        argument: of the method.
+
+    Raises:
+        UsageError: the method failed.
+    """
+    start = getattr(plugin, "start", None)
+    if start is None:
+        return
+    try:
+        start(argument)
+    except Exception as error:
+        reason = f"{type(error).__name__}: {' '.join(str(error).split())}"
+        line = line_of(error)
+        where = f" ({line})" if line else ""
+        raise UsageError(f"{name}: start failed: {reason}{where}") from error
+
+
 def line_of(error: BaseException) -> str | None:
     """Return the plugin's file and line that raised `error`; None if no plugin did."""
     files = {str(name).removeprefix(PREFIX) for name in sys.modules if name.startswith(PREFIX)}

@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from hsr8.errors import UsageError
-from hsr8.plugin_file import line_of
+from hsr8.plugin_file import start_plugin
 from hsr8.plugin_method import PluginMethod, numbers, shown
 from walking.body.odometry import LegOdometry
 from walking.body.robot_model import RobotModel
@@ -108,16 +108,7 @@ class PluginWalker:
         self._step = PluginMethod(walker, "walker", STEP, object)
         self._reset = getattr(walker, "reset", None)
         self._joints = len(robot.joint_names)
-        start = getattr(walker, "start", None)
-        if start is None:
-            return
-        try:
-            start(robot)
-        except Exception as error:
-            reason = f"{type(error).__name__}: {' '.join(str(error).split())}"
-            line = line_of(error)
-            where = f" ({line})" if line else ""
-            raise UsageError(f"{self._step.name}: start(robot) failed: {reason}{where}") from error
+        start_plugin(walker, self._step.name, robot)
 
     def reset(self) -> None:
         """Prepare for a walk from the ready posture."""

@@ -2,6 +2,7 @@
 
 from collections import deque
 from collections.abc import Callable
+from dataclasses import replace
 from functools import partial
 from operator import attrgetter
 from typing import Protocol
@@ -191,7 +192,7 @@ class Robot:
         self._undecided = partial(
             FrameRecord, self._frames, sensed.time, image, detections, measured, estimate, context
         )
-        return self._decisions.assess(estimate, measured, context)
+        return replace(self._decisions.assess(estimate, measured, context), image=image)
 
     def _wait(self) -> None:
         """Pause perception and decisions: off its feet the robot does not know its camera pose."""

@@ -13,7 +13,7 @@ from hsr8.command_schedule import (
 )
 from hsr8.decisions import Decisions, GazeController, MissionPlanner, MotionPlanner
 from hsr8.errors import ScenarioError, UsageError
-from hsr8.plugin_decisions import PluginGaze, PluginPlanner
+from hsr8.plugin_decisions import Limits, PluginGaze, PluginPlanner
 from hsr8.plugin_file import load_plugin
 from hsr8.plugin_walker import CustomWalker, PluginEngine, PluginWalker, RobotInfo
 from hsr8.robot import Robot
@@ -197,12 +197,12 @@ def build_decisions(
         if planner is None:
             motion = build_planner(navigation, limits, named_rng(seed, "planner"))
         else:
-            motion = PluginPlanner(planner)
+            motion = PluginPlanner(planner, decision_limits(scenario))
     if gaze is None:
         fov = field_of_view(scenario, head_camera(scenario))
         gaze_planner = GazePlanner(navigation, limits, beacons, fov, neck(scenario))
     else:
-        gaze_planner = PluginGaze(gaze)
+        gaze_planner = PluginGaze(gaze, decision_limits(scenario))
     return Decisions(
         mission=mission,
         planner=motion,
@@ -212,6 +212,12 @@ def build_decisions(
         ),
         footstep=limits.footstep,
     )
+
+
+def decision_limits(scenario: Scenario) -> Limits:
+    """Return the limits of motion and gaze of `scenario`."""
+    robot = load_robot(scenario.robot.model).model
+    return Limits(scenario.speed_limits(), robot.neck.range())
 
 
 def require_planner(scenario: Scenario) -> None:

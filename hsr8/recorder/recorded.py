@@ -1,12 +1,15 @@
 """Recorded objects: camera frames with what is recorded only when it is new, and images."""
 
 import hashlib
+from collections.abc import Sequence
+from typing import Any
 
 import cv2
 import numpy as np
 from numpy.typing import NDArray
 
 from hsr8.frame_record import FrameRecord
+from hsr8.record import Tick
 from hsr8.recorder.rows import ImageRow, ParticleRow
 from hsr8.recorder.sampled_field import NO_FIELD, SampledField, sampled
 from hsr8.recorder.throttle import Throttle
@@ -83,6 +86,18 @@ class FrameSampler:
         if frame.motion.field is None or not self._fields.due(frame.time):
             return NO_FIELD
         return sampled(frame.motion.field, frame.belief.pose[:2], frame.task.target, self._scale)
+
+
+def objects_of(ticks: Sequence[Tick], sampler: FrameSampler) -> dict[str, Sequence[Any]]:
+    """Return the recorded objects of each table but the images."""
+    records = [tick.record for tick in ticks if tick.record is not None]
+    return {
+        "ticks": ticks,
+        "records": records,
+        "frames": [sampler.sample(record.frame) for record in records if record.frame is not None],
+        "seconds": [second for tick in ticks for second in tick.seconds],
+        "events": [event for tick in ticks for event in tick.events],
+    }
 
 
 def image_row(frame: FrameRecord, quality: int) -> ImageRow:

@@ -12,7 +12,7 @@ from hsr8.frame_record import FrameRecord
 from hsr8.record import Tick
 from hsr8.recorder.files.writing import writing
 from hsr8.recorder.log_level import LogRates
-from hsr8.recorder.recorded import FrameSampler, image_row
+from hsr8.recorder.recorded import FrameSampler, image_row, objects_of
 from hsr8.recorder.rows import TABLES, ImageRow
 from hsr8.recorder.stream import CHECKSUMS, TableWriter
 from hsr8.recorder.table import Table
@@ -108,17 +108,8 @@ class Recorder:
 
     def _objects_of(self, ticks: Sequence[Tick]) -> dict[str, Iterable[Any]]:
         """Return the recorded objects of each table."""
-        records = [tick.record for tick in ticks if tick.record is not None]
-        frames = [record.frame for record in records if record.frame is not None]
-        images = self._image_rows(frames)
-        return {
-            "ticks": ticks,
-            "records": records,
-            "frames": [*map(self._sampler.sample, frames)],
-            "seconds": [second for tick in ticks for second in tick.seconds],
-            "events": [event for tick in ticks for event in tick.events],
-            "images": images,
-        }
+        objects = objects_of(ticks, self._sampler)
+        return {**objects, "images": self._image_rows([f.frame for f in objects["frames"]])}
 
     def _image_rows(self, frames: Sequence[FrameRecord]) -> Iterable[ImageRow]:
         """Return the rows of images, which are compressed in another thread."""

@@ -1,6 +1,7 @@
 """Tables of a run: NumPy arrays by column, with units."""
 
 from collections.abc import Iterator, Mapping, Sequence
+from types import MappingProxyType
 from typing import Any
 
 import numpy as np
@@ -10,6 +11,8 @@ from numpy.typing import NDArray
 from hsr8.errors import UsageError
 from hsr8.recorder.columns import batch_of, schema_of, shape_of
 from hsr8.suggestion import suggestion
+
+NO_LABELS: Mapping[str, Sequence[str]] = MappingProxyType({})
 
 
 class Table(Mapping[str, Any]):
@@ -37,9 +40,21 @@ class Table(Mapping[str, Any]):
         return self._whole if self._chosen is None else self._whole.take(pa.array(self._chosen))
 
     @staticmethod
-    def from_objects(name: str, rows: type, objects: Sequence[Any]) -> "Table":
-        """Return recorded objects as a table with the columns of the dataclass `rows`."""
-        schema = schema_of(rows, objects)
+    def from_objects(
+        name: str,
+        rows: type,
+        objects: Sequence[Any],
+        labels: Mapping[str, Sequence[str]] = NO_LABELS,
+    ) -> "Table":
+        """Return recorded objects as a table with the columns of the dataclass `rows`.
+
+        Args:
+            name: of the table.
+            rows: dataclass.
+            objects: recorded objects.
+            labels: names of the elements of named dimensions.
+        """
+        schema = schema_of(rows, objects, labels)
         batches = [batch_of(rows, objects, schema)] if objects else []
         return Table(name, pa.Table.from_batches(batches, schema))
 

@@ -6,7 +6,7 @@ from hypothesis import strategies as st
 import hsr8
 from hsr8.errors import UsageError
 from hsr8.plugin_decisions import PluginGaze, PluginPlanner
-from hsr8.robot_builder import field_of_view, head_camera, known_beacons, neck
+from hsr8.robot_builder import decision_limits, field_of_view, head_camera, known_beacons, neck
 from hsr8.seeds import named_rng
 from hsr8.world.field.generator import draw_layout
 from navigation.baselines.choice import build_planner
@@ -15,6 +15,7 @@ from navigation.gaze.planner import GazePlanner
 
 STAND_INS = ['robot.body="kinematic"', 'camera.source="analytic"', "duration=3.0"]
 FORMS = (list, tuple, np.array, lambda values: np.array(values, np.float32))
+LIMITS = decision_limits(hsr8.load_scenario("quick"))
 speeds = st.floats(-1.0, 1.0, width=32)
 
 
@@ -58,7 +59,7 @@ def quick(*settings):
 
 @given(values=st.tuples(speeds, speeds, speeds), form=st.sampled_from(FORMS))
 def test_a_velocity_of_any_sequence_type_is_accepted_exactly(values, form):
-    planner = PluginPlanner(Fixed(MotionDecision(form(values), np.float32(0.5))))
+    planner = PluginPlanner(Fixed(MotionDecision(form(values), np.float32(0.5))), LIMITS)
     motion = planner.plan(None, None)
     assert motion.velocity.dtype == np.float64
     assert tuple(motion.velocity) == values
@@ -67,7 +68,7 @@ def test_a_velocity_of_any_sequence_type_is_accepted_exactly(values, form):
 
 @given(pan=speeds, number=st.sampled_from((float, np.float32, np.float64, np.array)))
 def test_a_scalar_gaze_is_accepted_exactly_and_an_array_refused(pan, number):
-    gaze = PluginGaze(Fixed(GazeDecision(number(pan), 0)))
+    gaze = PluginGaze(Fixed(GazeDecision(number(pan), 0)), LIMITS)
     if number is np.array:
         with pytest.raises(UsageError, match="pan"):
             gaze.choose(None, None, None)
@@ -93,7 +94,7 @@ def test_a_scalar_gaze_is_accepted_exactly_and_an_array_refused(pan, number):
 )
 def test_an_invalid_velocity_is_refused_with_the_expected_one(velocity):
     with pytest.raises(UsageError, match=r"Fixed: velocity must be .*vx, vy and wz \[m/s"):
-        PluginPlanner(Fixed(MotionDecision(velocity))).plan(None, None)
+        PluginPlanner(Fixed(MotionDecision(velocity)), LIMITS).plan(None, None)
 
 
 @pytest.mark.parametrize(
@@ -109,7 +110,7 @@ def test_an_invalid_velocity_is_refused_with_the_expected_one(velocity):
 )
 def test_an_invalid_motion_is_refused(decision, expected):
     with pytest.raises(UsageError, match=f"planner Fixed: .*{expected}"):
-        PluginPlanner(Fixed(decision)).plan(None, None)
+        PluginPlanner(Fixed(decision), LIMITS).plan(None, None)
 
 
 @pytest.mark.parametrize(
@@ -127,13 +128,13 @@ def test_an_invalid_motion_is_refused(decision, expected):
 )
 def test_an_invalid_gaze_is_refused(decision, expected):
     with pytest.raises(UsageError, match=f"gaze Fixed: .*{expected}"):
-        PluginGaze(Fixed(decision)).choose(None, None, None)
+        PluginGaze(Fixed(decision), LIMITS).choose(None, None, None)
 
 
 def test_arithmetic_in_place_changes_neither_belief_nor_mission(fake):
     frame, other = fake.frame(0.0), fake.frame(0.0)
-    PluginPlanner(InPlace()).plan(frame.belief, frame.task)
-    PluginGaze(InPlace()).choose(frame.belief, frame.task, frame.motion)
+    PluginPlanner(InPlace(), LIMITS).plan(frame.belief, frame.task)
+    PluginGaze(InPlace(), LIMITS).choose(frame.belief, frame.task, frame.motion)
     assert np.array_equal(frame.belief.pose, other.belief.pose)
     assert np.array_equal(frame.belief.pose_covariance, other.belief.pose_covariance)
     assert np.array_equal(frame.task.target, other.task.target)

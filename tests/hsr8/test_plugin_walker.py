@@ -315,7 +315,7 @@ def test_a_run_with_an_object_records_its_class(folder):
         ("Trips", "ZeroDivisionError: lost a shoe"),
         ("Short", "walker Short: step(sensors, command, head, estimate) must return 26"),
         ("Empty", "walker Empty has no method step(sensors, command, head, estimate)"),
-        ("Unwilling", "walker Unwilling: start(robot) failed: ValueError: not this robot"),
+        ("Unwilling", "walker Unwilling: start failed: ValueError: not this robot"),
         ("Behind", "mine.py has no class Behind"),
     ],
 )

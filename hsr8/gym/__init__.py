@@ -1,0 +1,32 @@
+"""Gymnasium environments in which a policy decides gaze, motion or both; extra ``hsr8[gym]``.
+
+    import hsr8  # before NumPy
+    import gymnasium
+
+    env = gymnasium.make("hsr8.gym:hsr8/Gaze-v0", scenario="crowd")
+
+`make_vec` runs several environments in processes. `as_gaze` and `as_planner` turn a policy into
+a plugin for ``hsr8 run``, ``sweep`` and ``bench``. See ``docs/gym.md``.
+"""
+
+try:
+    import gymnasium
+except ImportError as error:
+    raise ImportError(f"hsr8.gym: {error}; install hsr8[gym]") from error
+
+from hsr8.gym.environment import Environment
+from hsr8.gym.policy import as_gaze, as_planner
+from hsr8.gym.vector import make_vec
+
+__all__ = ["Environment", "as_gaze", "as_planner", "make_vec"]
+
+for _name, _decides in (
+    ("Gaze", ("gaze",)),
+    ("Navigate", ("motion",)),
+    ("GazeAndNavigate", ("motion", "gaze")),
+):
+    gymnasium.register(
+        f"hsr8/{_name}-v0",
+        entry_point="hsr8.gym.environment:Environment",
+        kwargs={"decides": _decides},
+    )

@@ -1,0 +1,80 @@
+"""Actions: numbers from -1 to 1, mapped to the limits of motion and gaze."""
+
+from collections.abc import Sequence
+from typing import Any, Literal
+
+import numpy as np
+from gymnasium import spaces
+from numpy.typing import NDArray
+
+from hsr8.errors import UsageError
+from hsr8.plugin_decisions import Limits
+from hsr8.plugin_method import numbers, shown
+
+Array = NDArray[np.float64]
+Part = Literal["motion", "gaze"]
+
+SIZES = {"motion": 3, "gaze": 2}
+ROUNDING = 1e-6  # of the bounds of an action
+
+
+class ActionMap:
+    """Map from actions to velocities and gazes.
+
+    An action has the values (vx, vy, wz), (pan, tilt) or both in this order. From -1 to 1, a
+    velocity of zero is 0, and the middle of the neck's range is 0.
+
+    Args:
+        limits: of motion and gaze.
+        normalized: whether actions are from -1 to 1; if not, in [m/s], [rad/s] and [rad].
+    """
+
+    def __init__(self, limits: Limits, *, normalized: bool) -> None:
+        speed = limits.speed
+        self._velocities = np.array(
+            [[-speed.vx_backward, -speed.vy, -speed.wz], [speed.vx, speed.vy, speed.wz]]
+        )
+        self._neck = limits.neck.T
+        self._normalized = normalized
+
+    def space(self, decides: Sequence[Part]) -> spaces.Box:
+        """Return the space of the actions that decide these parts."""
+        parts = {"motion": self._velocities, "gaze": self._neck}
+        low, high = np.hstack([parts[part] for part in SIZES if part in decides])
+        if self._normalized:
+            low, high = -np.ones(len(low)), np.ones(len(high))
+        return spaces.Box(low.astype(np.float32), high.astype(np.float32))
+
+    def velocity(self, action: Array) -> Array:
+        """Return vx, vy and wz of an action that decides motion (3,) [m/s, m/s, rad/s]."""
+        values = action[: SIZES["motion"]]
+        if not self._normalized:
+            return values
+        velocity: Array = values * np.where(values < 0.0, -self._velocities[0], self._velocities[1])
+        return velocity
+
+    def gaze(self, action: Array) -> tuple[float, float]:
+        """Return pan and tilt of an action that decides the gaze [rad]."""
+        values = action[-SIZES["gaze"] :]
+        if self._normalized:
+            low, high = self._neck
+            values = 0.5 * (low + high) + 0.5 * (high - low) * values
+        pan, tilt = values.tolist()
+        return pan, tilt
+
+
+def check_action(action: NDArray[Any], space: spaces.Box) -> Array:
+    """Return the action as floats.
+
+    Raises:
+        UsageError: it is outside of the space.
+    """
+    values = numbers(action)
+    if values is not None and values.shape == space.shape:
+        low, high = space.low.astype(np.float64), space.high.astype(np.float64)
+        if ((low - ROUNDING <= values) & (values <= high + ROUNDING)).all():
+            return values
+    raise UsageError(
+        f"action: outside of the action space, got {shown(action)}; expected {space.shape[0]} "
+        f"numbers from {space.low.tolist()} to {space.high.tolist()}"
+    )

@@ -1,0 +1,157 @@
+"""Policies as plugins: the gaze or planner of ``hsr8 run``, ``sweep`` and ``bench``."""
+
+from collections.abc import Callable, Sequence
+from inspect import signature
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from hsr8.decisions import GazeController, MotionPlanner
+from hsr8.errors import UsageError
+from hsr8.gym.action import SIZES, ActionMap, Part
+from hsr8.gym.observation import MAX_TRACKS, Observation, Observer
+from hsr8.plugin_decisions import Limits
+from hsr8.plugin_method import numbers, shown
+from navigation.belief.belief import Belief
+from navigation.decision import GazeDecision, MotionDecision, Task
+
+Array = NDArray[np.float64]
+
+
+def as_gaze(
+    policy: Any,
+    *,
+    observe: Sequence[str] = (),
+    max_tracks: int = MAX_TRACKS,
+    normalized: bool = True,
+) -> type[GazeController]:
+    """Return the gaze plugin of a policy, decided from the observations of ``hsr8/Gaze-v0``.
+
+    Args:
+        policy: a policy, or a function without arguments that returns one, called once per run.
+            A policy has ``predict(observation)``, which returns action and state, or is a function
+            of the observation. The last two numbers of the action are pan and tilt.
+        observe: optional parts of the observation, without ``image``.
+        max_tracks: number of observed tracks.
+        normalized: whether actions are from -1 to 1, as in the environments.
+    """
+    require_belief(observe)
+
+    class PolicyGaze:
+        """Gaze of a policy."""
+
+        def __init__(self) -> None:
+            self._observer = Observer(observe, max_tracks)
+            self._act = _Policy(policy)
+
+        def start(self, limits: Limits) -> None:
+            """Map actions to these limits."""
+            self._actions = ActionMap(limits, normalized=normalized)
+
+        def choose(self, belief: Belief, task: Task, motion: MotionDecision | None) -> GazeDecision:
+            """Return the gaze of the policy."""
+            action = self._act(self._observer.observe(belief, task), "gaze")
+            if motion is not None:
+                self._observer.velocity = motion.velocity
+            return GazeDecision(*self._actions.gaze(action))
+
+    return PolicyGaze
+
+
+def as_planner(
+    policy: Any,
+    *,
+    observe: Sequence[str] = (),
+    max_tracks: int = MAX_TRACKS,
+    normalized: bool = True,
+) -> type[MotionPlanner]:
+    """Return the planner plugin of a policy, decided from the observations of ``hsr8/Navigate-v0``.
+
+    Args:
+        policy: as of `as_gaze`. The first three numbers of the action are vx, vy and wz.
+        observe: optional parts of the observation, without ``image``.
+        max_tracks: number of observed tracks.
+        normalized: whether actions are from -1 to 1, as in the environments.
+    """
+    require_belief(observe)
+
+    class PolicyPlanner:
+        """Planner of a policy."""
+
+        def __init__(self) -> None:
+            self._observer = Observer(observe, max_tracks)
+            self._act = _Policy(policy)
+
+        def start(self, limits: Limits) -> None:
+            """Map actions to these limits."""
+            self._actions = ActionMap(limits, normalized=normalized)
+
+        def plan(self, belief: Belief, task: Task, look: float | None = None) -> MotionDecision:
+            """Return the velocity of the policy."""
+            action = self._act(self._observer.observe(belief, task), "motion")
+            self._observer.velocity = self._actions.velocity(action)
+            return MotionDecision(velocity=self._observer.velocity)
+
+    return PolicyPlanner
+
+
+def require_belief(observe: Sequence[str]) -> None:
+    """Require parts of the belief, which plugins receive.
+
+    Raises:
+        UsageError: `observe` has the image.
+    """
+    if "image" in observe:
+        raise UsageError("observe: plugins receive the belief, got 'image'; expected local_map")
+
+
+class _Policy:
+    """Actions of a policy in the order of the observations.
+
+    Raises:
+        UsageError: `policy` is not a policy.
+    """
+
+    def __init__(self, policy: Any) -> None:
+        if isinstance(policy, type) or not hasattr(policy, "predict"):
+            policy = policy()
+        if not callable(getattr(policy, "predict", policy)):
+            raise UsageError(
+                f"policy: got {shown(policy)}; expected an object with predict(observation) or a "
+                "function of the observation"
+            )
+        self._predict: Callable[..., Any] = getattr(policy, "predict", policy)
+        self._has_state = hasattr(policy, "predict")
+        self._accepted = signature(self._predict).parameters.keys()
+        self._state: Any = None
+        self._first = True
+
+    def __call__(self, observation: Observation, part: Part) -> Array:
+        """Return the action for an observation.
+
+        Args:
+            observation: of the belief.
+            part: that the action decides, alone or with the other.
+
+        Raises:
+            UsageError: the action has another size.
+        """
+        options = {
+            "state": self._state,
+            "episode_start": np.array([self._first]),
+            "deterministic": True,
+        }
+        accepted = {key: value for key, value in options.items() if key in self._accepted}
+        action = self._predict(observation, **accepted)
+        if self._has_state:
+            action, self._state = action
+        self._first = False
+        values = numbers(action)
+        alone, both = SIZES[part], sum(SIZES.values())
+        if values is None or values.shape not in ((alone,), (both,)):
+            raise UsageError(
+                f"policy: wrong size of the action, got {shown(action)}; "
+                f"expected {alone} or {both} numbers"
+            )
+        return values

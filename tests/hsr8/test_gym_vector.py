@@ -1,0 +1,53 @@
+"""Environments in processes, and the environment checker of stable-baselines3."""
+
+import warnings
+
+import numpy as np
+import pytest
+from gymnasium.vector import AutoresetMode
+
+import hsr8
+from hsr8.errors import UsageError
+from hsr8.gym import Environment, make_vec
+
+SETTINGS = ["robot.body=kinematic", "camera.source=analytic", "duration=1.0"]
+
+
+def test_fork_is_refused_by_name():
+    with pytest.raises(UsageError, match=r"context: .*got 'fork'; expected forkserver or spawn"):
+        make_vec("hsr8/Gaze-v0", 2, vector_kwargs={"context": "fork"})
+
+
+@pytest.mark.timeout(300)
+def test_processes_run_the_seeds_of_their_environments():
+    envs = make_vec(
+        "hsr8/Gaze-v0",
+        2,
+        scenario="quick",
+        settings=SETTINGS,
+        vector_kwargs={"autoreset_mode": AutoresetMode.SAME_STEP},
+    )
+    try:
+        envs.reset(seed=[4, 5])
+        ended = np.zeros(2, bool)
+        while not ended.any():
+            _, _, terminated, truncated, infos = envs.step(np.zeros((2, 2), np.float32))
+            ended = terminated | truncated
+    finally:
+        envs.close()
+    gaze = hsr8.gym.as_gaze(lambda: lambda _: np.zeros(2))
+    expected = [
+        hsr8.run("quick", seed=seed, settings=SETTINGS, gaze=gaze()).metrics["state_hash"]
+        for seed in (4, 5)
+    ]
+    assert infos["final_info"]["metrics"]["state_hash"].tolist() == expected
+
+
+def test_stable_baselines3_has_no_complaint():
+    checker = pytest.importorskip("stable_baselines3.common.env_checker")
+    for decides in (("gaze",), ("motion",), ("motion", "gaze")):
+        env = Environment("quick", decides=decides, settings=SETTINGS, observe=["local_map"])
+        with warnings.catch_warnings():
+            warnings.simplefilter("error", UserWarning)
+            checker.check_env(env)
+        env.close()
