@@ -1,5 +1,6 @@
 """One run of an environment: the simulation, and the tables for its metrics in memory."""
 
+from contextlib import ExitStack
 from time import perf_counter
 from typing import Any
 
@@ -44,7 +45,8 @@ class Episode:
         self._ticks: list[Tick] = []
         self._sampler = FrameSampler(self.simulation.layout.scale)
         self._tables = Selection(metrics.COLUMNS)
-        self.simulation.__enter__()
+        self._open = ExitStack()
+        self._open.enter_context(self.simulation)
 
     @property
     def truth(self) -> Truth:
@@ -95,7 +97,7 @@ class Episode:
 
     def close(self) -> None:
         """Close the simulation."""
-        self.simulation.__exit__(None)
+        self._open.close()
 
     def _keep(self) -> None:
         """Keep the columns of the metrics."""

@@ -2,7 +2,7 @@
 
 from collections.abc import Sequence
 from math import cos, pi, sin
-from typing import Any, Literal, cast
+from typing import Any, cast
 
 import numpy as np
 from gymnasium import spaces
@@ -16,9 +16,8 @@ from navigation.decision import Task
 
 Array = NDArray[np.float64]
 Observation = dict[str, NDArray[Any]]
-Optional = Literal["local_map", "image"]
 
-OPTIONAL: tuple[Optional, ...] = ("local_map", "image")
+OPTIONAL = ("local_map", "image")
 MAX_TRACKS = 16
 MAP_CELLS = 48  # along each side of the local map
 MOVING = {Motion.STATIC: 0.0, Motion.UNKNOWN: 0.5, Motion.MOVING: 1.0}

@@ -1,5 +1,7 @@
 """Environments in processes, and the environment checker of stable-baselines3."""
 
+import importlib
+import sys
 import warnings
 
 import numpy as np
@@ -11,6 +13,14 @@ from hsr8.errors import UsageError
 from hsr8.gym import Environment, make_vec
 
 SETTINGS = ["robot.body=kinematic", "camera.source=analytic", "duration=1.0"]
+
+
+def test_without_gymnasium_the_extra_is_named(monkeypatch):
+    for name in [name for name in sys.modules if name.startswith("hsr8.gym")]:
+        monkeypatch.delitem(sys.modules, name)
+    monkeypatch.setitem(sys.modules, "gymnasium", None)
+    with pytest.raises(ImportError, match=r"hsr8\.gym: .*gymnasium.*; install hsr8\[gym\]"):
+        importlib.import_module("hsr8.gym")
 
 
 def test_fork_is_refused_by_name():

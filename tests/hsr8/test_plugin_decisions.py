@@ -171,3 +171,27 @@ def test_an_unsuitable_object_is_refused_before_the_run(kind, tmp_path):
 def test_a_walk_takes_no_planner():
     with pytest.raises(UsageError, match="section command"):
         hsr8.run("walk", settings=STAND_INS, planner=Fixed(None))
+
+
+class Started(Fixed):
+    """Planner and gaze that receive the limits."""
+
+    def start(self, limits):
+        self.limits = limits
+
+
+def test_a_planner_and_a_gaze_receive_the_limits_before_the_run():
+    planner, gaze = (
+        Started(MotionDecision(np.zeros(3))),
+        Started(GazeDecision(0.0, 0.0)),
+    )
+    hsr8.run("quick", settings=["duration=0.1", *STAND_INS[:2]], planner=planner, gaze=gaze)
+    assert planner.limits.speed == hsr8.load_scenario("quick").speed_limits()
+    assert gaze.limits.neck == pytest.approx(np.radians([[-90.0, 90.0], [-60.0, 20.0]]), abs=1e-4)
+
+
+def test_a_start_that_fails_is_reported():
+    planner = Started(MotionDecision(np.zeros(3)))
+    planner.start = lambda limits: 1 / 0
+    with pytest.raises(UsageError, match="planner Started: start failed: ZeroDivisionError: div"):
+        PluginPlanner(planner, LIMITS)
