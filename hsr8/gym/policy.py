@@ -106,6 +106,17 @@ def require_belief(observe: Sequence[str]) -> None:
         raise UsageError("observe: plugins receive the belief, got 'image'; expected local_map")
 
 
+def _makes_policy(policy: Any) -> bool:
+    """Return whether `policy` is a class or function that takes no arguments."""
+    if hasattr(policy, "predict") and not isinstance(policy, type):
+        return False
+    try:
+        signature(policy).bind()
+    except TypeError:
+        return False
+    return True
+
+
 class _Policy:
     """Actions of a policy in the order of the observations.
 
@@ -114,7 +125,7 @@ class _Policy:
     """
 
     def __init__(self, policy: Any) -> None:
-        if isinstance(policy, type) or not hasattr(policy, "predict"):
+        if _makes_policy(policy):
             policy = policy()
         if not callable(getattr(policy, "predict", policy)):
             raise UsageError(

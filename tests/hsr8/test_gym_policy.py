@@ -79,7 +79,7 @@ def test_a_planner_is_the_same_in_both():
 
 def test_both_decisions_of_a_policy_are_the_same_in_both():
     expected = state_hash("GazeAndNavigate", joint, SETTINGS, max_tracks=2)
-    plugins = {"planner": as_planner(lambda: joint)(), "gaze": as_gaze(lambda: joint)()}
+    plugins = {"planner": as_planner(joint)(), "gaze": as_gaze(lambda: joint)()}
     native = hsr8.run("crowd", seed=4, settings=SETTINGS, **plugins)
     assert native.metrics["state_hash"] == expected
 
@@ -113,6 +113,7 @@ def test_a_file_with_a_policy_takes_part_in_commands(tmp_path, monkeypatch, caps
     ("policy", "message"),
     [
         (lambda: 3, "policy: got int 3; expected an object with predict"),
+        (3, "policy: got int 3; expected an object with predict"),
         (lambda: lambda _: np.zeros(3), "policy: wrong size of the action, got ndarray of shape"),
         (lambda: lambda _: np.array([0.0, np.nan]), "gaze PolicyGaze: tilt must be a finite"),
     ],
