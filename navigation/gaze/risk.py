@@ -179,8 +179,10 @@ class RiskGaze(GazePolicy):
         approach += self._speed * np.maximum(p.min_approach, 0.5 + 0.5 * np.cos(bearing - course))
         gap = distance - radius - self._parameters.univector.s_robot - p.clearance
         rate = 1.0 / (p.look_ratio * np.maximum(p.min_time, gap / approach))
-        age = o.age[owner] + p.min_age + p.unknown_bonus * unknown
-        age += p.fresh_bonus * (unknown & (hits < p.fresh_hits))
+        age = o.age[owner] + p.min_age
+        age *= np.where(
+            unknown, np.where(hits < p.fresh_hits, p.fresh_factor, p.unknown_factor), 1.0
+        )
         weights = weights * np.where(static, p.static_weight, 1.0)
         # The side that faces the robot is seen first.
         points *= np.maximum(0.0, 1.0 - 0.5 * radius / np.maximum(distance, radius))[:, None]

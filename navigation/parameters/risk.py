@@ -40,9 +40,8 @@ class RiskParameters:
     min_time: Annotated[float, "s"] = 0.4  # lower bound of the time to collision
     look_ratio: float = 0.5  # fraction of the time to collision within which to look again [1]
     min_age: Annotated[float, "s"] = 0.1  # age of an object in the latest frame
-    unknown_bonus: Annotated[float, "s"] = 1.0  # age added to undecided obstacles
-    # additional age of undecided obstacles of few detections
-    fresh_bonus: Annotated[float, "s"] = 3.0
+    unknown_factor: float = 2.0  # ratio by which undecided obstacles age faster [1]
+    fresh_factor: float = 4.0  # the same for those of few detections [1]
     fresh_hits: int = 8  # number of detections below which they are few [1]
     static_weight: float = 0.12  # weight of static obstacles [1]
     max_disc_age: Annotated[float, "s"] = 1.0  # age up to which an obstacle occludes others
