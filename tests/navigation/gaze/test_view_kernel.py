@@ -124,7 +124,7 @@ def test_a_foot_alone_has_its_credit_and_a_beacon_must_be_whole():
 
     assert part(0.3, -0.9, 0.40, 0.7) == 0.7
     assert part(0.3, -0.9, 0.40, 0.0) == 0.0
-    assert part(0.3, -0.3, 0.40, 0.7) == 0.0
+    assert part(0.3, 0.5, 0.40, 0.7) == 0.0
     assert part(0.5, -0.2, 0.40, 0.7) == 1.0
     assert part(0.5, -0.2, 0.40, 0.0) == 1.0
     assert part(3.0, 0.0, 0.6, -1.0) == 1.0
