@@ -40,7 +40,25 @@ GAZES = {
 }
 PAPER = "navigation.profile=paper"
 EXCHANGED = "navigation.univector.w_muf=0.25 navigation.univector.w_auf=0.75"
-PAPERS = {"printed": PAPER, "exchanged": f"{PAPER} {EXCHANGED}", "extended": ""}
+FIELD, MOVERS = "navigation.univector", "navigation.moving_obstacles"
+# Results of tune_paper.py.
+TUNED_PRINTED = (
+    f"{FIELD}.margin=0.0149 {FIELD}.eta_vo=0.225 {FIELD}.eta_imp=0.0698 {FIELD}.d_con=0.333 "
+    f"{FIELD}.d_e=0.374 {FIELD}.d_b=0.217 {FIELD}.k_r=0.0873 {MOVERS}.margin=0.0439 "
+    f"{MOVERS}.horizon=3.53 constants.{MOVERS}.omega_dist=2.54"
+)
+TUNED_EXCHANGED = (
+    f"{FIELD}.margin=0.0688 {FIELD}.eta_vo=0.818 {FIELD}.eta_imp=0.0277 {FIELD}.d_con=0.381 "
+    f"{FIELD}.d_e=0.259 {FIELD}.d_b=0.337 {FIELD}.k_r=0.279 {MOVERS}.margin=0.0365 "
+    f"{MOVERS}.horizon=5.55 constants.{MOVERS}.omega_dist=2.66"
+)
+PAPERS = {
+    "printed": PAPER,
+    "printed tuned": f"{PAPER} {TUNED_PRINTED}",
+    "exchanged": f"{PAPER} {EXCHANGED}",
+    "exchanged tuned": f"{PAPER} {EXCHANGED} {TUNED_EXCHANGED}",
+    "extended": "",
+}
 TABLES = {"gazes": GAZES, "blind": _blind(), "bounds": BOUNDS, "paper": PAPERS}
 CAMERAS = {
     "honest": (),

@@ -28,7 +28,7 @@ NotNegative = Annotated[float, Interval(ge=0.0)]
 
 
 class Run(Section):
-    """What an entry keeps of a run; None is not measured."""
+    """Results of a run; None is not measured."""
 
     seed: Count
     outcome: Outcome
