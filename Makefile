@@ -18,7 +18,7 @@ help:  ## list of targets
 setup:  ## virtual environment, locked packages, OpenGL for machines without a display
 	@bash scripts/setup.sh
 
-run: setup  ## the paper's experiment, then its video: make run ARGS="--seed 7"
+run: setup  ## the paper's experiment, with its video: make run ARGS="--seed 7"
 	@bash scripts/run_paper.sh $(ARGS)
 
 test: setup  ## fast test suite: make test ARGS="-k gait"

@@ -32,7 +32,7 @@ ROOT = Path(__file__).parents[1]
 PAGES = [ROOT / "README.md", ROOT / "CONTRIBUTING.md", *sorted((ROOT / "docs").rglob("*.md"))]
 PAGES += sorted((ROOT / "models").rglob("*.md"))
 OURS = {"hsr8", "python", "make", "bash"}
-OTHERS = {"cd", "dask", "git", "jq", "pip", "source"}  # other people's programs
+OTHERS = {"cd", "dask", "docker", "git", "jq", "pip", "source"}  # other people's programs
 RUNS = ("quick", "course", "paper")  # that a page may take for done
 STANDS_FOR = {
     **dict.fromkeys(("SCENARIO", "NAME", "FILE"), "quick"),

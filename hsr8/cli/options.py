@@ -52,6 +52,8 @@ class Run:
     """minimal: poses and events; standard (default): also images, beliefs; full: all frames."""
     view: View = None
     """Show the log during the run: in a window or in a browser."""
+    video: Flag = False
+    """Also draw the video, in a second process during the run."""
     bag: Flag = False
     """Also write the run as a rosbag2 folder, see `hsr8 export`."""
     json: Json = False
@@ -224,6 +226,8 @@ class Render:
     """Simulated time at which the video ends [s]."""
     speed: Number = None
     """Simulated seconds per second of video; default: a video of at most a minute."""
+    follow: Flag = False
+    """Draw during the run, from the records so far; a run with a goal is drawn at its end."""
     json: Json = False
     quiet: Quiet = False
 

@@ -3,7 +3,7 @@
 import signal
 import sys
 from collections.abc import Iterator, Sequence
-from contextlib import contextmanager
+from contextlib import ExitStack, contextmanager
 from types import FrameType
 
 from hsr8.cli import report
@@ -13,9 +13,11 @@ from hsr8.cli.options import Run
 from hsr8.cli.output_file import writing
 from hsr8.cli.progress import Progress
 from hsr8.cli.termination import like_ctrl_c, on_signals
+from hsr8.cli.video_process import video_process
 from hsr8.evaluation.recording import Recording, Result, renderer_of
 from hsr8.evaluation.verdict import exit_code
 from hsr8.export.bag import require_rosbags, write_bag
+from hsr8.gl import require_gl
 from hsr8.kernel_compilation import CompilationWatch
 from hsr8.loop import Simulation
 from hsr8.recorder.files import atomic
@@ -46,6 +48,8 @@ def start(options: Run, scenario: Scenario, log: LogLevel | None, command: Seque
     """
     if options.bag:
         require_rosbags()
+    if options.video:
+        require_gl()
     with CompilationWatch(lambda: compile_announced(quiet=options.quiet)):
         return _start(options, scenario, log, command)
 
@@ -60,10 +64,13 @@ def _start(options: Run, scenario: Scenario, log: LogLevel | None, command: Sequ
         signal.signal(number, signal.default_int_handler)
         simulation.interrupt()
 
-    with _view(options) as view:
+    with ExitStack() as after, _view(options) as view:
         path = RunFolder.create(options.out, scenario.name, scenario.seed)
         with crash_report(path), on_signals(SIGNALS, interrupt):
             recording.into(path, manifest, log=log, live=view.address if view else "")
+            if options.video:
+                silent = options.quiet or options.json
+                after.enter_context(video_process(path, quiet=silent))
             if options.quiet:
                 result = recording.run()
             else:

@@ -7,11 +7,13 @@ from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, T
 
 from hsr8.cli.options import Render
 from hsr8.cli.output_file import parse_size, require_file_name, writing
+from hsr8.cli.termination import like_ctrl_c
 from hsr8.errors import UsageError
 from hsr8.gl import is_software, require_gl
 from hsr8.recorder.files import atomic
 from hsr8.recorder.run import run_folder
 from hsr8.recorder.run.run_reader import open_run
+from hsr8.render.growing_video import follow_run
 from hsr8.render.run_video import RenderedVideo, VideoOptions, render_run
 from hsr8.render.video import FORMATS
 
@@ -25,6 +27,8 @@ def main(options: Render) -> int:
         UsageError: there is no such run, or an option is invalid.
         RenderingUnavailable: no OpenGL draws here.
     """
+    if options.follow and options.out and options.out.suffix.lower() == ".png":
+        raise UsageError(f"--follow: not for an image, got --out {options.out}; expected a video")
     if not 1 <= options.fps <= 120:
         raise UsageError(f"--fps: out of range, got {options.fps}; expected 1 to 120")
     if options.speed is not None and not 0.01 <= options.speed <= 1000.0:
@@ -49,8 +53,13 @@ def main(options: Render) -> int:
     columns = (TextColumn("drawing"), BarColumn(), MofNCompleteColumn(), TimeRemainingColumn())
     with Progress(*columns, console=console, transient=True) as bar:
         task = bar.add_task("drawing", total=None)
-        with writing("--out", out):
-            made = render_run(
+
+        def show(done: int, total: int) -> None:
+            bar.update(task, completed=done, total=total)
+
+        draw = follow_run if options.follow else render_run
+        with like_ctrl_c(), writing("--out", out):
+            made = draw(
                 run, video, out, lambda n, total: bar.update(task, completed=n, total=total)
             )
     _report(made, clock.perf_counter() - started, options)

@@ -1,5 +1,6 @@
 """Dashboard of a video: scene, camera image, belief and gaze."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from math import hypot
 
@@ -36,7 +37,7 @@ class DashboardFrame:
         frame: latest camera frame.
         movers: true positions (n, 2) [m].
         trail: true path of the robot so far (m, 2) [m].
-        collisions: so far.
+        events: time [s] and kind of each event so far.
         state: current situation of the robot.
     """
 
@@ -44,7 +45,7 @@ class DashboardFrame:
     frame: ShownFrame
     movers: Array
     trail: Array
-    collisions: int
+    events: Sequence[tuple[float, str]]
     state: str
 
 
@@ -110,7 +111,7 @@ class Dashboard:
         band = image[height:, :width]
         band[:] = BAND
         self._draw_values(band, shown)
-        self._timeline.draw(band, shown.time)
+        self._timeline.draw(band, shown.time, shown.events)
         return image
 
     def _draw_titles(self, image: Image) -> None:
@@ -130,6 +131,7 @@ class Dashboard:
     def _draw_values(self, band: Image, shown: DashboardFrame) -> None:
         """Draw a line of values, each under its name."""
         frame = shown.frame
+        collisions = sum(kind == "collision" for _, kind in shown.events)
         error = hypot(frame.pose[0] - frame.truth[0], frame.pose[1] - frame.truth[1])
         vias = f"{frame.passed}" + ("" if self._vias is None else f" / {self._vias}")
         speed = "time" if self._speed == 1.0 else f"time, {self._speed:g}x"
@@ -138,7 +140,7 @@ class Dashboard:
             ("waypoints", vias),
             ("speed", f"{hypot(*frame.velocity[:2]):.2f} m/s"),
             ("pose error", f"{100.0 * error:.1f} cm"),
-            ("collisions", f"{shown.collisions}"),
+            ("collisions", f"{collisions}"),
             ("state", shown.state),
         ]
         named = self._bar >= MIN_NAMED
@@ -148,7 +150,7 @@ class Dashboard:
         step = (band.shape[1] - 2 * pad) / len(numbers)
         for k, (name, value) in enumerate(numbers):
             column = pad + round(k * step)
-            alarm = name == "collisions" and shown.collisions > 0
+            alarm = name == "collisions" and collisions > 0
             if text_width(value, letters, strong=True) > step and not named:
                 continue
             draw_text(band, (column, base), value, ALARM if alarm else INK, letters, strong=True)

@@ -53,25 +53,44 @@ class RunImages:
         self._scenario = run.scenario()
         self._layout = draw_layout(self._scenario, run.seed)
         self._robot = load_robot(self._scenario.robot.model)
-        self._times, self._size, self._speed, self._fine = times, size, speed, fine
-        self._motion = motion_of(run, len(self._layout.movers))
-        self._obstacles = run.records["obstacle_positions"].shape[1]
-        self._rows = rows_at(self._motion.time, times)
-        self._frames = shown_frames(run)
-        self._frame_times = [frame.time for frame in self._frames]
-        self._events = [*zip(run.events["time"].tolist(), run.events["kind"], strict=True)]
-        self._collisions = [time for time, kind in self._events if kind == "collision"]
-        self._pushes: tuple[PushArrow, ...] = ()
-        size_ratio = self._robot.stature / DEFAULT_STATURE
-        if any(kind == "push" for _, kind in self._events):
-            weight = self._robot.model.measures().weight / HSR_VIII.weight
-            self._pushes = push_arrows(walking_of(run), self._motion, size_ratio, weight)
-        self._follow = FollowCamera(self._motion.qpos[self._rows], fps, speed, size_ratio)
+        self._times, self._size, self._fine = times, size, fine
+        self._fps, self._speed = fps, speed
         camera = self._scenario.camera
         self._optics = Optics(
             camera.width, camera.height, camera.vertical_fov, self._scenario.world.brightness
         )
         self._stack = ExitStack()
+        self.update(run)
+
+    def update(self, run: Run) -> None:
+        """Read the records of the run again, which has gone on."""
+        self._motion = motion_of(run, len(self._layout.movers))
+        self._obstacles = run.records["obstacle_positions"].shape[1]
+        self._rows = rows_at(self._motion.time, self._times)
+        self._frames = shown_frames(run)
+        self._frame_times = [frame.time for frame in self._frames]
+        self._events = [*zip(run.events["time"].tolist(), run.events["kind"], strict=True)]
+        self._event_times = [time for time, _ in self._events]
+        self._pushes: tuple[PushArrow, ...] = ()
+        size_ratio = self._robot.stature / DEFAULT_STATURE
+        if any(kind == "push" for _, kind in self._events):
+            weight = self._robot.model.measures().weight / HSR_VIII.weight
+            self._pushes = push_arrows(walking_of(run), self._motion, size_ratio, weight)
+        qpos = self._motion.qpos[self._rows]
+        self._follow = FollowCamera(qpos, self._fps, self._speed, size_ratio)
+
+    @property
+    def recorded(self) -> float:
+        """Simulated time of the last record [s]."""
+        return float(self._motion.time[-1])
+
+    @property
+    def ready(self) -> int:
+        """Number of images that later records do not change."""
+        recorded = int(np.searchsorted(self._times, self.recorded, side="right"))
+        if recorded == len(self._times):
+            return recorded
+        return max(0, recorded - self._follow.lookahead)
 
     def __enter__(self) -> Self:
         return self
@@ -150,7 +169,7 @@ class RunImages:
 
     def _dashboard(self) -> Draw:
         first, last = float(self._times[0]), float(self._times[-1])
-        timeline = Timeline(self._events, first, last)
+        timeline = Timeline(first, last)
         board = Dashboard(self._layout, self._scenario, timeline, self._size, self._speed)
         scene = self._renderer("show", board.scene_size)
         camera = self._renderer("vision", board.camera_size, CAMERA_OVERSAMPLING)
@@ -181,7 +200,7 @@ class RunImages:
             frame=frame,
             movers=self._motion.movers[row],
             trail=self._trail(row),
-            collisions=bisect_right(self._collisions, time),
+            events=self._events[: bisect_right(self._event_times, time)],
             state=state,
         )
 

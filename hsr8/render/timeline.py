@@ -1,4 +1,4 @@
-"""Timeline under the dashboard: progress of the video and marks of events."""
+"""Timeline under the dashboard: progress of the video and marks of past events."""
 
 from collections.abc import Sequence
 
@@ -24,27 +24,29 @@ class Timeline:
     """Timeline of one video.
 
     Args:
-        events: time [s] and kind of each.
         start, stop: simulated time of the first and the last image [s].
     """
 
-    def __init__(self, events: Sequence[tuple[float, str]], start: float, stop: float) -> None:
+    def __init__(self, start: float, stop: float) -> None:
         self._start, self._length = start, max(stop - start, 1e-9)
-        self._marks: list[tuple[float, Color]] = []
-        for kind, color in MARKS.items():
-            for time, of_kind in events:
-                if of_kind == kind and start <= time <= stop:
-                    self._marks.append((time, color))
 
-    def draw(self, image: Image, time: float) -> None:
-        """Draw the state at `time` [s] over the lowest rows of `image` (height, width, 3)."""
+    def draw(self, image: Image, time: float, events: Sequence[tuple[float, str]]) -> None:
+        """Draw over the lowest rows of `image` (height, width, 3).
+
+        Args:
+            image: to draw into.
+            time: simulated time [s].
+            events: time [s] and kind of each event so far.
+        """
         height, width, _ = image.shape
         strip = image[-max(2, round(HEIGHT * height)) :]
         strip[:] = AHEAD
         strip[:, : self._column(time, width)] = DONE
-        for when, color in self._marks:
-            column = self._column(when, width)
-            strip[:, max(0, column - MARK // 2) : column + MARK // 2 + 1] = color
+        for kind, color in MARKS.items():
+            for when, of_kind in events:
+                if of_kind == kind and when >= self._start:
+                    column = self._column(when, width)
+                    strip[:, max(0, column - MARK // 2) : column + MARK // 2 + 1] = color
 
     def _column(self, time: float, width: int) -> int:
         return round((time - self._start) / self._length * width)

@@ -6,7 +6,7 @@
     *.arrows         tables of the run, see ``docs/data.md``
     checksums.txt    of the tables
     log.rrd          log for the Rerun viewer
-    video.mp4        after ``hsr8 render``
+    video.mp4        after ``hsr8 render`` or with ``hsr8 run --video``
     crash.txt        traceback of an internal error
 
 Tables are written once a second, so the folder of a killed run is complete up to its last second.

@@ -51,6 +51,11 @@ class Run:
         return self.manifest.get("exit_reason") not in INCOMPLETE
 
     @property
+    def running(self) -> bool:
+        """Whether the run had not ended, or was killed, when its manifest was read."""
+        return bool(self.manifest.get("exit_reason") == RUNNING)
+
+    @property
     def scenario_file(self) -> Path:
         """File of the resolved scenario."""
         return self.path / run_folder.SCENARIO

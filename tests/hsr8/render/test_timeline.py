@@ -5,7 +5,7 @@ from hsr8.render.timeline import AHEAD, DONE, HEIGHT, MARKS, Timeline
 
 def strip_at(time, events=()):
     image = np.zeros((40, 101, 3), np.uint8)
-    Timeline(events, 10.0, 20.0).draw(image, time)
+    Timeline(10.0, 20.0).draw(image, time, events)
     assert not image[: -round(HEIGHT * 40)].any()
     return [tuple(pixel) for pixel in image[-1].tolist()]
 
@@ -22,7 +22,7 @@ def test_events_are_marked_at_their_time_and_falls_on_top():
         (12.0, "fall"),
         (18.0, "push"),
         (19.0, "unheard of"),
-        (25.0, "push"),
+        (5.0, "push"),
     ]
     strip = strip_at(10.0, events)
     assert strip[20] == MARKS["fall"]

@@ -1,0 +1,112 @@
+"""Video of a run that is still in progress, drawn from the records that it has written so far."""
+
+import os
+import time as clock
+from collections.abc import Iterator
+from functools import partial
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+
+from hsr8.recorder.run.run_reader import Run, open_run
+from hsr8.render.run_images import RunImages
+from hsr8.render.run_video import (
+    Progress,
+    RenderedVideo,
+    VideoOptions,
+    draw_video,
+    instants,
+    render_run,
+)
+from hsr8.world.field.generator import draw_layout
+
+Array = NDArray[np.float64]
+
+PERIOD = 0.5  # wall time between two looks at the run folder [s]
+PARTS = 16  # of a video: records are read when those of one more part are written
+
+
+class _EndedEarly(Exception):
+    """The video of the run has other frames than that of a run of full duration."""
+
+
+def follow_run(run: Run, options: VideoOptions, out: Path, progress: Progress) -> RenderedVideo:
+    """Draw the video of a run during the run; arguments and errors as `render_run`.
+
+    The frames are those that `render_run` draws after the run. Their number and speed follow from
+    the length of the run. The video is begun for the full duration if the mission has no goal; if
+    the run ends early, it is drawn again. The run counts as ended when the process that started
+    this one ends.
+    """
+    watched = _GrowingRun(run.path)
+    scenario = run.scenario()
+    layout = draw_layout(scenario, run.seed)
+    if layout.endless or not len(layout.waypoints):
+        times, speed = instants(np.array([0.0, scenario.duration]), options)
+        order = partial(watched.order, times=times, options=options)
+        try:
+            begun = watched.started()
+            return draw_video(begun, options, out, progress, times=times, speed=speed, order=order)
+        except _EndedEarly:
+            pass
+    return render_run(watched.ended(), options, out, progress)
+
+
+class _GrowingRun:
+    """Run folder that another process writes.
+
+    Args:
+        path: of the folder.
+    """
+
+    def __init__(self, path: Path) -> None:
+        self._path = path
+        self._parent = os.getppid()
+
+    def started(self) -> Run:
+        """Return the run as soon as it has records.
+
+        Raises:
+            _EndedEarly: it ended without any.
+        """
+        while True:
+            run, over = self._read()
+            if len(run.records):
+                return run
+            if over:
+                raise _EndedEarly
+            clock.sleep(PERIOD)
+
+    def ended(self) -> Run:
+        """Return the run after its end."""
+        while True:
+            run, over = self._read()
+            if over:
+                return run
+            clock.sleep(PERIOD)
+
+    def order(self, images: RunImages, times: Array, options: VideoOptions) -> Iterator[int]:
+        """Yield the numbers of the images as soon as they can be drawn.
+
+        Raises:
+            _EndedEarly: the run ended before its full duration.
+        """
+        drawn, part = 0, (times[-1] - times[0]) / PARTS
+        while drawn < len(times):
+            run, over = self._read()
+            if over and len(instants(run.records["time"], options)[0]) != len(times):
+                raise _EndedEarly
+            seconds = run.seconds["time"]  # a small table
+            if over or (len(seconds) and seconds[-1] >= images.recorded + part):
+                images.update(run)
+                yield from range(drawn, images.ready)
+                drawn = images.ready
+            else:
+                clock.sleep(PERIOD)
+
+    def _read(self) -> tuple[Run, bool]:
+        """Return the run, and whether it had ended before its records are read."""
+        orphaned = os.getppid() != self._parent
+        run = open_run(self._path)
+        return run, orphaned or not run.running

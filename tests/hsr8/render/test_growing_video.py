@@ -1,0 +1,83 @@
+"""A video that is drawn during the run has the frames of one that is drawn after it."""
+
+import os
+import shutil
+import signal
+import subprocess
+import sys
+import time as clock
+
+import av
+import numpy as np
+import pytest
+
+from hsr8.cli.main import entry
+from hsr8.recorder.run.run_reader import open_run
+from hsr8.render.run_images import RunImages
+
+pytestmark = [pytest.mark.gl, pytest.mark.timeout(300)]
+FAST = ["--body", "kinematic", "--camera", "analytic", "--no-log"]
+SMALL = ["--size", "192x108", "--quiet"]
+
+
+def frames(path):
+    with av.open(str(path)) as video:
+        return np.array([frame.to_ndarray(format="rgb24") for frame in video.decode(video=0)])
+
+
+def rendered_afterwards(run, tmp_path):
+    assert entry(["render", str(run.path), "--out", str(tmp_path / "after.mp4"), "--quiet"]) == 0
+    return frames(tmp_path / "after.mp4")
+
+
+@pytest.mark.parametrize(("scenario", "duration"), [("paper", "8"), ("quick", "1"), ("walk", "2")])
+def test_a_video_of_a_run_equals_one_of_its_records(tmp_path, scenario, duration, capsys):
+    words = ["run", scenario, *FAST, "--duration", duration, "--video"]
+    assert entry([*words, "--out", str(tmp_path / "runs")]) <= 1
+    run = open_run(tmp_path)
+    assert str(run.path / "video.mp4") in capsys.readouterr().out
+    during, after = frames(run.path / "video.mp4"), rendered_afterwards(run, tmp_path)
+    assert np.array_equal(during, after)
+    assert (run.path / "video.png").read_bytes() == (tmp_path / "after.png").read_bytes()
+
+
+@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGKILL])
+def test_an_interrupted_or_killed_run_leaves_the_video_of_its_records(tmp_path, number):
+    words = ["run", "paper", *FAST, "--video", "--quiet", "--out", str(tmp_path / "runs")]
+    process = subprocess.Popen([sys.executable, "-m", "hsr8", *words])
+    tables = tmp_path / "runs"
+    while not any(f.stat().st_size > 20_000 for f in tables.rglob("records.arrows")):
+        assert process.poll() is None
+        clock.sleep(0.2)
+    os.kill(process.pid, number)
+    assert process.wait() == (130 if number == signal.SIGINT else -number)
+    run = open_run(tmp_path)
+    while not (run.path / "video.png").exists():  # of a killed run the second process goes on
+        clock.sleep(0.2)
+    during = frames(run.path / "video.mp4")
+    assert np.array_equal(during, rendered_afterwards(open_run(tmp_path), tmp_path))
+    assert len(during) < 60 * 25
+    assert not list(run.path.glob("*.part"))
+
+
+def test_a_run_without_records_has_no_video(tmp_path, capsys):
+    words = ["run", "quick", *FAST, "--quiet", "--duration", "1", "--out", str(tmp_path / "runs")]
+    entry(words)
+    run = open_run(tmp_path)
+    shutil.copytree(run.path, tmp_path / "copy")
+    (tmp_path / "copy" / "records.arrows").unlink()
+    manifest = tmp_path / "copy" / "manifest.json"
+    manifest.write_text(manifest.read_text().replace('"timeout"', '"error"'))
+    assert entry(["render", str(tmp_path / "copy"), "--follow", *SMALL]) == 2
+    assert "no motion" in capsys.readouterr().err
+    assert not list((tmp_path / "copy").glob("video*"))
+
+
+def test_images_that_later_records_would_change_are_not_ready(tmp_path):
+    entry(["run", "quick", *FAST, "--quiet", "--duration", "2", "--out", str(tmp_path)])
+    run = open_run(tmp_path)
+    for stop, ready in ((2.0, True), (2.1, False)):
+        times = np.arange(0.0, stop, 0.04)
+        with RunImages(run, times, (64, 64), fps=25, speed=1.0, fine=False) as images:
+            assert (images.ready == len(times)) is ready
+            assert images.recorded == 2.0
