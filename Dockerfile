@@ -8,7 +8,7 @@ RUN python -m venv /opt/hsr8 && /opt/hsr8/bin/pip install --no-cache-dir .
 
 FROM python:3.12.8-slim-bookworm
 RUN apt-get update \
-    && apt-get install -y --no-install-recommends libegl1 libgl1 \
+    && apt-get install -y --no-install-recommends libegl1 libgl1 libgomp1 \
     && rm -rf /var/lib/apt/lists/*
 COPY --from=build /opt/hsr8 /opt/hsr8
 # Software rendering, and kernels for every processor with AVX2, not only that of the build.

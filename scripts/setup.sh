@@ -69,6 +69,10 @@ say "installing the locked packages (about a minute the first time)"
 say "installing hsr8 itself, editable"
 "${pip[@]}" install -qq --no-deps --no-build-isolation --no-index --editable .
 
+if ! "$venv/bin/python" -c 'import pinocchio' 2>/dev/null && ! apt_install libgomp1; then
+    warn "Pinocchio cannot be imported; as root: apt-get install libgomp1"
+    exit 1
+fi
 if ! gl_draws && ! { apt_install libegl1 libgl1 && gl_draws; }; then
     warn "no OpenGL to draw with: camera and videos need it; as root: apt-get install libegl1 libgl1"
 fi

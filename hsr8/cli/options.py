@@ -227,7 +227,7 @@ class Render:
     speed: Number = None
     """Simulated seconds per second of video; default: a video of at most a minute."""
     follow: Flag = False
-    """Draw during the run, from the records so far; a run with a goal is drawn at its end."""
+    """Draw during the run; a run with a goal is drawn at its end. SIGTERM stands for the end."""
     json: Json = False
     quiet: Quiet = False
 

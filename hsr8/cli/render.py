@@ -1,13 +1,15 @@
 """``hsr8 render``: the video of a run."""
 
+import signal
 import time as clock
+from threading import Event
 
 from rich.console import Console
 from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeRemainingColumn
 
 from hsr8.cli.options import Render
 from hsr8.cli.output_file import parse_size, require_file_name, writing
-from hsr8.cli.termination import like_ctrl_c
+from hsr8.cli.termination import on_signals
 from hsr8.errors import UsageError
 from hsr8.gl import is_software, require_gl
 from hsr8.recorder.files import atomic
@@ -57,11 +59,13 @@ def main(options: Render) -> int:
         def show(done: int, total: int) -> None:
             bar.update(task, completed=done, total=total)
 
-        draw = follow_run if options.follow else render_run
-        with like_ctrl_c(), writing("--out", out):
-            made = draw(
-                run, video, out, lambda n, total: bar.update(task, completed=n, total=total)
-            )
+        with writing("--out", out):
+            if options.follow:
+                stopped = Event()
+                with on_signals((signal.SIGTERM,), lambda *_: stopped.set()):
+                    made = follow_run(run, video, out, show, stopped.is_set)
+            else:
+                made = render_run(run, video, out, show)
     _report(made, clock.perf_counter() - started, options)
     return 0
 

@@ -1,8 +1,7 @@
 """Video of a run that is still in progress, drawn from the records that it has written so far."""
 
-import os
 import time as clock
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from functools import partial
 from pathlib import Path
 
@@ -31,15 +30,27 @@ class _EndedEarly(Exception):
     """The video of the run has other frames than that of a run of full duration."""
 
 
-def follow_run(run: Run, options: VideoOptions, out: Path, progress: Progress) -> RenderedVideo:
-    """Draw the video of a run during the run; arguments and errors as `render_run`.
+def follow_run(
+    run: Run,
+    options: VideoOptions,
+    out: Path,
+    progress: Progress,
+    stopped: Callable[[], bool],
+) -> RenderedVideo:
+    """Draw the video of a run during the run; errors as `render_run`.
 
     The frames are those that `render_run` draws after the run. Their number and speed follow from
     the length of the run. The video is begun for the full duration if the mission has no goal; if
-    the run ends early, it is drawn again. The run counts as ended when the process that started
-    this one ends.
+    the run ends early, it is drawn again.
+
+    Args:
+        run: in progress.
+        options: of the video.
+        out: file to write, no image.
+        progress: called with the number of finished frames and of all.
+        stopped: returns whether the run counts as ended although its manifest does not say so.
     """
-    watched = _GrowingRun(run.path)
+    watched = _GrowingRun(run.path, stopped)
     scenario = run.scenario()
     layout = draw_layout(scenario, run.seed)
     if layout.endless or not len(layout.waypoints):
@@ -58,11 +69,12 @@ class _GrowingRun:
 
     Args:
         path: of the folder.
+        stopped: returns whether the other process is gone.
     """
 
-    def __init__(self, path: Path) -> None:
+    def __init__(self, path: Path, stopped: Callable[[], bool]) -> None:
         self._path = path
-        self._parent = os.getppid()
+        self._stopped = stopped
 
     def started(self) -> Run:
         """Return the run as soon as it has records.
@@ -107,6 +119,6 @@ class _GrowingRun:
 
     def _read(self) -> tuple[Run, bool]:
         """Return the run, and whether it had ended before its records are read."""
-        orphaned = os.getppid() != self._parent
+        stopped = self._stopped()
         run = open_run(self._path)
-        return run, orphaned or not run.running
+        return run, stopped or not run.running

@@ -1,6 +1,5 @@
 """A video that is drawn during the run has the frames of one that is drawn after it."""
 
-import os
 import shutil
 import signal
 import subprocess
@@ -30,7 +29,7 @@ def rendered_afterwards(run, tmp_path):
     return frames(tmp_path / "after.mp4")
 
 
-@pytest.mark.parametrize(("scenario", "duration"), [("paper", "8"), ("quick", "1"), ("walk", "2")])
+@pytest.mark.parametrize(("scenario", "duration"), [("paper", "6"), ("quick", "1"), ("walk", "2")])
 def test_a_video_of_a_run_equals_one_of_its_records(tmp_path, scenario, duration, capsys):
     words = ["run", scenario, *FAST, "--duration", duration, "--video"]
     assert entry([*words, "--out", str(tmp_path / "runs")]) <= 1
@@ -41,23 +40,38 @@ def test_a_video_of_a_run_equals_one_of_its_records(tmp_path, scenario, duration
     assert (run.path / "video.png").read_bytes() == (tmp_path / "after.png").read_bytes()
 
 
-@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGKILL])
-def test_an_interrupted_or_killed_run_leaves_the_video_of_its_records(tmp_path, number):
-    words = ["run", "paper", *FAST, "--video", "--quiet", "--out", str(tmp_path / "runs")]
-    process = subprocess.Popen([sys.executable, "-m", "hsr8", *words])
-    tables = tmp_path / "runs"
-    while not any(f.stat().st_size > 20_000 for f in tables.rglob("records.arrows")):
+def test_an_interrupted_run_leaves_the_video_of_its_records(tmp_path):
+    words = ["--body", "full", "--camera", "analytic", "--no-log", "--video", "--quiet"]
+    command = [sys.executable, "-m", "hsr8", "run", "paper", *words, "--out", str(tmp_path)]
+    process = subprocess.Popen(command)
+    while not any(f.stat().st_size > 50_000 for f in tmp_path.rglob("records.arrows")):
         assert process.poll() is None
-        clock.sleep(0.2)
-    os.kill(process.pid, number)
-    assert process.wait() == (130 if number == signal.SIGINT else -number)
+        clock.sleep(0.1)
+    process.send_signal(signal.SIGINT)
+    assert process.wait() == 130
     run = open_run(tmp_path)
-    while not (run.path / "video.png").exists():  # of a killed run the second process goes on
-        clock.sleep(0.2)
     during = frames(run.path / "video.mp4")
-    assert np.array_equal(during, rendered_afterwards(open_run(tmp_path), tmp_path))
-    assert len(during) < 60 * 25
-    assert not list(run.path.glob("*.part"))
+    assert np.array_equal(during, rendered_afterwards(run, tmp_path))
+    assert len(during) == round(run.records["time"][-1] * 25)
+
+
+def test_a_killed_run_leaves_the_video_of_its_records(tmp_path):
+    """The second process gets a SIGTERM when the first one ends."""
+    entry(["run", "paper", *FAST, "--quiet", "--duration", "2", "--out", str(tmp_path / "runs")])
+    folder = open_run(tmp_path).path
+    manifest, scenario = folder / "manifest.json", folder / "scenario.toml"
+    manifest.write_text(manifest.read_text().replace('"completed"', '"running"'))
+    assert open_run(folder).running
+    scenario.write_text(scenario.read_text().replace("duration = 2.0", "duration = 560.2"))
+    command = [sys.executable, "-m", "hsr8", "render", str(folder), "--follow", *SMALL]
+    process = subprocess.Popen(command)
+    while not [*folder.glob("video.mp4.*.part")]:
+        assert process.poll() is None
+        clock.sleep(0.1)
+    process.terminate()
+    assert process.wait() == 0
+    assert len(frames(folder / "video.mp4")) == 2 * 25
+    assert not [*folder.glob("*.part")]
 
 
 def test_a_run_without_records_has_no_video(tmp_path, capsys):
