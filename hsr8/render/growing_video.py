@@ -105,17 +105,25 @@ class _GrowingRun:
             _EndedEarly: the run ended before its full duration.
         """
         drawn, part = 0, (times[-1] - times[0]) / PARTS
-        while drawn < len(times):
+        while True:
+            yield from range(drawn, images.ready)
+            drawn = max(drawn, images.ready)
+            if drawn == len(times):
+                return
+            self._wait(images.recorded + part)
             run, over = self._read()
             if over and len(instants(run.records["time"], options)[0]) != len(times):
                 raise _EndedEarly
+            images.update(run)
+
+    def _wait(self, time: float) -> None:
+        """Wait until everything up to a simulated time is recorded, or the run ends."""
+        while True:
+            run, over = self._read()
             seconds = run.seconds["time"]  # a small table
-            if over or (len(seconds) and seconds[-1] >= images.recorded + part):
-                images.update(run)
-                yield from range(drawn, images.ready)
-                drawn = images.ready
-            else:
-                clock.sleep(PERIOD)
+            if over or (len(seconds) and seconds[-1] >= time):
+                return
+            clock.sleep(PERIOD)
 
     def _read(self) -> tuple[Run, bool]:
         """Return the run, and whether it had ended before its records are read."""
