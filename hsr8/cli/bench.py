@@ -15,8 +15,9 @@ from hsr8.cli.sweep_runs import (
     require_no_seed,
     run_sweeps,
 )
-from hsr8.errors import Hsr8Error
+from hsr8.errors import Hsr8Error, UsageError
 from hsr8.evaluation.bench.entry import FILE, Entry, row
+from hsr8.evaluation.bench.mistakes import checked_name
 from hsr8.evaluation.bench.page import entry_page
 from hsr8.evaluation.bench.suite import SHIPPED, changed_settings, read_suite, scenario_hash
 from hsr8.evaluation.sweep.folder import REPORT
@@ -48,7 +49,7 @@ def main(options: Bench) -> int:
     words = _settings(options)
     standard, scenarios = suite.scenarios(file), suite.scenarios(file, words)
     changed = changed_settings(standard, scenarios)
-    names = (options.name,) if options.name else words or (DEFAULT,)
+    names = _names(options, words)
     parent = Path("bench") if options.suite is None else Path("bench") / suite.name
     out = options.out or parent / folder_name(names)
     commands = {
@@ -89,6 +90,20 @@ def _settings(options: Bench) -> tuple[str, ...]:
     words = (("robot.body", options.body), ("camera.source", options.camera))
     given = tuple(f"{key}={value}" for key, value in words if value is not None)
     return (*given, *settings(options))
+
+
+def _names(options: Bench, words: tuple[str, ...]) -> tuple[str, ...]:
+    """Return the name of the entry, or its settings.
+
+    Raises:
+        UsageError: it is not a name.
+    """
+    if options.name is None:
+        return words or (DEFAULT,)
+    try:
+        return (checked_name(options.name),)
+    except ValueError as error:
+        raise UsageError(f"--name: {error}") from None
 
 
 def _command(options: Bench) -> str:

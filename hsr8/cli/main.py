@@ -14,7 +14,7 @@ from typing import Any, get_args
 import tyro
 
 from hsr8.cli.crash import crash_report
-from hsr8.cli.options import BenchCompare, Command, Robot, RobotAction
+from hsr8.cli.options import BenchCompare, Command, RobotAction
 from hsr8.cli.renamed import require_present_names
 from hsr8.errors import Hsr8Error, UsageError
 from hsr8.suggestion import suggestion
@@ -47,7 +47,10 @@ def _words(kind: type[object], separator: str) -> str:
 
 COMMANDS: dict[str, type[Command]] = {_words(kind, "-"): kind for kind in get_args(Command)}
 
-ACTIONS = [kind.__name__.removeprefix("Robot").lower() for kind in get_args(RobotAction)]
+ACTIONS = {
+    "robot": [kind.__name__.removeprefix("Robot").lower() for kind in get_args(RobotAction)],
+    "bench": ["compare"],
+}
 
 
 def entry(arguments: Sequence[str] | None = None) -> int:
@@ -116,12 +119,12 @@ def parse(words: Sequence[str]) -> Command | BenchCompare | None:
     if name == "--version":
         print(f"hsr8 {VERSION}")
         return None
-    if words[:2] == ["bench", "compare"]:
-        return _parse(BenchCompare, "hsr8 bench compare", words[2:])
     if name in COMMANDS:
-        words = _action(rest) if COMMANDS[name] is Robot else []
+        action = _action(name, rest) if name in ACTIONS else []
+        if action == ["compare"]:
+            return _parse(BenchCompare, "hsr8 bench compare", rest[1:])
         help_wanted = not {"-h", "--help"}.isdisjoint(rest)
-        return _parse(COMMANDS[name], f"hsr8 {name}", [*words, "--help"] if help_wanted else rest)
+        return _parse(COMMANDS[name], f"hsr8 {name}", [*action, "--help"] if help_wanted else rest)
     if name in ("-h", "--help"):
         return _parse(Command, "hsr8", ["--help"], description=DESCRIPTION)
     if name == "--tyro-print-completion":
@@ -132,19 +135,19 @@ def parse(words: Sequence[str]) -> Command | BenchCompare | None:
     raise UsageError(f"{name}: unknown command{hint} (commands: {', '.join(COMMANDS)})")
 
 
-def _action(words: Sequence[str]) -> list[str]:
-    """Return the command after ``hsr8 robot``; none before options.
+def _action(name: str, words: Sequence[str]) -> list[str]:
+    """Return the command after ``hsr8 robot`` or ``hsr8 bench``; none before options.
 
     Raises:
         UsageError: the command is unknown.
     """
-    first = "".join(words[:1])
-    if first in ACTIONS:
+    first, actions = "".join(words[:1]), ACTIONS[name]
+    if first in actions:
         return [first]
     if first and not first.startswith("-"):
-        hint = suggestion(first, ACTIONS)
-        names = ", ".join(ACTIONS)
-        raise UsageError(f"robot {first}: unknown command{hint} (commands: {names})")
+        hint = suggestion(first, actions)
+        names = ", ".join(actions)
+        raise UsageError(f"{name} {first}: unknown command{hint} (commands: {names})")
     return []
 
 

@@ -82,7 +82,7 @@ def _scenario(options: Sweep, varied: tuple[str, ...]) -> Scenario:
     require_no_seed("--set", settings(options))
     require_no_seed("--vary", varied)
     return load_scenario(
-        options.scenario, settings(options), options=option_tables(options), varied=varied
+        options.scenario, settings(options), options=option_tables(options), more={"--vary": varied}
     )
 
 

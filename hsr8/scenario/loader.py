@@ -40,7 +40,7 @@ def load_scenario(
     overrides: Sequence[str] | Mapping[str, Any] = (),
     seed: int | None = None,
     options: Mapping[str, Mapping[str, Any]] | None = None,
-    varied: Sequence[str] = (),
+    more: Mapping[str, Sequence[str]] | None = None,
 ) -> Scenario:
     """Read a scenario.
 
@@ -54,14 +54,15 @@ def load_scenario(
         seed: replaces the seed of the file.
         options: tables set by command-line options, by the option's name; `overrides` take
             precedence.
-        varied: ``key=value`` of ``--vary``; these take precedence over all others.
+        more: further ``key=value`` by their source, which messages name, such as ``--vary``;
+            these take precedence over all others.
 
     Raises:
         ScenarioError: the file or an override is wrong; the message lists every mistake with its
             line and the allowed values.
     """
     words = [("--set", word) for word in as_words(overrides)]
-    words += [("--vary", word) for word in varied]
+    words += [(source, word) for source, given in (more or {}).items() for word in given]
     layers = _read(_find(name_or_path), ())
     return _Sources(layers, options or {}, words, seed).scenario(name_or_path)
 

@@ -1,7 +1,6 @@
 """Entry of a benchmark: versions, settings and all runs, in one JSON file."""
 
 import json
-from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Annotated, Any, Literal, Self
@@ -10,6 +9,7 @@ from annotated_types import Interval
 from pydantic import TypeAdapter, ValidationError
 
 from hsr8.errors import UsageError
+from hsr8.evaluation.bench.mistakes import mistakes
 from hsr8.evaluation.bench.score import Score, score
 from hsr8.evaluation.sweep.definition import Differences
 from hsr8.evaluation.sweep.job import RunResult
@@ -109,15 +109,17 @@ class Entry:
         return f'{head},\n  "runs": {{\n' + ",\n".join(families) + "\n  }\n}\n"
 
     @classmethod
-    def from_json(cls, value: Mapping[str, Any]) -> Self:
+    def from_json(cls, value: Any) -> Self:
         """Read the result of `to_json`.
 
         Raises:
-            KeyError, TypeError, ValueError: `value` is not such a result.
+            ValueError: `value` is not such a result.
         """
+        if not isinstance(value, dict) or "format" not in value:
+            raise ValueError("format is missing")
         if value["format"] != FORMAT:
-            raise ValueError(f"format: got {value['format']}; expected {FORMAT}")
-        fields = {key: value[key] for key in cls.__dataclass_fields__}
+            raise ValueError(f"format is not {FORMAT}, got {value['format']}")
+        fields = {key: value[key] for key in cls.__dataclass_fields__ if key in value}
         entry = TypeAdapter(cls).validate_json(json.dumps(fields), strict=True)
         for runs in entry.runs.values():
             for run in runs:
@@ -134,18 +136,17 @@ def read_entry(path: Path) -> Entry:
     file = path / FILE if path.is_dir() else path
     try:
         return Entry.from_json(json.loads(file.read_text(encoding="utf-8")))
-    except FileNotFoundError:
-        raise UsageError(f"{path}: not an entry of `hsr8 bench`, {file} is missing") from None
     except OSError as error:
-        raise UsageError(f"{file}: cannot be read: {error.strerror}") from error
+        text = f"cannot be read: {error.strerror}"
     except ValidationError as error:
-        first = error.errors()[0]
-        key = ".".join(map(str, first["loc"]))
-        text = f"{key}: {first['msg'].lower()}, got {first['input']}"
-        raise UsageError(f"{file}: not an entry of `hsr8 bench`, {text}") from error
-    except (ValueError, KeyError, TypeError, RecursionError) as error:
-        text = f"{type(error).__name__}: {error}"
-        raise UsageError(f"{file}: not an entry of `hsr8 bench`, {text}") from error
+        text = mistakes(error)[0]
+    except (json.JSONDecodeError, UnicodeDecodeError, RecursionError) as error:
+        text = f"invalid JSON: {error}"
+    except ValueError as error:
+        text = str(error)
+    raise UsageError(
+        f"{file}: not an entry of hsr8 bench: {text}; expected a folder of hsr8 bench or its {FILE}"
+    )
 
 
 def row(result: RunResult) -> RunResult:

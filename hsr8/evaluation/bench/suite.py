@@ -8,9 +8,10 @@ from pathlib import Path
 from typing import Annotated, Any
 
 from annotated_types import Interval, Len
-from pydantic import Field, ValidationError
+from pydantic import AfterValidator, ValidationError
 
-from hsr8.errors import UsageError
+from hsr8.errors import ScenarioError, UsageError
+from hsr8.evaluation.bench.mistakes import checked_name, mistakes
 from hsr8.evaluation.sweep.definition import Definition, scenario_differences
 from hsr8.evaluation.sweep.seeds import parse_seeds
 from hsr8.evaluation.sweep.table import flatten
@@ -31,7 +32,7 @@ Differences = dict[str, tuple[str, str]]
 class Suite(Section):
     """Families of worlds with their seeds and the standard robot, body and camera."""
 
-    name: Annotated[str, Len(1, 64), Field(pattern=r"^[A-Za-z0-9][A-Za-z0-9._-]*$")]
+    name: Annotated[str, AfterValidator(checked_name)]
     """Name of the suite."""
     version: Annotated[int, Interval(ge=1)]
     """Version; results of different versions are not comparable."""
@@ -50,10 +51,7 @@ class Suite(Section):
         Args:
             file: of the suite.
         """
-        return {
-            Path(name).stem: str(file.parent / name) if name.endswith(".toml") else name
-            for name in self.families
-        }
+        return {Path(name).stem: _path(file, name) for name in self.families}
 
     def scenarios(self, file: Path, settings: Sequence[str] = ()) -> dict[str, Scenario]:
         """Return the scenario of every family by name.
@@ -65,8 +63,16 @@ class Suite(Section):
         Raises:
             ScenarioError: a scenario or a setting is invalid.
         """
-        words = [*self.settings, *settings]
-        return {name: load_scenario(path, words) for name, path in self.paths(file).items()}
+        words = {f"{file.name}: settings": self.settings, "--set": settings}
+        scenarios = {}
+        for name in self.families:
+            try:
+                scenarios[Path(name).stem] = load_scenario(_path(file, name), more=words)
+            except ScenarioError as error:
+                if settings:
+                    raise
+                raise ScenarioError(f"{file}: families.{name}: {error}") from error
+        return scenarios
 
     def digest(self, standard: Mapping[str, Scenario]) -> str:
         """Return the first digits of the SHA-256 of all that makes results comparable.
@@ -96,11 +102,8 @@ def read_suite(file: Path) -> Suite:
     except OSError as error:
         raise UsageError(f"--suite {file}: cannot be read: {error.strerror}") from error
     except ValidationError as error:
-        lines = [
-            f"{'.'.join(map(str, e['loc']))}: {e['msg'].lower()}, got {e['input']}"
-            for e in error.errors()
-        ]
-        raise UsageError("\n  ".join([f"--suite {file}: not a suite", *lines])) from error
+        lines = [f"--suite {file}: not a suite", *mistakes(error)]
+        raise UsageError("\n  ".join(lines)) from error
     except (ValueError, RecursionError) as error:
         raise UsageError(f"--suite {file}: invalid TOML: {error}") from error
     for key in ("quick", "full"):
@@ -121,21 +124,31 @@ def changed_settings(
         UsageError: a setting changes the worlds, the mission or the criteria.
     """
     changed: Differences = {}
+    wrong = []
     for family, scenario in scenarios.items():
         one, other = (
             Definition(family, (), "", "", "", {}, dump(s)) for s in (standard[family], scenario)
         )
-        changed |= scenario_differences(one, other)
-    wrong = [key for key in changed if not (_free(key) or _within(key, CONDITIONS))]
+        differences = scenario_differences(one, other)
+        wrong += [
+            f"{family}: {key}: {value}; expected {expected}"
+            for key, (expected, value) in differences.items()
+            if not (_free(key) or _within(key, CONDITIONS))
+        ]
+        changed |= differences
     if wrong:
-        lines = [f"{key}: {changed[key][1]}; expected {changed[key][0]}" for key in wrong]
-        raise UsageError("\n  ".join(["--set: settings change the suite, got", *lines]))
+        raise UsageError("\n  ".join(["--set: settings change the suite, got", *wrong]))
     return changed
 
 
 def scenario_hash(scenario: Scenario) -> str:
     """Return the first digits of the SHA-256 of a scenario without its seed."""
     return _sha256(_keys(scenario.with_seed(0)))
+
+
+def _path(file: Path, name: str) -> str:
+    """Return name or file of the scenario of a family."""
+    return str(file.parent / name) if name.endswith(".toml") else name
 
 
 def _keys(scenario: Scenario) -> dict[str, Any]:

@@ -78,15 +78,14 @@ def test_full_keeps_the_runs_of_quick(bench, instant):
 
 def test_the_command_continues_after_ctrl_c(bench, instant, capsys):
     stopped = instant({1001: KeyboardInterrupt()})
-    assert entry([*bench, "--name", "a b", "--set", "navigation.planner.method=orca"]) == 130
+    assert entry([*bench, "--out", "a b", "--set", "navigation.planner.method=orca"]) == 130
     assert stopped.closed
     assert not list(Path().rglob("bench.json"))
     (command,) = re.findall("continue with: hsr8 (.*)", capsys.readouterr().err)
     again = instant()
     assert entry(shlex.split(command)) == 0
     assert sorted(job.seed for job in again.ran) == [1000, 1001, 1001, 1002, 1002]
-    (file,) = Path().rglob("bench.json")
-    assert read_entry(file).name == "a b"
+    assert read_entry(Path("a b")).name == "navigation.planner.method=orca"
 
 
 def test_the_command_of_an_entry_names_neither_folder_nor_workers(bench, instant):
@@ -157,6 +156,9 @@ def test_table_and_json_are_printed(bench, instant, capsys):
         (["--workers", "0"], "--workers: out of range"),
         (["--timeout", "-1"], "--timeout: out of range"),
         (["--body", "none"], "invalid choice 'none' for argument '--body'"),
+        (["--name", ""], "--name: wrong form, got ''; expected letters, digits, '.', '_' and '-'"),
+        (["--name", "../../x"], "--name: wrong form, got '../../x'; expected letters"),
+        (["--name", "a/b"], "--name: wrong form, got 'a/b'; expected letters"),
         (["compare"], "compare"),
     ],
 )
@@ -173,10 +175,10 @@ def test_invalid_options_are_one_message(bench, capsys, more, message):
     ("line", "message"),
     [
         ("compare a", "B"),
-        ("compare a a", "a: not an entry of `hsr8 bench`, a is missing"),
-        ("compare . .", "not an entry of `hsr8 bench`, bench.json is missing"),
+        ("compare a a", "a: not an entry of hsr8 bench: cannot be read"),
+        ("compare . .", "bench.json: not an entry of hsr8 bench: cannot be read"),
         ("compare mine.py mine.py", "mine.py: not an entry"),
-        ("compar a b", "Unrecognized options: compar"),
+        ("compar a b", "bench compar: unknown command; did you mean 'compare'?"),
     ],
 )
 def test_mistakes_of_comparisons_are_one_message(bench, capsys, line, message):

@@ -356,6 +356,6 @@ def test_deep_nesting_is_refused(tmp_path):
 
 def test_mistakes_in_varied_values_name_the_option():
     with pytest.raises(ScenarioError, match=r"--vary wold.x=1: wold: unknown key"):
-        load_scenario("quick", varied=["wold.x=1"])
+        load_scenario("quick", more={"--vary": ["wold.x=1"]})
     with pytest.raises(ScenarioError, match="--vary x: expected key=value"):
-        load_scenario("quick", varied=["x"])
+        load_scenario("quick", more={"--vary": ["x"]})

@@ -91,7 +91,7 @@ def test_values_of_a_user_are_literal_and_others_scaled(defaults, tmp_path):
         str(file),
         ["navigation.mission.r_via=0.2", "mission.points.1=[3.0, 0.5]"],
         options={"--duration": {"duration": 7.0}},
-        varied=["belief.tracking.max_speed=0.9"],
+        more={"--vary": ["belief.tracking.max_speed=0.9"]},
     )
     assert scenario.world.lane == (0.5, 0.6)
     assert scenario.navigation.mission.r_release == 0.11

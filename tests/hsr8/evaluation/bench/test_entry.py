@@ -39,14 +39,14 @@ def test_all_is_the_score_of_all_families(make_entry):
 @pytest.mark.parametrize(
     ("change", "message"),
     [
-        (lambda value: value.update(format=2), "format: got 2; expected 1"),
-        (lambda value: value.pop("versions"), "versions"),
+        (lambda value: value.update(format=2), "format is not 1, got 2"),
+        (lambda value: value.pop("versions"), "versions is missing"),
         (lambda value: value.update(suite_version="1"), "suite_version: .*, got 1"),
         (lambda value: value.update(settings={"a": ["b"]}), "settings.a"),
         (lambda value: value["runs"]["course"][0].update(outcome="good"), "outcome: .*, got good"),
         (lambda value: value["runs"]["course"][0].update(path_length_m="far"), "got far"),
         (lambda value: value["runs"]["course"][0].update(time_to_goal_s=0.0), "got 0.0"),
-        (lambda value: value["runs"]["course"][0].pop("falls"), "falls: field required"),
+        (lambda value: value["runs"]["course"][0].pop("falls"), "falls is missing"),
         (lambda value: value.update(runs=[1]), "runs: input should be"),
     ],
 )
@@ -59,6 +59,24 @@ def test_other_files_are_refused(make_entry, tmp_path, change, message):
         read_entry(file)
 
 
-def test_a_missing_file_is_named(tmp_path):
-    with pytest.raises(UsageError, match=r"not an entry of `hsr8 bench`, .*bench.json is missing"):
+@pytest.mark.parametrize(
+    ("text", "reason"),
+    [
+        ("{}", "format is missing"),
+        ("[]", "format is missing"),
+        ('{"format": 9}', "format is not 1, got 9"),
+        ('{"format": 1}', "name is missing"),
+        ("", "invalid JSON: Expecting value: line 1 column 1 (char 0)"),
+        (None, "cannot be read: No such file or directory"),
+    ],
+)
+def test_the_file_and_the_mistake_are_named(tmp_path, text, reason):
+    file = tmp_path / "bench.json"
+    if text is not None:
+        file.write_text(text)
+    with pytest.raises(UsageError) as error:
         read_entry(tmp_path)
+    assert str(error.value) == (
+        f"{file}: not an entry of hsr8 bench: {reason}; "
+        "expected a folder of hsr8 bench or its bench.json"
+    )

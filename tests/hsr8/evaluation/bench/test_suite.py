@@ -87,8 +87,16 @@ def test_body_and_camera_may_change_and_are_reported(small, setting):
 def test_worlds_and_missions_may_not_change(small, setting):
     suite = read_suite(small)
     key, _, value = setting.partition("=")
-    with pytest.raises(UsageError, match=f"{key}: {value}.*; expected"):
+    with pytest.raises(UsageError, match=f"  yard: {key}: {value}.*; expected"):
         changed_settings(suite.scenarios(small), suite.scenarios(small, [setting]))
+
+
+def test_only_families_that_differ_are_named(small):
+    suite = read_suite(small)
+    with pytest.raises(UsageError) as error:
+        changed_settings(suite.scenarios(small), suite.scenarios(small, ["world.n_static=7"]))
+    assert "quick: world.n_static: 7; expected" in str(error.value)
+    assert "yard" not in str(error.value)
 
 
 @pytest.mark.parametrize(
@@ -118,12 +126,13 @@ def test_files_of_scenarios_are_next_to_the_suite(small, monkeypatch):
 @pytest.mark.parametrize(
     ("old", "new", "message"),
     [
-        ("version = 3", "", "version: field required"),
+        ("version = 3", "", "version is missing"),
         ("version = 3", "version = 0", "version: input should be greater than or equal to 1"),
         ("version = 3", "version = 3\nsize = 3", "size: extra inputs are not permitted, got 3"),
         ('quick = "1000"', 'quick = "x"', "quick: not a seed or a range, got 'x'"),
         ('name = "small"', "name = ", "invalid TOML"),
-        ("[families]", "[familes]", "families: field required"),
+        ('"small"', '"A/b"', "name: .*, got 'A/b'; expected letters, digits, '.', '_' and '-'"),
+        ("[families]", "[familes]", "families is missing"),
     ],
 )
 def test_mistakes_in_a_suite_are_named(small, old, new, message):
@@ -137,7 +146,22 @@ def test_a_missing_suite_is_named(tmp_path):
         read_suite(tmp_path / "none.toml")
 
 
-def test_an_unknown_family_is_named(small):
-    small.write_text(SMALL.replace('quick = "a name"', 'quik = "a name"'))
-    with pytest.raises(ScenarioError, match="did you mean 'quick'"):
+@pytest.mark.parametrize(
+    ("old", "new", "message"),
+    [
+        ('quick = "a name"', 'quik = ""', "families.quik: unknown scenario 'quik'; did you mean"),
+        ('"yard.toml"', '"yad.toml"', "families.yad.toml: scenario file '.*' does not exist"),
+        ("source=", "sorce=", r"families.yard.toml: .*\n *small.toml: settings camera.sorce=.*"),
+    ],
+)
+def test_mistakes_in_families_and_settings_name_the_suite(small, old, new, message):
+    small.write_text(SMALL.replace(old, new))
+    with pytest.raises(ScenarioError, match=f"^{re.escape(str(small))}: {message}") as error:
         read_suite(small).scenarios(small)
+    assert "--set" not in str(error.value)
+
+
+def test_mistakes_in_settings_of_an_entry_name_the_option(small):
+    with pytest.raises(ScenarioError, match=r"--set world.n=3: world.n: unknown key") as error:
+        read_suite(small).scenarios(small, ["world.n=3"])
+    assert "small.toml" not in str(error.value)
