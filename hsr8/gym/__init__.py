@@ -29,4 +29,5 @@ for _name, _decides in (
         f"hsr8/{_name}-v0",
         entry_point="hsr8.gym.environment:Environment",
         kwargs={"decides": _decides},
+        disable_env_checker=True,  # after a failed first reset, it refuses every step
     )

@@ -45,6 +45,10 @@ class ActionMap:
             low, high = -np.ones(len(low)), np.ones(len(high))
         return spaces.Box(low.astype(np.float32), high.astype(np.float32))
 
+    def spaces(self, part: Part) -> tuple[spaces.Box, spaces.Box]:
+        """Return the spaces of the actions that decide `part`, alone and with the other."""
+        return self.space([part]), self.space(["motion", "gaze"])
+
     def velocity(self, action: Array) -> Array:
         """Return vx, vy and wz of an action that decides motion (3,) [m/s, m/s, rad/s]."""
         values = action[: SIZES["motion"]]
@@ -63,18 +67,22 @@ class ActionMap:
         return pan, tilt
 
 
-def check_action(action: NDArray[Any], space: spaces.Box) -> Array:
+def check_action(action: NDArray[Any], *allowed: spaces.Box) -> Array:
     """Return the action as floats.
 
     Raises:
-        UsageError: it is outside of the space.
+        UsageError: it is outside of the allowed spaces.
     """
     values = numbers(action)
-    if values is not None and values.shape == space.shape:
-        low, high = space.low.astype(np.float64), space.high.astype(np.float64)
-        if ((low - ROUNDING <= values) & (values <= high + ROUNDING)).all():
-            return values
+    for space in allowed:
+        if values is not None and values.shape == space.shape:
+            low, high = space.low.astype(np.float64), space.high.astype(np.float64)
+            if ((low - ROUNDING <= values) & (values <= high + ROUNDING)).all():
+                return values
+    expected = " or ".join(
+        f"{space.shape[0]} numbers from {space.low.tolist()} to {space.high.tolist()}"
+        for space in allowed
+    )
     raise UsageError(
-        f"action: outside of the action space, got {shown(action)}; expected {space.shape[0]} "
-        f"numbers from {space.low.tolist()} to {space.high.tolist()}"
+        f"action: outside of the action space, got {shown(action)}; expected {expected}"
     )

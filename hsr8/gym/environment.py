@@ -1,19 +1,21 @@
 """Environment: a run in which a policy decides gaze, motion or both."""
 
 from collections.abc import Mapping, Sequence
+from contextlib import ExitStack
 from pathlib import Path
-from typing import Any
+from typing import Any, Never
 
 import gymnasium
 import numpy as np
 from numpy.typing import NDArray
 
 from hsr8.errors import UsageError
-from hsr8.gym.action import ActionMap, Part, check_action
+from hsr8.gym.action import SIZES, ActionMap, Part, check_action
 from hsr8.gym.episode import FAILURES, Episode
 from hsr8.gym.observation import MAX_TRACKS, Observation, Observer
+from hsr8.gym.options import check_flag, check_names, flat_settings, require_known, reward_weights
 from hsr8.gym.outside_view import OutsideView
-from hsr8.gym.reward import Reward, reward_weights
+from hsr8.gym.reward import WEIGHTS, Reward
 from hsr8.robot_builder import decision_limits, require_planner
 from hsr8.robots.loaded import load_robot
 from hsr8.scenario.loader import load_scenario
@@ -39,6 +41,7 @@ class Environment(gymnasium.Env[Observation, NDArray[Any]]):
         reward: weights that replace those of `hsr8.gym.reward.WEIGHTS`.
         end_on_contact: end at the first contact with an obstacle; if not, as ``hsr8 run``.
         render_mode: ``rgb_array`` for images from outside; None for no images.
+        unknown: refused.
 
     Attributes:
         scenario: with its settings.
@@ -62,20 +65,26 @@ class Environment(gymnasium.Env[Observation, NDArray[Any]]):
         reward: Mapping[str, float] | None = None,
         end_on_contact: bool = True,
         render_mode: str | None = None,
+        **unknown: Never,
     ) -> None:
+        require_known(unknown, Environment.__init__.__annotations__)
         if render_mode not in (None, *RENDER_MODES):
             raise UsageError(
                 f"render_mode: unknown mode, got {render_mode!r}; expected "
                 f"{', '.join(RENDER_MODES)} or None"
             )
-        self.scenario = load_scenario(str(scenario), settings)
+        check_names("decides", decides, SIZES, empty=False)
+        observer = Observer(observe, max_tracks)
+        weights = reward_weights({} if reward is None else reward, WEIGHTS)
+        check_flag("end_on_contact", end_on_contact)
+        check_flag("normalized", normalized)
+        self.scenario = load_scenario(str(scenario), flat_settings(settings))
         _require_decisions(self.scenario, decides)
         camera = self.scenario.camera
         if "image" in observe and camera.source != "rendered":
             raise UsageError(
                 f"observe: an image requires camera.source = 'rendered', got {camera.source!r}"
             )
-        weights = reward_weights(reward or {})
         if "gaze" not in decides and "tracking" not in (reward or {}):
             weights["tracking"] = 0.0
         footstep = self.scenario.speed_limits().footstep
@@ -87,7 +96,6 @@ class Environment(gymnasium.Env[Observation, NDArray[Any]]):
         self._observe_options = observe, max_tracks
         self._actions = ActionMap(decision_limits(self.scenario), normalized=normalized)
         self._box = self.action_space = self._actions.space(decides)
-        observer = Observer(*self._observe_options)
         self.observation_space = observer.space(camera.width, camera.height)
         self._episode: Episode | None = None
         self._view: OutsideView | None = None
@@ -111,16 +119,21 @@ class Environment(gymnasium.Env[Observation, NDArray[Any]]):
         """
         super().reset(seed=seed)
         self.close()
-        episode = self._episode = Episode(
-            self.scenario,
-            int(self.np_random.integers(MAX_SEED + 1)) if seed is None else seed,
-            footsteps="gaze" not in self._decides,
-            end_on_contact=self._end_on_contact,
-        )
-        if not episode.advance():
-            raise UsageError(
-                f"duration: the run ends before the first decision, got {self.scenario.duration:g}"
+        with ExitStack() as failed:
+            episode = Episode(
+                self.scenario,
+                int(self.np_random.integers(MAX_SEED + 1)) if seed is None else seed,
+                footsteps="gaze" not in self._decides,
+                end_on_contact=self._end_on_contact,
             )
+            failed.callback(episode.close)
+            if not episode.advance():
+                raise UsageError(
+                    "duration: the run ends before the first decision, got "
+                    f"{self.scenario.duration:g}"
+                )
+            failed.pop_all()
+        self._episode = episode
         self._observer = Observer(*self._observe_options)
         self._reward = Reward(episode.simulation.layout, self._weights)
         self._reward.start(episode.truth)
@@ -157,10 +170,17 @@ class Environment(gymnasium.Env[Observation, NDArray[Any]]):
     def render(self) -> NDArray[np.uint8] | None:
         """Return an image of the present world from outside (height, width, 3).
 
+        Without `render_mode`, warn and return None, as the environments of Gymnasium.
+
         Raises:
             RenderingUnavailable: there is no OpenGL.
         """
-        if self.render_mode is None or self._episode is None:
+        if self.render_mode is None:
+            gymnasium.logger.warn(
+                f"render_mode: render() has no mode, got None; expected {', '.join(RENDER_MODES)}"
+            )
+            return None
+        if self._episode is None:
             return None
         if self._view is None:
             self._view = OutsideView(self._episode.simulation, self.metadata["render_fps"])

@@ -8,8 +8,7 @@ import numpy as np
 from gymnasium import spaces
 from numpy.typing import NDArray
 
-from hsr8.errors import UsageError
-from hsr8.suggestion import suggestion
+from hsr8.gym.options import TRACK_LIMIT, check_integer, check_names
 from navigation.angles import wrap
 from navigation.belief.belief import Belief, Motion, Track
 from navigation.decision import Task
@@ -46,18 +45,12 @@ class Observer:
         velocity: latest motion decision (3,) [m/s, m/s, rad/s].
 
     Raises:
-        UsageError: an optional part is unknown, or `max_tracks` is not positive.
+        UsageError: an optional part is unknown, or `max_tracks` is not from 1 to 128.
     """
 
     def __init__(self, observe: Sequence[str] = (), max_tracks: int = MAX_TRACKS) -> None:
-        for name in [observe] if isinstance(observe, str) else observe:
-            if name not in OPTIONAL:
-                raise UsageError(
-                    f"observe: unknown part, got {name!r}; expected a list of "
-                    f"{', '.join(OPTIONAL)}{suggestion(name, OPTIONAL)}"
-                )
-        if max_tracks < 1:
-            raise UsageError(f"max_tracks: got {max_tracks}; expected at least 1")
+        check_names("observe", observe, OPTIONAL)
+        check_integer("max_tracks", max_tracks, 1, TRACK_LIMIT)
         self._parts = set(observe)
         self._tracks = np.tile(np.array(TRACK_BOUNDS), (max_tracks, 1)).T
         self._bounds = {key: np.array(bounds).T for key, bounds in BOUNDS.items()}

@@ -2,17 +2,19 @@
 
 from collections.abc import Callable, Sequence
 from inspect import signature
-from typing import Any
+from typing import Any, Never
 
 import numpy as np
+from gymnasium import spaces
 from numpy.typing import NDArray
 
 from hsr8.decisions import GazeController, MotionPlanner
 from hsr8.errors import UsageError
-from hsr8.gym.action import SIZES, ActionMap, Part
+from hsr8.gym.action import ActionMap, check_action
 from hsr8.gym.observation import MAX_TRACKS, Observation, Observer
+from hsr8.gym.options import check_flag, require_known
 from hsr8.plugin_decisions import Limits
-from hsr8.plugin_method import numbers, shown
+from hsr8.plugin_method import shown
 from navigation.belief.belief import Belief
 from navigation.decision import GazeDecision, MotionDecision, Task
 
@@ -25,6 +27,7 @@ def as_gaze(
     observe: Sequence[str] = (),
     max_tracks: int = MAX_TRACKS,
     normalized: bool = True,
+    **unknown: Never,
 ) -> type[GazeController]:
     """Return the gaze plugin of a policy, decided from the observations of ``hsr8/Gaze-v0``.
 
@@ -35,8 +38,13 @@ def as_gaze(
         observe: optional parts of the observation, without ``image``.
         max_tracks: number of observed tracks.
         normalized: whether actions are from -1 to 1, as in the environments.
+        unknown: refused.
+
+    Raises:
+        UsageError: an argument is invalid.
     """
-    require_belief(observe)
+    require_known(unknown, as_gaze.__annotations__)
+    _check(policy, observe, max_tracks, normalized)
 
     class PolicyGaze:
         """Gaze of a policy."""
@@ -48,10 +56,11 @@ def as_gaze(
         def start(self, limits: Limits) -> None:
             """Map actions to these limits."""
             self._actions = ActionMap(limits, normalized=normalized)
+            self._spaces = self._actions.spaces("gaze")
 
         def choose(self, belief: Belief, task: Task, motion: MotionDecision | None) -> GazeDecision:
             """Return the gaze of the policy."""
-            action = self._act(self._observer.observe(belief, task), "gaze")
+            action = self._act(self._observer.observe(belief, task), self._spaces)
             if motion is not None:
                 self._observer.velocity = motion.velocity
             return GazeDecision(*self._actions.gaze(action))
@@ -65,6 +74,7 @@ def as_planner(
     observe: Sequence[str] = (),
     max_tracks: int = MAX_TRACKS,
     normalized: bool = True,
+    **unknown: Never,
 ) -> type[MotionPlanner]:
     """Return the planner plugin of a policy, decided from the observations of ``hsr8/Navigate-v0``.
 
@@ -73,8 +83,13 @@ def as_planner(
         observe: optional parts of the observation, without ``image``.
         max_tracks: number of observed tracks.
         normalized: whether actions are from -1 to 1, as in the environments.
+        unknown: refused.
+
+    Raises:
+        UsageError: an argument is invalid.
     """
-    require_belief(observe)
+    require_known(unknown, as_planner.__annotations__)
+    _check(policy, observe, max_tracks, normalized)
 
     class PolicyPlanner:
         """Planner of a policy."""
@@ -86,24 +101,41 @@ def as_planner(
         def start(self, limits: Limits) -> None:
             """Map actions to these limits."""
             self._actions = ActionMap(limits, normalized=normalized)
+            self._spaces = self._actions.spaces("motion")
 
         def plan(self, belief: Belief, task: Task, look: float | None = None) -> MotionDecision:
             """Return the velocity of the policy."""
-            action = self._act(self._observer.observe(belief, task), "motion")
+            action = self._act(self._observer.observe(belief, task), self._spaces)
             self._observer.velocity = self._actions.velocity(action)
             return MotionDecision(velocity=self._observer.velocity)
 
     return PolicyPlanner
 
 
-def require_belief(observe: Sequence[str]) -> None:
-    """Require parts of the belief, which plugins receive.
+def _check(policy: object, observe: Sequence[str], max_tracks: int, normalized: object) -> None:
+    """Check the arguments of `as_gaze` and `as_planner`.
 
     Raises:
-        UsageError: `observe` has the image.
+        UsageError: one is invalid; plugins receive the belief, not the image.
     """
+    _require_policy(policy)
+    check_flag("normalized", normalized)
+    Observer(observe, max_tracks)
     if "image" in observe:
         raise UsageError("observe: plugins receive the belief, got 'image'; expected local_map")
+
+
+def _require_policy(policy: object) -> None:
+    """Require a function or an object with the method `predict`.
+
+    Raises:
+        UsageError: `policy` is anything else.
+    """
+    if not callable(getattr(policy, "predict", policy)):
+        raise UsageError(
+            f"policy: got {shown(policy)}; expected an object with predict(observation) or a "
+            "function of the observation"
+        )
 
 
 def _makes_policy(policy: Any) -> bool:
@@ -127,26 +159,22 @@ class _Policy:
     def __init__(self, policy: Any) -> None:
         if _makes_policy(policy):
             policy = policy()
-        if not callable(getattr(policy, "predict", policy)):
-            raise UsageError(
-                f"policy: got {shown(policy)}; expected an object with predict(observation) or a "
-                "function of the observation"
-            )
+        _require_policy(policy)
         self._predict: Callable[..., Any] = getattr(policy, "predict", policy)
         self._has_state = hasattr(policy, "predict")
         self._accepted = signature(self._predict).parameters.keys()
         self._state: Any = None
         self._first = True
 
-    def __call__(self, observation: Observation, part: Part) -> Array:
+    def __call__(self, observation: Observation, allowed: Sequence[spaces.Box]) -> Array:
         """Return the action for an observation.
 
         Args:
             observation: of the belief.
-            part: that the action decides, alone or with the other.
+            allowed: spaces of the action.
 
         Raises:
-            UsageError: the action has another size.
+            UsageError: the action is outside of the spaces.
         """
         options = {
             "state": self._state,
@@ -158,11 +186,4 @@ class _Policy:
         if self._has_state:
             action, self._state = action
         self._first = False
-        values = numbers(action)
-        alone, both = SIZES[part], sum(SIZES.values())
-        if values is None or values.shape not in ((alone,), (both,)):
-            raise UsageError(
-                f"policy: wrong size of the action, got {shown(action)}; "
-                f"expected {alone} or {both} numbers"
-            )
-        return values
+        return check_action(action, *allowed)

@@ -8,9 +8,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from hsr8.decisions import Situation
-from hsr8.errors import UsageError
-from hsr8.plugin_method import number
-from hsr8.suggestion import suggestion
 from hsr8.world.field.layout import Layout
 from hsr8.world.truth.truth import Truth
 from navigation.belief.belief import Belief
@@ -26,21 +23,6 @@ WEIGHTS = {
 # Lengths are those in a world of scale 1.
 RANGE = 1.5  # from the robot to an obstacle whose tracking counts [m]
 MAX_ERROR = 0.4  # distance from obstacle to track that counts as 1 [m]
-
-
-def reward_weights(given: Mapping[str, float]) -> dict[str, float]:
-    """Return the weights of all terms.
-
-    Raises:
-        UsageError: a term is unknown, or a weight is not a finite number.
-    """
-    for name in given:
-        if name not in WEIGHTS:
-            raise UsageError(
-                f"reward: unknown term, got {name!r}; expected {', '.join(WEIGHTS)}"
-                f"{suggestion(name, tuple(WEIGHTS))}"
-            )
-    return WEIGHTS | {name: number(weight, name, "reward") for name, weight in given.items()}
 
 
 class Reward:

@@ -7,6 +7,7 @@ import gymnasium
 from gymnasium.vector import AsyncVectorEnv
 
 from hsr8.errors import UsageError
+from hsr8.gym.options import check_integer
 
 MODULE = "hsr8.gym:"
 CONTEXTS = ("forkserver", "spawn")
@@ -24,16 +25,25 @@ def make_vec(
         settings: of every environment, see `hsr8.gym.Environment`.
 
     Raises:
-        UsageError: the start method is fork.
+        UsageError: an argument is invalid.
     """
     options = {"context": CONTEXTS[0], **(vector_kwargs or {})}
-    if options["context"] not in CONTEXTS:
+    context = options["context"]
+    if context not in CONTEXTS:
+        problem = "OpenGL hangs after a fork" if context == "fork" else "unknown start method"
+        raise UsageError(f"context: {problem}, got {context!r}; expected {' or '.join(CONTEXTS)}")
+    if "vectorization_mode" in settings:
         raise UsageError(
-            f"context: OpenGL hangs after a fork, got {options['context']!r}; "
-            f"expected {' or '.join(CONTEXTS)}"
+            "vectorization_mode: every environment has a process, got "
+            f"{settings['vectorization_mode']!r}; expected no such option"
         )
+    check_integer("n", n, 1)
     made = gymnasium.make_vec(
-        MODULE + name.removeprefix(MODULE), n, "async", vector_kwargs=options, **settings
+        MODULE + name.removeprefix(MODULE),
+        n,
+        "async",
+        vector_kwargs=options,
+        **settings,
     )
     assert isinstance(made, AsyncVectorEnv)
     return made

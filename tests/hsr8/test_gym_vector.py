@@ -23,9 +23,29 @@ def test_without_gymnasium_the_extra_is_named(monkeypatch):
         importlib.import_module("hsr8.gym")
 
 
-def test_fork_is_refused_by_name():
-    with pytest.raises(UsageError, match=r"context: .*got 'fork'; expected forkserver or spawn"):
-        make_vec("hsr8/Gaze-v0", 2, vector_kwargs={"context": "fork"})
+@pytest.mark.parametrize(
+    ("n", "options", "message"),
+    [
+        (
+            2,
+            {"vector_kwargs": {"context": "fork"}},
+            "context: OpenGL .*got 'fork'; expected forkserver or spawn",
+        ),
+        (
+            2,
+            {"vector_kwargs": {"context": "foo"}},
+            "context: unknown start method, got 'foo'; expected forkserver or spawn",
+        ),
+        (2, {"vectorization_mode": "sync"}, "vectorization_mode: .*got 'sync'; expected"),
+        (0, {}, "n: got int 0; expected an integer of at least 1"),
+        (1.0, {}, "n: got float 1.0; expected an integer of at least 1"),
+        (True, {}, "n: got bool True; expected an integer of at least 1"),
+        (1, {"max_tracks": 0}, "max_tracks: got int 0; expected an integer from 1 to 128"),
+    ],
+)
+def test_invalid_arguments_are_refused_by_name(n, options, message):
+    with pytest.raises(UsageError, match=message):
+        make_vec("hsr8/Gaze-v0", n, **options)
 
 
 @pytest.mark.timeout(300)
