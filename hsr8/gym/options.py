@@ -56,7 +56,7 @@ def check_names(option: str, value: object, known: Iterable[str], *, empty: bool
     """Require a list or tuple of known names, which may be `empty`.
 
     Raises:
-        UsageError: `value` is no such list or tuple, or has an unknown name.
+        UsageError: `value` is anything else.
     """
     choices = tuple(known)
     if not isinstance(value, list | tuple) or not (value or empty):
@@ -73,7 +73,7 @@ def reward_weights(given: object, defaults: Mapping[str, float]) -> dict[str, fl
     """Return the weights of all reward terms, with those of the option `reward`.
 
     Raises:
-        UsageError: `given` is no mapping, a term is unknown, or a weight is not a finite number.
+        UsageError: `given` is not a mapping, a term is unknown, or a weight is not a finite number.
     """
     expected = f"a dictionary with weights of {', '.join(defaults)}"
     if not isinstance(given, Mapping):

@@ -54,7 +54,7 @@ def test_a_plugin_refuses_an_invalid_option(plugin, options, message):
 
 
 @pytest.mark.parametrize("plugin", [as_gaze, as_planner])
-def test_a_plugin_refuses_what_is_no_policy(plugin):
+def test_a_plugin_requires_a_policy(plugin):
     with pytest.raises(UsageError, match="policy: got NoneType None; expected an object with pred"):
         plugin(None)
 
