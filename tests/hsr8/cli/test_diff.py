@@ -9,6 +9,7 @@ from hsr8.recorder.rows import TABLES
 from hsr8.recorder.run.run_reader import open_run
 
 RUN = ["run", "quick", "--body", "kinematic", "--camera", "analytic", "--duration", "2"]
+RUN += ["--set", "navigation.gaze.mode=fixed"]  # detections in every frame
 
 
 @pytest.fixture(scope="module")

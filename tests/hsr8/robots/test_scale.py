@@ -30,7 +30,12 @@ def annotated(annotation, name="scenario"):
 
 UNITS = dict(annotated(Scenario))
 # A relative length, and times of a pendulum.
-EXCEPTIONS = ("World.scale", "Footsteps.single_support", "Footsteps.double_support")
+EXCEPTIONS = (
+    "World.scale",
+    "TrackMover.scale",
+    "Footsteps.single_support",
+    "Footsteps.double_support",
+)
 
 
 @given(scales)
