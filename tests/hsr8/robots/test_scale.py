@@ -33,6 +33,7 @@ UNITS = dict(annotated(Scenario))
 EXCEPTIONS = (
     "World.scale",
     "TrackMover.scale",
+    "TrackMover.time_scale",
     "Footsteps.single_support",
     "Footsteps.double_support",
 )
