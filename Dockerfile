@@ -18,9 +18,9 @@ ENV PATH=/opt/hsr8/bin:$PATH \
     NUMBA_CACHE_DIR=/var/cache/hsr8 \
     NUMBA_CPU_NAME=x86-64-v3 \
     NUMBA_CPU_FEATURES=
-RUN useradd --create-home hsr8 && install -d -o hsr8 /var/cache/hsr8 /work
+RUN useradd --create-home hsr8 && install -d -o hsr8 /var/cache/hsr8 /data
 USER hsr8
 RUN hsr8 doctor --compile && chmod -R a+rwX /var/cache/hsr8
-WORKDIR /work
+WORKDIR /data
 ENTRYPOINT ["hsr8"]
 CMD ["--help"]

@@ -278,21 +278,11 @@ class Simulation:
 
     def state_hash(self) -> str:
         """Return the SHA-256 of the state of the world and the belief of the robot."""
-        return hashlib.sha256(self._body.state_bytes() + self._belief_bytes()).hexdigest()
-
-    def _belief_bytes(self) -> bytes:
-        """Return pose and tracks of the belief as bytes."""
-        if self._robot.frame is None:
-            return b""
-        belief = self._robot.frame.belief
-        parts = [belief.pose, belief.pose_covariance]
-        for track in belief.tracks:
-            parts += (track.position, track.covariance)
-        return b"".join(part.tobytes() for part in parts)
+        return hashlib.sha256(self._body.state_bytes() + self._robot.belief_bytes()).hexdigest()
 
     def _mark(self) -> Second:
         """Return the hashes of the state."""
-        world, belief = self._body.state_bytes(), self._belief_bytes()
+        world, belief = self._body.state_bytes(), self._robot.belief_bytes()
         state = hashlib.blake2b(world, digest_size=HASH)
         digest = state.digest()
         state.update(belief)

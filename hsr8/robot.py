@@ -173,6 +173,16 @@ class Robot:
             self._state = self.walking.state()
         return self._state
 
+    def belief_bytes(self) -> bytes:
+        """Return pose and tracks of the latest belief as bytes; none before the first frame."""
+        if self.frame is None:
+            return b""
+        belief = self.frame.belief
+        parts = [belief.pose, belief.pose_covariance]
+        for track in belief.tracks:
+            parts += (track.position, track.covariance)
+        return b"".join(part.tobytes() for part in parts)
+
     def _perceive(self, sensed: SensorFrame, captured_state: WalkingState) -> Situation:
         image = None if sensed.image is None else sensed.image()
         if captured_state.camera.turn_rate > self._blind_above:

@@ -3,7 +3,7 @@
 python examples/gym/random_gaze.py
 """
 
-import hsr8  # noqa: F401
+import hsr8  # noqa: F401  before NumPy: it selects the arithmetic
 
 import gymnasium
 

@@ -33,7 +33,7 @@ def entry(name, successes):
 
 @pytest.fixture
 def page(tmp_path, monkeypatch):
-    """The script with a page and folders of its own; returns the page after a call."""
+    """The script with a page and folders in a temporary folder; returns the page after a call."""
     (tmp_path / "results").mkdir()
     page = tmp_path / "bench.md"
     page.write_text(f"# Head\n\n{bench_page.BEGIN}\nold\n{bench_page.END}\n\n## Tail\n")

@@ -43,7 +43,7 @@ class Suite(Section):
     settings: tuple[str, ...] = ()
     """Standard settings as KEY=VALUE."""
     families: Annotated[dict[str, str], Len(min_length=1)]
-    """What each scenario tests, by the scenario's name or its file next to the suite."""
+    """Subject of each scenario's test, by the scenario's name or its file next to the suite."""
 
     def paths(self, file: Path) -> dict[str, str]:
         """Return name or file of every scenario by the name of its family.

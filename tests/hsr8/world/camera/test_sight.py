@@ -24,7 +24,7 @@ POSE = {"tilt_sigma": 0.005, "roll_sigma": 0.005, "yaw_sigma": 0.005, "height_si
 
 @pytest.mark.gl
 def test_near_obstacles_are_found_where_they_are_expected(world, silent):
-    """Of near obstacles beside the robot, whose foot its arms may hide, some are missed."""
+    """Of near obstacles next to the robot, whose foot its arms may hide, some are missed."""
     scenario = load_scenario("walk", [])
     robot, camera = load_robot("hsr8"), head_camera(scenario)
     layout, _ = world(Obstacle((1.0, 0.0), 0.065, 0.3, "red"), beacons=())
