@@ -1,8 +1,9 @@
 """Policies as plugins: the gaze or planner of ``hsr8 run``, ``sweep`` and ``bench``."""
 
 from collections.abc import Callable, Sequence
+from dataclasses import dataclass
 from inspect import signature
-from typing import Any, Never
+from typing import Any, ClassVar, Never
 
 import numpy as np
 from gymnasium import spaces
@@ -10,7 +11,7 @@ from numpy.typing import NDArray
 
 from hsr8.decisions import GazeController, MotionPlanner
 from hsr8.errors import UsageError
-from hsr8.gym.action import ActionMap, check_action
+from hsr8.gym.action import ActionMap, Part, check_action
 from hsr8.gym.observation import MAX_TRACKS, Observation, Observer
 from hsr8.gym.options import check_flag, require_known
 from hsr8.plugin_decisions import Limits
@@ -44,23 +45,16 @@ def as_gaze(
         UsageError: an argument is invalid.
     """
     require_known(unknown, as_gaze.__annotations__)
-    _check(policy, observe, max_tracks, normalized)
+    chosen = _Options(policy, observe, max_tracks, normalized)
 
-    class PolicyGaze:
+    class PolicyGaze(_Plugin):
         """Gaze of a policy."""
 
-        def __init__(self) -> None:
-            self._observer = Observer(observe, max_tracks)
-            self._act = _Policy(policy)
-
-        def start(self, limits: Limits) -> None:
-            """Map actions to these limits."""
-            self._actions = ActionMap(limits, normalized=normalized)
-            self._spaces = self._actions.spaces("gaze")
+        options, part = chosen, "gaze"
 
         def choose(self, belief: Belief, task: Task, motion: MotionDecision | None) -> GazeDecision:
             """Return the gaze of the policy."""
-            action = self._act(self._observer.observe(belief, task), self._spaces)
+            action = self._act(belief, task)
             if motion is not None:
                 self._observer.velocity = motion.velocity
             return GazeDecision(*self._actions.gaze(action))
@@ -89,40 +83,59 @@ def as_planner(
         UsageError: an argument is invalid.
     """
     require_known(unknown, as_planner.__annotations__)
-    _check(policy, observe, max_tracks, normalized)
+    chosen = _Options(policy, observe, max_tracks, normalized)
 
-    class PolicyPlanner:
+    class PolicyPlanner(_Plugin):
         """Planner of a policy."""
 
-        def __init__(self) -> None:
-            self._observer = Observer(observe, max_tracks)
-            self._act = _Policy(policy)
-
-        def start(self, limits: Limits) -> None:
-            """Map actions to these limits."""
-            self._actions = ActionMap(limits, normalized=normalized)
-            self._spaces = self._actions.spaces("motion")
+        options, part = chosen, "motion"
 
         def plan(self, belief: Belief, task: Task, look: float | None = None) -> MotionDecision:
             """Return the velocity of the policy."""
-            action = self._act(self._observer.observe(belief, task), self._spaces)
-            self._observer.velocity = self._actions.velocity(action)
+            self._observer.velocity = self._actions.velocity(self._act(belief, task))
             return MotionDecision(velocity=self._observer.velocity)
 
     return PolicyPlanner
 
 
-def _check(policy: object, observe: Sequence[str], max_tracks: int, normalized: object) -> None:
-    """Check the arguments of `as_gaze` and `as_planner`.
+@dataclass(frozen=True)
+class _Options:
+    """Arguments of `as_gaze` and `as_planner`.
 
     Raises:
         UsageError: one is invalid; plugins receive the belief, not the image.
     """
-    _require_policy(policy)
-    check_flag("normalized", normalized)
-    Observer(observe, max_tracks)
-    if "image" in observe:
-        raise UsageError("observe: plugins receive the belief, got 'image'; expected local_map")
+
+    policy: Any
+    observe: Sequence[str]
+    max_tracks: int
+    normalized: bool
+
+    def __post_init__(self) -> None:
+        _require_policy(self.policy)
+        check_flag("normalized", self.normalized)
+        Observer(self.observe, self.max_tracks)
+        if "image" in self.observe:
+            raise UsageError("observe: plugins receive the belief, got 'image'; expected local_map")
+
+
+class _Plugin:
+    """Policy with the observations and actions of one run."""
+
+    options: ClassVar[_Options]
+    part: ClassVar[Part]
+
+    def __init__(self) -> None:
+        self._observer = Observer(self.options.observe, self.options.max_tracks)
+        self._policy = _Policy(self.options.policy)
+
+    def start(self, limits: Limits) -> None:
+        """Map actions to these limits."""
+        self._actions = ActionMap(limits, normalized=self.options.normalized)
+        self._spaces = self._actions.spaces(self.part)
+
+    def _act(self, belief: Belief, task: Task) -> Array:
+        return self._policy(self._observer.observe(belief, task), self._spaces)
 
 
 def _require_policy(policy: object) -> None:
