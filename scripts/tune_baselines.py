@@ -11,7 +11,7 @@ errors of pose, positions and velocities, velocities that lag, and no sight beyo
 """
 
 import json
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from dataclasses import replace
 from functools import cache
 from pathlib import Path
@@ -79,6 +79,7 @@ clearance [cm] | CPU per decision [ms] |
 |---|---|---|---|---|---|---|---|---|"""
 
 Settings = dict[str, float]
+Ranges = Mapping[str, tuple[float, float, float]]
 Row = dict[str, Any]
 
 
@@ -172,14 +173,13 @@ def section(method: str) -> str:
     return method.replace("-", "_")
 
 
-def drawn(method: str, count: int) -> Iterator[Settings]:
+def drawn(ranges: Ranges, count: int, rng: np.random.Generator) -> Iterator[Settings]:
     """The values by hand, then `count` - 1 sets drawn from the ranges."""
-    yield {name: hand for name, (_, hand, _) in RANGES[method].items()}
-    rng = np.random.default_rng(np.random.SeedSequence([ord(c) for c in method]))
+    yield {name: hand for name, (_, hand, _) in ranges.items()}
     for _ in range(count - 1):
         yield {
             name: float(f"{np.exp(rng.uniform(np.log(low), np.log(high))):.3g}")
-            for name, (low, _, high) in RANGES[method].items()
+            for name, (low, _, high) in ranges.items()
         }
 
 
@@ -249,7 +249,9 @@ def tune(
 
     print(TUNING_HEAD, flush=True)
     for method in methods:
-        table = [(s, rows(method, s, range(seeds))) for s in drawn(method, candidates)]
+        rng = np.random.default_rng(np.random.SeedSequence([ord(c) for c in method]))
+        sets = drawn(RANGES[method], candidates, rng)
+        table = [(s, rows(method, s, range(seeds))) for s in sets]
         first = table[0][0]
         table.sort(key=lambda pair: mean(pair[1]), reverse=True)
         final = table[:finalists]

@@ -11,7 +11,6 @@ study that is started again continues.
 
 import argparse
 import json
-from collections.abc import Iterator
 from pathlib import Path
 
 from hsr8.scenario.loader import load_scenario
@@ -19,6 +18,7 @@ from hsr8.scenario.loader import load_scenario
 import numpy as np
 from fast_loop import FastRun
 from gaze_arms import PAPERS
+from tune_baselines import Settings, drawn
 
 READINGS = ("printed", "exchanged")
 # Key: smallest value, value by hand, largest; drawn uniformly in the logarithm.
@@ -34,19 +34,7 @@ RANGES = {
     "navigation.moving_obstacles.horizon": (2.0, 6.0, 10.0),
     "constants.navigation.moving_obstacles.omega_dist": (2.0, 12.0, 24.0),
 }
-Settings = dict[str, float]
 Row = dict[str, object]
-
-
-def drawn(count: int) -> Iterator[Settings]:
-    """Yield the values by hand, then `count` - 1 drawn sets, the same for both readings."""
-    yield {key: hand for key, (_, hand, _) in RANGES.items()}
-    rng = np.random.default_rng(10)
-    for _ in range(count - 1):
-        yield {
-            key: float(f"{np.exp(rng.uniform(np.log(low), np.log(high))):.3g}")
-            for key, (low, _, high) in RANGES.items()
-        }
 
 
 class Study:
@@ -97,7 +85,7 @@ def main() -> None:
         "|---" * 6 + "|",
     ]
     for reading in options.reading:
-        first, *others = drawn(options.candidates)
+        first, *others = drawn(RANGES, options.candidates, np.random.default_rng(10))
         ranked = sorted(others, key=lambda v: study.score(reading, v, few), reverse=True)
         final = [first, *ranked[: options.finalists]]
         best = max(final, key=lambda v: study.score(reading, v, all_seeds))
