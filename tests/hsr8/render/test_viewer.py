@@ -54,7 +54,8 @@ def test_the_port_of_a_viewer_is_waited_for():
     port = viewer.free_port()
     program = (
         "import socket, sys, time; time.sleep(0.3); "
-        "socket.create_server(('127.0.0.1', int(sys.argv[1]))).accept(); time.sleep(60)"
+        "server = socket.create_server(('127.0.0.1', int(sys.argv[1]))); "
+        "server.accept(); time.sleep(60)"
     )
     with Viewer([sys.executable, "-c", program, str(port)]) as process:
         process.wait_for_port(port)
