@@ -353,50 +353,39 @@ def locate(
     H, residual = np.empty((ROWS, 3)), np.empty(ROWS)
     R, G = np.empty((ROWS, ROWS)), np.empty((ROWS, 4))
     mean_sigma, means = np.empty(MAX_RIMS), np.empty(MAX_RIMS)
-    side_sigma, trusted = np.empty(SIDES), np.empty(SIDES, np.bool_)
+    sigma, trusted = np.empty(SIDES), np.empty(SIDES, np.bool_)
     h, roundness, common, threshold = pose[0], options[0], options[1], options[2]
     for k in range(n):
-        side, x = sides[k], result[k, :3]
+        side, size, x = sides[k], known[k], result[k, :3]
         first, last = first_rims[k], first_rims[k + 1]
         rim, ends = rims[first:last], points[first : last + 1]
         edges = (rim, ends, azimuth, slope)
-        distance = _rim_distance(rim, ends, slope, h, known[k, 0])
-        _guess(x, side, known[k], distance)
+        distance = _rim_distance(rim, ends, slope, h, size[0])
+        _guess(x, side, size, distance)
         used = _keep_inner(keep, mean_sigma, x, edges, h, common)
         span = span_sigma = 0.0
         if used == 0:
-            span, span_sigma = _span(side, known[k, 2], h)
+            span, span_sigma = _span(side, size[2], h)
             if span > 0.0:
-                _guess(x, side, known[k], span)
+                _guess(x, side, size, span)
                 _keep_inner(keep, mean_sigma, x, edges, h, common)
         for j in range(SIDES):
-            side_sigma[j] = side[j, 1] * _of_mean(side[j, 2], common)
+            sigma[j] = side[j, 1] * _of_mean(side[j, 2], common)
             trusted[j] = side[j, 5] != 0.0
         for _ in range(ITERATIONS):
-            _linearise(H, residual, point_residual, x, side, known[k, 0], keep, edges, h, span)
+            _linearise(H, residual, point_residual, x, side, size[0], keep, edges, h, span)
             means[:] = residual[SIDES:PRIOR]
             # A side visible beyond foot or head is not an edge of the cylinder.
             reach = sqrt(x[1] * x[1] - x[2] * x[2])
             for j in range(SIDES):
-                slack = 0.5 * side_sigma[j]
+                slack = 0.5 * sigma[j]
                 trusted[j] = (
                     trusted[j]
                     and side[j, 4] >= -h / reach - slack
-                    and side[j, 3] <= (known[k, 2] - h) / reach + slack
+                    and side[j, 3] <= (size[2] - h) / reach + slack
                 )
             _covariance(
-                R,
-                G,
-                x,
-                side,
-                side_sigma,
-                trusted,
-                known[k],
-                rim,
-                mean_sigma,
-                pose,
-                roundness,
-                span_sigma,
+                R, G, x, side, sigma, trusted, size, rim, mean_sigma, pose, roundness, span_sigma
             )
             _whiten(R, H, residual)
             _step(x, covariances[k], H, residual)

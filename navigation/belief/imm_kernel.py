@@ -392,10 +392,7 @@ def estimates(
                 spread[2 + a, 2 + a] = speed_variance
         else:
             average, spread = moments(weights[k], states[k], covariances[k])
-        for a in range(2):
-            position[k, a], velocity[k, a] = average[a], average[2 + a]
-        for a in range(4):
-            for b in range(4):
-                covariance[k, a, b] = spread[a, b]
+        position[k], velocity[k] = average[:2], average[2:4]
+        covariance[k] = spread[:4, :4]
         turn[k] = average[4]
     return position, velocity, covariance, turn

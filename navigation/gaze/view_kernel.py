@@ -1,6 +1,6 @@
 """Compiled part of the risk gaze: the value per time of every view of the head."""
 
-from math import cos, sin
+from math import cos, hypot, sin
 
 import numpy as np
 from numba import njit
@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 Array = NDArray[np.float64]
 
 MIN_DEPTH = 0.05  # of a visible point, relative to its distance [1]
+BESIDE = 1.001  # a point that far beyond the widest border is in no image, despite rounding [1]
 
 
 @njit(cache=True)
@@ -130,18 +131,24 @@ def view_values(
     look_time, max_urgency, exponent, edge = limits
     times = saccade_times(pans, tilts, neck)
     values = np.zeros_like(times)
-    tilted = [(cos(tilt), sin(tilt)) for tilt in tilts]
-    panned = [(cos(pan), sin(pan)) for pan in pans]
-    for x, y, weight, base, rate, top, credit in looks:
+    tilted = np.array([(cos(tilt), sin(tilt)) for tilt in tilts])
+    panned = np.array([(cos(pan), sin(pan)) for pan in pans])
+    for i in range(len(looks)):
+        x, y, weight, base = looks[i, 0], looks[i, 1], looks[i, 2], looks[i, 3]
+        rate, top, credit = looks[i, 4], looks[i, 5], looks[i, 6]
         if credit >= 0.0 and hidden(x, y, discs, edge):
             continue
         steady = weight * min(max_urgency, base) ** exponent
-        for p, (c, s) in enumerate(panned):
+        farthest_up = max(eye[1], abs(top - eye[1]))
+        for p in range(len(pans)):
+            c, s = panned[p]
             ahead, aside = c * x + s * y - eye[0], c * y - s * x
             if ahead < 0.0 and ahead * ahead + aside * aside > eye[1] * eye[1]:
                 continue
-            for t, tilt in enumerate(tilted):
-                part = visible_part(ahead, aside, eye[1], top, credit, tilt, lens)
+            if abs(aside) > BESIDE * lens[0] * hypot(ahead, farthest_up):
+                continue  # at every tilt
+            for t in range(len(tilts)):
+                part = visible_part(ahead, aside, eye[1], top, credit, tilted[t], lens)
                 if part > 0.0 and rate > 0.0:
                     urgency = min(max_urgency, base + rate * times[t, p])
                     values[t, p] += part * weight * urgency**exponent
