@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from hsr8.robots.loaded import LoadedRobot
 from hsr8.scenario.sensor_noise import SensorNoise
 from hsr8.world.body.kinematic_kernel import GRAVITY, base_pose, imu_motion
-from hsr8.world.body.physics import place_robot
+from hsr8.world.body.physics import has_fallen, place_robot
 from hsr8.world.body.sensors import SensorSuite
 from hsr8.world.body.surroundings import Surroundings
 from hsr8.world.field.layout import Layout
@@ -69,6 +69,7 @@ class KinematicBody:
         self._feet = model.site_bodyid[sites].astype(np.intp)
         self._soles = np.hstack([model.site_pos[sites], model.site_quat[sites]])
         place_robot(model, self.data, robot, np.array(layout.start))
+        self._ready_height = float(self.data.qpos[self._index.root_qpos + 2])
         mujoco.mj_kinematics(model, self.data)
         self._joints = self.data.qpos[self._index.joint_qpos].copy()
         self._rates = np.zeros_like(self._joints)
@@ -132,18 +133,18 @@ class KinematicBody:
         mujoco.mj_camlight(self.model, self.data)
 
     def truth(self) -> Truth:
-        """Return the ground truth now; a kinematic robot never falls."""
+        """Return the ground truth now; the robot falls if its joint targets tip it over."""
         data, root = self.data, self._index.root_qpos
         if self._tick % CONTACT_TICKS:
             self._surroundings.move(data, self.time)
             mujoco.mj_kinematics(self.model, data)
-        robot = np.array(
-            [*data.qpos[root : root + 2].tolist(), heading(data.qpos[root + 3 : root + 7])]
-        )
+        qpos = data.qpos.copy()
+        base = qpos[root : root + 7]
+        robot = np.array([*base[:2].tolist(), heading(base[3:])])
         feet = data.site_xpos[list(self._index.foot_sites), :2]
         return Truth(
             time=self.time,
-            qpos=data.qpos.copy(),
+            qpos=qpos,
             robot=robot,
             obstacle_positions=self._surroundings.positions(data),
             obstacle_velocities=self._surroundings.velocities(self.time),
@@ -152,7 +153,7 @@ class KinematicBody:
             joint_torque=np.zeros(len(self._joints)),
             foot_force=self._loads[self._support],
             zmp=LOAD_FRACTIONS[self._support] @ feet,
-            fallen=False,
+            fallen=has_fallen(base, self._ready_height),
         )
 
     def saturation(self) -> None:

@@ -45,6 +45,17 @@ def place_robot(
     data.ctrl[:] = data.actuator_length  # also of the joints that walking does not move
 
 
+def has_fallen(base: Array, ready_height: float) -> bool:
+    """Return whether a robot lies, or leans too far to stand.
+
+    Args:
+        base: its position [m] and quaternion (7,).
+        ready_height: height of the base in the ready posture [m].
+    """
+    low = float(base[2]) < FALLEN_RATIO * ready_height
+    return low or up_component(base[3:]) < FALLEN_TILT
+
+
 class PhysicsBody:
     """Robot in full physics.
 
@@ -90,7 +101,7 @@ class PhysicsBody:
         self._timestep = float(model.opt.timestep)
         self._state = np.empty(mujoco.mj_stateSize(model, mujoco.mjtState.mjSTATE_INTEGRATION))
         place_robot(model, self.data, robot, np.array(layout.start))
-        self._fallen_height = FALLEN_RATIO * float(self.data.qpos[self._index.root_qpos + 2])
+        self._ready_height = float(self.data.qpos[self._index.root_qpos + 2])
         self._surroundings.move(self.data, 0.0)
         # `apply` counts and raises warnings; MuJoCo must not write its log file.
         mujoco.set_mju_user_warning(lambda _message: None)
@@ -146,11 +157,9 @@ class PhysicsBody:
 
     def truth(self) -> Truth:
         data, index = self.data, self._index
-        root = index.root_qpos
         qpos = data.qpos.copy()
-        quaternion = qpos[root + 3 : root + 7]
-        x, y, z = qpos[root : root + 3].tolist()
-        robot = np.array([x, y, heading(quaternion)])
+        base = qpos[index.root_qpos : index.root_qpos + 7]
+        robot = np.array([*base[:2].tolist(), heading(base[3:])])
         load, pressure = self._surroundings.watch.feet(data)
         return Truth(
             time=self.time,
@@ -163,7 +172,7 @@ class PhysicsBody:
             joint_torque=data.actuator_force[index.actuators],
             foot_force=load,
             zmp=pressure,
-            fallen=z < self._fallen_height or up_component(quaternion) < FALLEN_TILT,
+            fallen=has_fallen(base, self._ready_height),
             pushes=self._pusher.take(),
         )
 

@@ -35,6 +35,19 @@ def test_joints_follow_their_targets_and_the_stance_foot_stays(world, silent):
         assert abs(body.data.site("hsr8/l_foot").xpos[2]) < 1e-9
 
 
+def test_a_robot_falls_when_its_joints_tip_it_over(world, silent):
+    body = body_in(world, silent)
+    position = body.sense().joint_position.copy()
+    assert not body.truth().fallen
+    for _ in range(200):
+        position[[2, 8]] -= 0.01  # the hips bend forward over planted feet
+        body.apply(JointTargets(position.copy(), position.copy()))
+        _, x, y, _ = body.truth().qpos[3:7]
+        tilt = np.degrees(np.arccos(1.0 - 2.0 * (x * x + y * y)))
+        assert body.truth().fallen == (tilt > 60.0)
+    assert body.truth().fallen
+
+
 @pytest.mark.parametrize(
     ("command", "expected"),
     [
