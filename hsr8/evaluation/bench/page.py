@@ -11,6 +11,7 @@ from hsr8.evaluation.bench.comparison import (
 )
 from hsr8.evaluation.bench.entry import ALL, Entry
 from hsr8.evaluation.bench.score import Score
+from hsr8.evaluation.bench.suite import is_condition
 from hsr8.evaluation.comparison_page import difference_table
 from hsr8.evaluation.proportion import Proportion
 
@@ -19,7 +20,6 @@ SCORES = (
     *("head travel [rad/s]", "time [s]"),
 )
 SHOWN = ("hsr8", "code", "mujoco", "numpy", "scipy", "pin", "processor", "arithmetic")
-STATED = ("robot.body", "camera.source", "camera.preset")  # settings named with an entry
 
 
 def entry_page(entry: Entry) -> str:
@@ -102,8 +102,8 @@ def _settings(entry: Entry) -> list[str]:
 
 
 def _name(entry: Entry) -> str:
-    """Return the name of an entry, with body and camera unless they are the standard."""
-    changed = [f"{key}={entry.settings[key][1]}" for key in STATED if key in entry.settings]
+    """Return the name of an entry, with the conditions that differ from the standard."""
+    changed = [f"{key}={new}" for key, (_, new) in entry.settings.items() if is_condition(key)]
     return f"{entry.name} ({', '.join(changed)})".replace('"', "") if changed else entry.name
 
 

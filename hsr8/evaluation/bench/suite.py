@@ -22,9 +22,9 @@ from hsr8.scenario.section import Section
 SHIPPED = Path(__file__).with_name("suite.toml")
 FREE = ("walking", "vision", "belief", "navigation", "plugin", "recorder", "description", "seed")
 """Sections and keys that do not belong to the suite, with the following exceptions."""
-NOT_FREE = ("walking.head", "navigation.mission.r_via", "navigation.mission.r_goal")
+NOT_FREE = ("walking.head", "navigation.mission")
 CONDITIONS = ("robot.body", "camera", "sensors", "walking.head")
-"""Sections and keys of the suite that an entry may change; its results name them."""
+"""Sections and keys of the suite that an entry may change; its results name the changes."""
 
 Differences = dict[str, tuple[str, str]]
 
@@ -133,12 +133,17 @@ def changed_settings(
         wrong += [
             f"{family}: {key}: {value}; expected {expected}"
             for key, (expected, value) in differences.items()
-            if not (_free(key) or _within(key, CONDITIONS))
+            if not (_free(key) or is_condition(key))
         ]
         changed |= differences
     if wrong:
         raise UsageError("\n  ".join(["--set: settings change the suite, got", *wrong]))
     return changed
+
+
+def is_condition(key: str) -> bool:
+    """Return whether a setting belongs to the conditions, which the results of an entry name."""
+    return _within(key, CONDITIONS)
 
 
 def scenario_hash(scenario: Scenario) -> str:

@@ -22,12 +22,13 @@ def test_the_page_of_an_entry_has_a_line_per_family(make_entry):
     assert "    hsr8 bench --quick --name default" in lines
 
 
-def test_settings_of_an_entry_are_listed_and_its_body_and_camera_are_named(make_entry):
+def test_settings_of_an_entry_are_listed_and_its_conditions_are_named(make_entry):
     settings = {"robot.body": ('"kinematic"', '"full"'), "navigation.planner.method": ("1", "2")}
+    settings["sensors.encoder"] = ("0.002", "0.0")
     entry = make_entry("mine", settings=settings)
     assert '| `robot.body` | "kinematic" | "full" |' in entry_page(entry)
     lines = entries_table([make_entry(), entry])
-    assert row_of("mine (robot.body=full)", lines)[1] == "100.0 %"
+    assert row_of("mine (robot.body=full, sensors.encoder=0.0)", lines)[1] == "100.0 %"
 
 
 def test_the_table_compares_all_entries_with_the_first(make_entry):
