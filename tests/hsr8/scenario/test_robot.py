@@ -7,11 +7,11 @@ from hsr8.scenario.robot import located
 @pytest.fixture
 def folders(tmp_path, monkeypatch):
     """A robot next to a scenario, another one in the working folder."""
-    for name in ("scenarios", "work"):
+    for name in ("scenarios", "elsewhere"):
         (tmp_path / name).mkdir()
         (tmp_path / name / f"{name}.toml").touch()
         (tmp_path / name / "both.toml").touch()
-    monkeypatch.chdir(tmp_path / "work")
+    monkeypatch.chdir(tmp_path / "elsewhere")
     return tmp_path
 
 
@@ -20,9 +20,9 @@ def folders(tmp_path, monkeypatch):
     [
         ("op3", "op3"),
         ("scenarios.toml", "{}/scenarios/scenarios.toml"),
-        ("work.toml", "{}/work/work.toml"),
+        ("elsewhere.toml", "{}/elsewhere/elsewhere.toml"),
         ("both.toml", "{}/scenarios/both.toml"),
-        ("../work/work.toml", "{}/scenarios/../work/work.toml"),
+        ("../elsewhere/elsewhere.toml", "{}/scenarios/../elsewhere/elsewhere.toml"),
         ("none.toml", "none.toml"),
     ],
 )
@@ -37,9 +37,9 @@ def test_a_file_is_searched_next_to_the_scenario_and_in_the_working_folder(model
 
 
 def test_the_home_folder_is_expanded(folders, monkeypatch):
-    monkeypatch.setenv("HOME", str(folders / "work"))
-    table = located({"robot": {"model": "~/work.toml"}}, folders)
-    assert table["robot"]["model"] == str(folders / "work" / "work.toml")
+    monkeypatch.setenv("HOME", str(folders / "elsewhere"))
+    table = located({"robot": {"model": "~/elsewhere.toml"}}, folders)
+    assert table["robot"]["model"] == str(folders / "elsewhere" / "elsewhere.toml")
 
 
 @pytest.mark.parametrize("table", [{}, {"robot": 3}, {"robot": {}}, {"robot": {"model": 3}}])
