@@ -89,14 +89,17 @@ class FrameSampler:
 
 
 def objects_of(ticks: Sequence[Tick], sampler: FrameSampler) -> dict[str, Sequence[Any]]:
-    """Return the recorded objects of each table but the images."""
+    """Return the recorded objects of each table but the images, in the order of writing.
+
+    The seconds are last: readers of a run in progress wait for them.
+    """
     records = [tick.record for tick in ticks if tick.record is not None]
     return {
         "ticks": ticks,
         "records": records,
         "frames": [sampler.sample(record.frame) for record in records if record.frame is not None],
-        "seconds": [second for tick in ticks for second in tick.seconds],
         "events": [event for tick in ticks for event in tick.events],
+        "seconds": [second for tick in ticks for second in tick.seconds],
     }
 
 

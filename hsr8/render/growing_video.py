@@ -77,14 +77,14 @@ class _GrowingRun:
         self._stopped = stopped
 
     def started(self) -> Run:
-        """Return the run as soon as it has records.
+        """Return the run as soon as its first batch of records is complete.
 
         Raises:
             _EndedEarly: it ended without any.
         """
         while True:
             run, over = self._read()
-            if len(run.records):
+            if len(run.seconds):
                 return run
             if over:
                 raise _EndedEarly
@@ -104,10 +104,11 @@ class _GrowingRun:
         Raises:
             _EndedEarly: the run ended before its full duration.
         """
-        drawn, part = 0, (times[-1] - times[0]) / PARTS
+        drawn, over, part = 0, False, (times[-1] - times[0]) / PARTS
         while True:
-            yield from range(drawn, images.ready)
-            drawn = max(drawn, images.ready)
+            ready = len(times) if over else images.ready
+            yield from range(drawn, ready)
+            drawn = max(drawn, ready)
             if drawn == len(times):
                 return
             self._wait(images.recorded + part)

@@ -45,6 +45,9 @@ class RunImages:
         fps: images per second of the video.
         speed: simulated seconds per second of video, shown in the dashboard.
         fine: smooth edges and sharp shadows, at twice the cost.
+
+    Attributes:
+        recorded: simulated time up to which everything is recorded [s].
     """
 
     def __init__(
@@ -64,6 +67,8 @@ class RunImages:
 
     def update(self, run: Run) -> None:
         """Read the records of the run again, which has gone on."""
+        seconds = run.seconds["time"]  # read first: a writer adds them after the other rows
+        self.recorded = float(seconds[-1]) if len(seconds) else 0.0
         self._motion = motion_of(run, len(self._layout.movers))
         self._obstacles = run.records["obstacle_positions"].shape[1]
         self._rows = rows_at(self._motion.time, self._times)
@@ -78,11 +83,6 @@ class RunImages:
             self._pushes = push_arrows(walking_of(run), self._motion, size_ratio, weight)
         qpos = self._motion.qpos[self._rows]
         self._follow = FollowCamera(qpos, self._fps, self._speed, size_ratio)
-
-    @property
-    def recorded(self) -> float:
-        """Simulated time of the last record [s]."""
-        return float(self._motion.time[-1])
 
     @property
     def ready(self) -> int:

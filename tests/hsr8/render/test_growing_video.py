@@ -12,6 +12,7 @@ import pytest
 
 from hsr8.cli.main import entry
 from hsr8.recorder.run.run_reader import open_run
+from hsr8.recorder.stream import CHECKSUMS
 from hsr8.render.run_images import RunImages
 
 pytestmark = [pytest.mark.gl, pytest.mark.timeout(300)]
@@ -94,4 +95,28 @@ def test_images_that_later_records_would_change_are_not_ready(tmp_path):
         times = np.arange(0.0, stop, 0.04)
         with RunImages(run, times, (64, 64), fps=25, speed=1.0, fine=False) as images:
             assert (images.ready == len(times)) is ready
-            assert images.recorded == 2.0
+            assert images.recorded == run.seconds["time"][-1]
+
+
+def test_images_drawn_while_a_batch_is_written_are_those_of_the_whole_run(tmp_path):
+    """The rows of a batch become readable one table after the other."""
+    entry(["run", "paper", *FAST, "--quiet", "--duration", "2", "--out", str(tmp_path)])
+    run, times = open_run(tmp_path), np.arange(0.0, 2.0, 0.1)
+    with RunImages(run, times, (192, 108), fps=1, speed=1.0, fine=False) as images:
+        whole = [*map(images.camera("dashboard"), range(len(times)))]
+    manifest, checksums = run.path / "manifest.json", run.path / CHECKSUMS
+    manifest.write_text(manifest.read_text().replace('"completed"', '"running"'))
+    lines = checksums.read_text().splitlines(keepends=True)
+    tables = [line.split()[0] for line in lines]
+    batch = tables.index("seconds") + 1
+    checksums.write_text("".join(lines[:batch]))
+    drawn = []
+    with RunImages(open_run(run.path), times, (192, 108), fps=1, speed=1.0, fine=False) as images:
+        draw = images.camera("dashboard")
+        for end in range(batch, len(lines)):
+            checksums.write_text("".join(lines[:end]))
+            images.update(open_run(run.path))
+            for index in range(len(drawn), images.ready):
+                drawn.append(draw(index))
+                assert np.array_equal(drawn[index], whole[index]), (tables[end - 1], index)
+    assert len(drawn) == len(times)
