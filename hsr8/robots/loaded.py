@@ -137,18 +137,10 @@ def _built(description: RobotDescription, file: Path, model_file: Path) -> Loade
         compiled, roles, normal.parts, posture, effort=description.effort, speed=description.speed
     )
     robot = RobotModel(tree)
-    parameters, walk_notes = _fitted(robot, description)
-    height = parameters.pattern.pelvis_height
-    if robot.stand(height, parameters.gait.half_stance) > STANDING:
-        raise KeyMistake(
-            f"zero: the legs do not reach the floor in the ready posture, got hips at "
-            f"{height:.3f} m; expected angles of straight legs, and soles below the ankles"
-        )
-    _require_ready(robot, description, source)
-    walk_notes += _strength(robot, parameters, description, source)
+    parameters, walk_notes = _fitted(robot, description, source)
     driven = set(tree.names)
     held = {name: angle for name, angle in posture.items() if name not in driven}
-    base = height - robot.legs[0].hip[2]
+    base = parameters.pattern.pelvis_height - robot.legs[0].hip[2]
     angles = dict(zip(tree.names, robot.ready.tolist(), strict=True))
     standing = Posed.at(compiled, {**held, **angles}, base)
     collision_notes = exclude_neighbours(normal.spec, standing, source)
@@ -179,14 +171,20 @@ def _built(description: RobotDescription, file: Path, model_file: Path) -> Loade
 
 
 def _fitted(
-    robot: RobotModel, description: RobotDescription
+    robot: RobotModel, description: RobotDescription, source: str
 ) -> tuple[WalkingParameters, list[str]]:
-    """Return the walking parameters of a robot, and notes; for HSR-VIII exactly the defaults."""
+    """Return the walking parameters of a robot, and notes; set its ready posture.
+
+    Raises:
+        ModelError: the robot cannot stand.
+    """
     scaled = parameters_for(robot)
-    if robot.measures() == HSR_VIII:
-        return scaled, []
-    fitted = fit(robot, scaled)
-    robot.stand(fitted.pattern.pelvis_height, fitted.gait.half_stance)
+    standard = robot.measures() == HSR_VIII  # it walks with exactly the defaults
+    fitted = scaled if standard else fit(robot, scaled)
+    _stand(robot, fitted, description, source)
+    strength = _strength(robot, fitted, description, source)
+    if standard:
+        return fitted, strength
     calibration = description.calibration
     known = None if calibration is None else calibration.speed.model_dump()
     parameters, notes = within_joints(robot, fitted, known)
@@ -195,15 +193,23 @@ def _fitted(
         notes.insert(0, f"hips {before:.3f} -> {hips:.3f} m high")
     if robot.stiffening > 1.0:
         notes.insert(0, f"leg servos stiffened {robot.stiffening:.2f} times by feedback")
-    return parameters, notes
+    return parameters, notes + strength
 
 
-def _require_ready(robot: RobotModel, description: RobotDescription, source: str) -> None:
-    """Check that the legs are within their limits in the ready posture.
+def _stand(
+    robot: RobotModel, parameters: WalkingParameters, description: RobotDescription, source: str
+) -> None:
+    """Set the ready posture and check that the legs reach it.
 
     Raises:
-        ModelError: a joint is not.
+        ModelError: a foot is above the floor, or a joint outside its limits.
     """
+    height = parameters.pattern.pelvis_height
+    if robot.stand(height, parameters.gait.half_stance) > STANDING:
+        raise KeyMistake(
+            f"zero: the legs do not reach the floor in the ready posture, got hips at "
+            f"{height:.3f} m; expected angles of straight legs, and soles below the ankles"
+        )
     limits = zip(robot.names, robot.ready.tolist(), robot.tree.lower, robot.tree.upper, strict=True)
     for name, angle, lower, upper in list(limits)[: 2 * LEG_JOINTS]:
         if not lower - SLACK <= angle <= upper + SLACK:

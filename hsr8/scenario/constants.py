@@ -65,9 +65,7 @@ def separated(data: Table) -> Table:
     For another robot than HSR-VIII, whose defaults are scaled, all constants are returned.
     """
     libraries, settings, constants = {name: data[name] for name in LIBRARIES}, dict(data), {}
-    defaults = {name: asdict(Scenario.model_fields[name].default) for name in LIBRARIES}
-    defaults["navigation"] = asdict(PROFILES[data["navigation"]["profile"]]())
-    values, usual = _flat(libraries), _flat(defaults) | _flat(followers(data))
+    values, usual = _flat(libraries), _usual(data["navigation"]["profile"]) | _flat(followers(data))
     settings |= _nested({key: value for key, value in values.items() if key in PUBLIC})
     scales = data["robot"]["model"] != DEFAULT_ROBOT
     constants = {
@@ -76,6 +74,13 @@ def separated(data: Table) -> Table:
         if key not in PUBLIC and (scales or value != _plain(usual[key]))
     }
     return {**settings, CONSTANTS: _nested(constants)} if constants else settings
+
+
+@cache
+def _usual(profile: str) -> Table:
+    """Defaults of the libraries by dotted key."""
+    defaults = {name: asdict(Scenario.model_fields[name].default) for name in LIBRARIES}
+    return _flat(defaults | {"navigation": asdict(PROFILES[profile]())})
 
 
 def _flat(table: Table, prefix: str = "") -> Table:

@@ -105,8 +105,12 @@ def dump(scenario: Scenario) -> str:
     All settings are written, and the constants that differ from their defaults; those of another
     robot than HSR-VIII all are, so that nothing is left to scale.
     """
-    data = json.loads(scenario.model_dump_json(exclude_none=True))
-    return tomlkit.dumps(separated(legible(data)))
+    return tomlkit.dumps(legible(tables(scenario)))
+
+
+def tables(scenario: Scenario) -> Table:
+    """Return the tables that `dump` writes."""
+    return separated(json.loads(scenario.model_dump_json(exclude_none=True)))
 
 
 @dataclass

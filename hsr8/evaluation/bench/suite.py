@@ -12,10 +12,10 @@ from pydantic import AfterValidator, ValidationError
 
 from hsr8.errors import ScenarioError, UsageError
 from hsr8.evaluation.bench.mistakes import checked_name, mistakes
-from hsr8.evaluation.sweep.definition import Definition, scenario_differences
+from hsr8.evaluation.sweep.definition import Differences, table_differences
 from hsr8.evaluation.sweep.seeds import parse_seeds
 from hsr8.evaluation.sweep.table import flatten
-from hsr8.scenario.loader import dump, load_scenario
+from hsr8.scenario.loader import load_scenario, tables
 from hsr8.scenario.schema import Scenario
 from hsr8.scenario.section import Section
 
@@ -25,8 +25,6 @@ FREE = ("walking", "vision", "belief", "navigation", "plugin", "recorder", "desc
 NOT_FREE = ("walking.head", "navigation.mission")
 CONDITIONS = ("robot.body", "camera", "sensors", "walking.head")
 """Sections and keys of the suite that an entry may change; its results name the changes."""
-
-Differences = dict[str, tuple[str, str]]
 
 
 class Suite(Section):
@@ -126,10 +124,7 @@ def changed_settings(
     changed: Differences = {}
     wrong = []
     for family, scenario in scenarios.items():
-        one, other = (
-            Definition(family, (), "", "", "", {}, dump(s)) for s in (standard[family], scenario)
-        )
-        differences = scenario_differences(one, other)
+        differences = table_differences(tables(standard[family]), tables(scenario))
         wrong += [
             f"{family}: {key}: {value}; expected {expected}"
             for key, (expected, value) in differences.items()
@@ -157,7 +152,7 @@ def _path(file: Path, name: str) -> str:
 
 
 def _keys(scenario: Scenario) -> dict[str, Any]:
-    return flatten(tomllib.loads(dump(scenario)))
+    return flatten(tables(scenario))
 
 
 def _free(key: str) -> bool:

@@ -15,7 +15,7 @@ from hsr8.errors import ScenarioError
 from hsr8.evaluation.sweep.table import flatten
 from hsr8.recorder.run.manifest import versions
 from hsr8.robots.models import models_dir
-from hsr8.scenario.loader import dump, loads
+from hsr8.scenario.loader import Table, loads, tables
 from hsr8.version import VERSION
 
 PACKAGES = ("hsr8", "navigation", "walking", "vision")
@@ -95,8 +95,12 @@ class Definition:
 
 def scenario_differences(one: Definition, other: Definition) -> Differences:
     """Return the scenario keys whose values differ, with both values as JSON; absent is ``-``."""
-    tables = [flatten(tomllib.loads(_resolved(d.scenario))) for d in (one, other)]
-    texts = ({key: _text(value) for key, value in table.items()} for table in tables)
+    return table_differences(_resolved(one.scenario), _resolved(other.scenario))
+
+
+def table_differences(one: Table, other: Table) -> Differences:
+    """Return `scenario_differences` of two scenarios as tables."""
+    texts = ({key: _text(value) for key, value in flatten(t).items()} for t in (one, other))
     differences = _differences(*texts)
     return {key: differences[key] for key in sorted(differences.keys() - set(MAY_DIFFER))}
 
@@ -144,9 +148,9 @@ def _differences(one: Mapping[str, str], other: Mapping[str, str]) -> Difference
     return {key: pair for key, pair in pairs.items() if pair[0] != pair[1]}
 
 
-def _resolved(text: str) -> str:
+def _resolved(text: str) -> Table:
     """Return a scenario of another version with the keys added since."""
     try:
-        return dump(loads(text))
+        return tables(loads(text))
     except ScenarioError:
-        return text
+        return tomllib.loads(text)
