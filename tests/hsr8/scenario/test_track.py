@@ -60,6 +60,14 @@ def test_the_position_at_a_sample_is_that_of_the_file(given_samples):
     assert at == pytest.approx(points, abs=1e-9)
 
 
+@given(samples())
+def test_sampled_positions_are_those_of_the_track_and_dense(given_samples):
+    track = track_of(*given_samples)
+    moments, points = track.sampled(-10.0, 10.0, 0.05)
+    assert np.array_equal(points, [track.at(moment) for moment in moments.tolist()])
+    assert np.hypot(*np.diff(points, axis=0).T).max() <= 0.05 + 1e-9
+
+
 @given(samples(), st.floats(0.0, 1.0))
 def test_no_speed_exceeds_the_bounds(given_samples, fraction):
     times, points = given_samples
