@@ -103,7 +103,7 @@ class Track:
         low, high = (min(max(moment, self.times[0]), self.times[-1]) for moment in (low, high))
         n = ceil((high - low) * self.speed / spacing) + 1
         moments = np.linspace(low, high, max(2, n))
-        pieces = np.searchsorted(self.times, moments, side="right").clip(max=len(self.times) - 1) - 1
+        pieces = np.searchsorted(self.times[1:-1], moments, side="right")
         since = (moments - np.array(self.times)[pieces])[:, None]
         a, b, c, d = np.moveaxis(self.polynomials()[pieces], -1, 0)
         return moments, a + since * (b + since * (c + since * d))

@@ -30,7 +30,9 @@ def rendered_afterwards(run, tmp_path):
     return frames(tmp_path / "after.mp4")
 
 
-@pytest.mark.parametrize(("scenario", "duration"), [("paper", "1.2"), ("quick", "0.5"), ("walk", "0.5")])
+@pytest.mark.parametrize(
+    ("scenario", "duration"), [("paper", "1.2"), ("quick", "0.5"), ("walk", "0.5")]
+)
 def test_a_video_of_a_run_equals_one_of_its_records(tmp_path, scenario, duration, capsys):
     words = ["run", scenario, *FAST, "--duration", duration, "--video"]
     assert entry([*words, "--out", str(tmp_path / "runs")]) <= 1
