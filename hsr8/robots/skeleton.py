@@ -14,7 +14,6 @@ Array = NDArray[np.float64]
 
 HINGE = int(mujoco.mjtJoint.mjJNT_HINGE)
 FREE = int(mujoco.mjtJoint.mjJNT_FREE)
-BALL = int(mujoco.mjtJoint.mjJNT_BALL)
 PARALLEL = 0.9  # minimum cosine of an axis that counts as a yaw or pitch axis [1]
 
 
