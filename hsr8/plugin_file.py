@@ -102,16 +102,15 @@ def _module(reference: str, file: Path) -> ModuleType:
     name = f"{PREFIX}{file}"
     if name in sys.modules:
         return sys.modules[name]
-    _content(reference)  # reports a missing file
+    content = _content(reference)
     spec = spec_from_file_location(name, file)
     assert spec is not None
-    assert spec.loader is not None
     module = module_from_spec(spec)
     if str(file.parent) not in sys.path:
         sys.path.append(str(file.parent))
     sys.modules[name] = module  # dataclasses look for their module there
     try:
-        spec.loader.exec_module(module)
+        exec(compile(content, file, "exec"), vars(module))  # bytecode on disk may be older
     except (Exception, SystemExit) as error:
         del sys.modules[name]
         raise UsageError(f"{reference}: {file.name} failed: {_described(error, file)}") from error

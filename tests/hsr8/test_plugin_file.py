@@ -1,6 +1,7 @@
 """Planners and gazes named in a scenario as FILE.py:CLASS."""
 
 import json
+import os
 import re
 import sys
 
@@ -11,7 +12,7 @@ from hypothesis import strategies as st
 import hsr8
 from hsr8.cli.main import entry
 from hsr8.errors import UsageError
-from hsr8.plugin_file import digests, line_of, load_plugin, require_plugins
+from hsr8.plugin_file import PREFIX, digests, line_of, load_plugin, require_plugins
 from hsr8.scenario.plugin import Plugin
 
 FAST = ("--body", "kinematic", "--camera", "analytic", "--quiet")
@@ -81,6 +82,17 @@ def folder(tmp_path, monkeypatch):
     tmp_path.joinpath("mine.py").write_text(SOURCE)
     yield tmp_path
     sys.modules.pop("speeds", None)
+
+
+def test_a_process_executes_the_present_content_and_leaves_no_bytecode(tmp_path, monkeypatch):
+    monkeypatch.setattr(sys, "dont_write_bytecode", False)
+    file = tmp_path / "mine.py"
+    for value in (1, 2):
+        file.write_text(f"class Mine:\n    value = {value}\n")
+        os.utime(file, (1e9, 1e9))  # time and size of both versions are equal
+        assert load_plugin(f"{file}:Mine").value == value
+        del sys.modules[f"{PREFIX}{file}"]
+    assert list(tmp_path.iterdir()) == [file]
 
 
 def test_instances_are_new_and_the_file_is_executed_once(folder):
