@@ -6,6 +6,8 @@ SOURCES := $(PACKAGES) examples scripts tests
 export OMP_NUM_THREADS := 1
 export OPENBLAS_NUM_THREADS := 1
 export MKL_NUM_THREADS := 1
+# The many processes of a test run start faster with bytecode, which container images may switch off.
+export PYTHONDONTWRITEBYTECODE :=
 # Two test processes, a file each; in one process, which debuggers want: make test XDIST=
 XDIST ?= -n 2 --dist loadfile
 
