@@ -49,7 +49,7 @@ IN_SHORT = {
     "replay": ["--time", "0.1"],
 }
 # Only read, since they would need what the page cannot give or take seconds.
-ONLY_READ = {"color-table", "robot inspect", "robot check", "robot calibrate"}
+ONLY_READ = {"color-table", "doctor --compile", "robot inspect", "robot check", "robot calibrate"}
 WITHOUT_ARGUMENTS = {"list", "doctor", "schema"}
 GOOD = {"success": True, "collisions": 0, "falls": 0, "path_length_m": 2.0, "exit_reason": "goal"}
 
