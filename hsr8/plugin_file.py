@@ -2,7 +2,6 @@
 
 import hashlib
 import sys
-from importlib.util import module_from_spec, spec_from_file_location
 from pathlib import Path
 from traceback import extract_tb
 from types import ModuleType
@@ -103,9 +102,8 @@ def _module(reference: str, file: Path) -> ModuleType:
     if name in sys.modules:
         return sys.modules[name]
     content = _content(reference)
-    spec = spec_from_file_location(name, file)
-    assert spec is not None
-    module = module_from_spec(spec)
+    module = ModuleType(name)
+    module.__file__ = str(file)
     if str(file.parent) not in sys.path:
         sys.path.append(str(file.parent))
     sys.modules[name] = module  # dataclasses look for their module there

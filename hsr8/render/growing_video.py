@@ -3,6 +3,7 @@
 import time as clock
 from collections.abc import Callable, Iterator
 from functools import partial
+from math import inf
 from pathlib import Path
 
 import numpy as np
@@ -82,21 +83,14 @@ class _GrowingRun:
         Raises:
             _EndedEarly: it ended without any.
         """
-        while True:
-            run, over = self._read()
-            if len(run.seconds):
-                return run
-            if over:
-                raise _EndedEarly
-            clock.sleep(PERIOD)
+        run, _ = self._recorded(0.0)
+        if not len(run.seconds):
+            raise _EndedEarly
+        return run
 
     def ended(self) -> Run:
         """Return the run after its end."""
-        while True:
-            run, over = self._read()
-            if over:
-                return run
-            clock.sleep(PERIOD)
+        return self._recorded(inf)[0]
 
     def order(self, images: RunImages, times: Array, options: VideoOptions) -> Iterator[int]:
         """Yield the numbers of the images as soon as they can be drawn.
@@ -111,23 +105,18 @@ class _GrowingRun:
             drawn = max(drawn, ready)
             if drawn == len(times):
                 return
-            self._wait(images.recorded + part)
-            run, over = self._read()
+            run, over = self._recorded(images.recorded + part)
             if over and len(instants(run.records["time"], options)[0]) != len(times):
                 raise _EndedEarly
             images.update(run)
 
-    def _wait(self, time: float) -> None:
-        """Wait until everything up to a simulated time is recorded, or the run ends."""
+    def _recorded(self, time: float) -> tuple[Run, bool]:
+        """Return the run, and whether it has ended, after waiting for records up to a time [s]."""
         while True:
-            run, over = self._read()
+            stopped = self._stopped()  # before the records are read
+            run = open_run(self._path)
+            over = stopped or not run.running
             seconds = run.seconds["time"]  # a small table
             if over or (len(seconds) and seconds[-1] >= time):
-                return
+                return run, over
             clock.sleep(PERIOD)
-
-    def _read(self) -> tuple[Run, bool]:
-        """Return the run, and whether it had ended before its records are read."""
-        stopped = self._stopped()
-        run = open_run(self._path)
-        return run, stopped or not run.running

@@ -19,6 +19,7 @@ from dataclasses import dataclass
 from math import ceil, inf, isfinite
 
 import numpy as np
+from numpy.polynomial.polynomial import polyval
 from numpy.typing import NDArray
 
 from hsr8.scenario.section import Point
@@ -105,8 +106,8 @@ class Track:
         moments = np.linspace(low, high, max(2, n))
         pieces = np.searchsorted(self.times[1:-1], moments, side="right")
         since = (moments - np.array(self.times)[pieces])[:, None]
-        a, b, c, d = np.moveaxis(self.polynomials()[pieces], -1, 0)
-        return moments, a + since * (b + since * (c + since * d))
+        coefficients = np.moveaxis(self.polynomials()[pieces], -1, 0)
+        return moments, polyval(since, coefficients, tensor=False)
 
     def polynomials(self) -> Array:
         """Return the coefficients between the samples, constant first (n - 1, 2, 4)."""

@@ -66,8 +66,8 @@ def test_a_killed_run_leaves_the_video_of_its_records(tmp_path):
     manifest.write_text(manifest.read_text().replace('"completed"', '"running"'))
     assert open_run(folder).running
     scenario.write_text(scenario.read_text().replace("duration = 6.0", "duration = 60.0"))
-    command = [sys.executable, "-m", "hsr8", "render", str(folder), "--follow", *SMALL]
-    command += ["--camera", "head"]
+    options = ["--follow", "--camera", "head", *SMALL]
+    command = [sys.executable, "-m", "hsr8", "render", str(folder), *options]
     process = subprocess.Popen(command)
     while not [*folder.glob("video.mp4.*.part")]:
         assert process.poll() is None
