@@ -84,7 +84,7 @@ def tour(path: Path) -> Tour:
         f"profile {scenario.navigation.profile}",
         scenario,
         layout,
-        shown_frames(run),
+        shown_frames(run, run.frames["time"]),
         motion_of(run, len(layout.movers)),
         walking_of(run),
         float(run.frames["capture_position"][0, 2]),

@@ -72,8 +72,7 @@ class RunImages:
         self._motion = motion_of(run, len(self._layout.movers))
         self._obstacles = run.records["obstacle_positions"].shape[1]
         self._rows = rows_at(self._motion.time, self._times)
-        self._frames = shown_frames(run)
-        self._frame_times = [frame.time for frame in self._frames]
+        self._frames = shown_frames(run, self._times)
         self._events = [*zip(run.events["time"].tolist(), run.events["kind"], strict=True)]
         self._event_times = [time for time, _ in self._events]
         self._pushes: tuple[PushArrow, ...] = ()
@@ -160,7 +159,7 @@ class RunImages:
         )
 
         def draw(index: int) -> Image:
-            frame = self._frames[self._frame(index)]
+            frame = self._frames[index]
             image = self._draw_camera(renderer, frame)
             overlay.draw(image, frame)
             return image
@@ -173,19 +172,18 @@ class RunImages:
         board = Dashboard(self._layout, self._scenario, timeline, self._size, self._speed)
         scene = self._renderer("show", board.scene_size)
         camera = self._renderer("vision", board.camera_size, CAMERA_OVERSAMPLING)
-        latest: tuple[int, Image] | None = None  # one camera image per frame
+        latest: tuple[float, Image] | None = None  # one camera image per frame
 
-        def camera_image(number: int) -> Image:
+        def camera_image(frame: ShownFrame) -> Image:
             nonlocal latest
-            if latest is None or latest[0] != number:
-                latest = number, self._draw_camera(camera, self._frames[number])
+            if latest is None or latest[0] != frame.captured:
+                latest = frame.captured, self._draw_camera(camera, frame)
             return latest[1]
 
         def draw(index: int) -> Image:
-            number = self._frame(index)
+            frame = self._frames[index]
             outside = self._draw_scene(scene, index)
-            shown = self._dashboard_frame(index, self._frames[number])
-            return board.draw(outside, camera_image(number), shown)
+            return board.draw(outside, camera_image(frame), self._dashboard_frame(index, frame))
 
         return draw
 
@@ -207,10 +205,6 @@ class RunImages:
     def _arrows(self, index: int) -> list[Arrow]:
         base = self._motion.qpos[int(self._rows[index]), :3]
         return arrows_at(self._pushes, float(self._times[index]), base, self._speed)
-
-    def _frame(self, index: int) -> int:
-        """Return the number of the latest camera frame at an image."""
-        return max(bisect_right(self._frame_times, float(self._times[index]) + 1e-9) - 1, 0)
 
     def _trail(self, row: int) -> Array:
         """Return the path up to a row, averaged over gait cycles to remove the sway (n, 2) [m]."""

@@ -21,7 +21,7 @@ Image = NDArray[np.uint8]
 
 ARROW = np.array([0.90, 0.20, 0.45, 1.0], dtype=np.float32)  # colour of arrows
 ARROW_RADIUS = 0.012  # in a world of scale 1 [m]
-SHADOW_SIZE = {True: 4096, False: 2048}  # of fine and of quick images [texel]
+SHADOW_SIZE = {True: 4096, False: 1536}  # of fine and of quick images [texel]
 SHADOW_CONE = 0.48  # fraction of the sun's cone with shadows: up to the rim of the field
 EDGE = 24  # minimum difference of a pixel on an edge to the mean of its neighbours, of 255
 MAX_SIDE = 8192  # of an image before it is scaled down [pixel]
@@ -93,6 +93,9 @@ class SceneRenderer:
         """
         self._renderer.update_scene(self.data, camera=view, scene_option=self._option)
         scene = self._renderer.scene
+        for geom in scene.geoms[: scene.ngeom]:
+            if geom.type == mujoco.mjtGeom.mjGEOM_PLANE:
+                geom.category = mujoco.mjtCatBit.mjCAT_DECOR  # casts no shadow, which takes time
         for tail, tip in arrows[: scene.maxgeom - scene.ngeom]:
             geom = scene.geoms[scene.ngeom]
             kind = mujoco.mjtGeom.mjGEOM_ARROW

@@ -102,30 +102,37 @@ class ShownFrame:
     gaze_map: NDArray[np.uint8] | None
 
 
-def shown_frames(run: Run) -> tuple[ShownFrame, ...]:
-    """Return all camera frames of a run."""
+def shown_frames(run: Run, times: Array) -> tuple[ShownFrame, ...]:
+    """Return the latest camera frame at each of the times (m,) [s]; empty if the run has none.
+
+    Times with the same frame have the same object.
+    """
     frames, records = run.frames, run.records
     if not len(frames):
         return ()
-    return _shown(frames, records["robot"][records.at(frames["time"])])
+    rows, index = np.unique(frames.at(times), return_inverse=True)
+    chosen = frames.take(rows)
+    robot = records["robot"][records.at(chosen["time"])]
+    shown = _shown(chosen, robot, _gaze_maps(frames, rows))
+    return tuple(shown[k] for k in index.tolist())
 
 
 def shown_frame(frame: FrameRecord, robot: Array) -> ShownFrame:
     """Return one camera frame with the true pose (3,) of the robot."""
     frames = Table.from_objects("frames", FrameRow, [FrameSampler().sample(frame)])
-    return _shown(frames, robot[None])[0]
+    return _shown(frames, robot[None], _gaze_maps(frames, np.array([0])))[0]
 
 
-def _shown(frames: Table, robot: Array) -> tuple[ShownFrame, ...]:
+def _shown(
+    frames: Table, robot: Array, gaze_maps: list[NDArray[np.uint8] | None]
+) -> list[ShownFrame]:
     """Return camera frames, each with the true pose of the robot (n, 3)."""
     tracks, boxes, virtual = _tracks(frames), _boxes(frames), _virtual(frames)
-    new = dict(zip(*frames.present("gaze_map"), strict=True))
     columns = {name: frames[name].tolist() for name in _PLAIN}
     covariance = frames["pose_covariance"][:, (0, 0, 1), (0, 1, 1)].tolist()
-    fov, gaze_map = frames["fov"][:, 0].tolist(), None
+    fov = frames["fov"][:, 0].tolist()
     shown = []
     for k, truth in enumerate(robot.tolist()):
-        gaze_map = new.get(k, gaze_map)
         row = {name: values[k] for name, values in columns.items()}
         shown.append(
             ShownFrame(
@@ -146,16 +153,23 @@ def _shown(frames: Table, robot: Array) -> tuple[ShownFrame, ...]:
                 captured=row["captured"],
                 look=tuple(row["gaze"]),
                 boxes=boxes[k],
-                gaze_map=None if gaze_map is None else gaze_map[::-1, ::-1],
+                gaze_map=gaze_maps[k],
             )
         )
-    return tuple(shown)
+    return shown
 
 
 _PLAIN = (
     *("time", "pose", "head", "target", "via_points", "velocity", "situation", "psi", "lost"),
     *("captured", "gaze"),
 )
+
+
+def _gaze_maps(frames: Table, rows: NDArray[np.intp]) -> list[NDArray[np.uint8] | None]:
+    """Return the latest gaze map at each of the `rows`."""
+    made, maps = frames.present("gaze_map")
+    latest = np.searchsorted(made, rows, side="right") - 1
+    return [maps[k][::-1, ::-1] if k >= 0 else None for k in latest.tolist()]
 
 
 def _tracks(frames: Table) -> list[tuple[ShownTrack, ...]]:
