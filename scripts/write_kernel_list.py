@@ -1,4 +1,4 @@
-"""Write hsr8/kernels.txt: the kernels of a run of `quick`, with the types of their arguments."""
+"""Write hsr8/kernels.txt: the kernels of two short runs, with the types of their arguments."""
 
 import os
 import subprocess
@@ -10,6 +10,7 @@ RUN = """
 import sys
 import hsr8
 hsr8.run("quick")
+hsr8.run("course", settings=["duration=4"])  # with obstacles that hide each other
 for name, module in list(sys.modules.items()):
     if name.endswith("_kernel"):
         for kernel in vars(module).values():

@@ -4,8 +4,9 @@ The unknowns are azimuth, distance and radius of the cylinder relative to the ca
 sides measure azimuth +- asin(radius / distance). Every rim point measures a slope
 (rim height - camera height) / (horizontal distance of the rim), with the near or far half of
 the rim at distance * cos(phi) -+ sqrt(radius^2 - (distance * sin(phi))^2) in the direction phi
-off the axis. Gauss-Newton fuses all edges with their full covariance: independent pixel errors
-and motion blur, and the error of the camera pose common to all edges.
+off the axis. Gauss-Newton fuses the sides and the mean slope of each rim with their full
+covariance: independent pixel errors and motion blur, and the error of the camera pose common to all
+edges; the deviations of the rim's points from their mean add the shape of the rim.
 """
 
 from collections.abc import Sequence
@@ -14,12 +15,15 @@ from math import atan2, cos, hypot, sin
 import numpy as np
 from numpy.typing import NDArray
 
-from vision import cylinder_kernel
+from vision import cylinder_guess_kernel, cylinder_kernel
 from vision.outline import Rim, Side
 from vision.value import value
 from vision.view import View
 
 Array = NDArray[np.float64]
+
+MIN_CLEARANCE = 0.03  # minimum height difference of camera and rim to measure distance [m]
+LIMITS = np.array([MIN_CLEARANCE, 0.10, 12.0])  # and minimum and maximum distance [m]
 
 
 @value
@@ -157,18 +161,23 @@ def locate(
             slopes.append(rim.slope)
             points.append(points[-1] + len(rim.slope))
         first_rims.append(len(slopes))
-    pose = view.pose
-    result, covariances = cylinder_kernel.locate(
+    pose, height = view.pose, view.height / unit
+    edges = (
         np.array(sides).reshape(-1, 2, 6),
         np.array(known).reshape(-1, 3) / unit,
         np.array(rims, float).reshape(-1, 3) / (unit, 1.0, 1.0),
         np.array(first_rims),
         np.array(points),
+    )
+    slope = np.concatenate(slopes) if slopes else np.empty(0)
+    first = cylinder_guess_kernel.guess(*edges, slope, height, LIMITS)
+    result, covariances = cylinder_kernel.locate(
+        *edges,
         np.concatenate(azimuths) if azimuths else np.empty(0),
-        np.concatenate(slopes) if slopes else np.empty(0),
+        slope,
         np.array(
             [
-                view.height / unit,
+                height,
                 pose.tilt_sigma**2,
                 pose.roll_sigma**2,
                 pose.yaw_sigma**2,
@@ -178,7 +187,8 @@ def locate(
                 pose.tilt_smear**2 / 12.0,
             ]
         ),
-        np.array([roundness_sigma, edge_correlation, outlier_threshold]),
+        np.array([roundness_sigma, edge_correlation, outlier_threshold, *LIMITS]),
+        *first,
     )
     return [
         Cylinder(azimuth, distance, radius, covariance, misfit, outlier_fraction)

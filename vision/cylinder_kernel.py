@@ -11,9 +11,10 @@ Bools = NDArray[np.bool_]
 Table = NDArray[np.int64]
 Edges = tuple[Array, Table, Array, Array]  # rims, points, azimuth and slope, see `locate`
 
-ITERATIONS = 3
+ITERATIONS = 4
 MAX_RIMS = 3  # a beacon shows three
 SIDES = 2
+UNIFORM = 12.0**0.5  # width of a pixel [standard deviations of an edge in it]
 PRIOR = SIDES + MAX_RIMS  # row of the prior of the radius
 SPAN = PRIOR + 1  # row of the span of a side
 ROWS = SPAN + 1
@@ -21,16 +22,10 @@ NO_INFORMATION = 1e3  # standard deviation of a missing measurement
 RIM_WIDTH = 0.75  # fraction of the half width within which points of a rim are used
 OUTER = 0.92  # fraction of the half width beyond which a rim is too steep to predict
 HIDDEN_WIDTH = 0.08  # standard deviation of an occluded side [m]
-MIN_DISTANCE, MAX_DISTANCE = 0.10, 12.0  # [m]
 MIN_RADIUS, MAX_RADIUS = 0.01, 0.5  # bounds of the iteration [m]
-MIN_HALF, MAX_HALF = 1e-3, 1.2  # bounds of the initial half width [rad]
-FAR_SLOPE = -0.5  # slope of the foot above which a cylinder is far
-MIN_SLOPE = 1e-6
 MIN_RUN = 0.02  # [m]
 MIN_SLOPE_OF_SIDE = -3.0  # minimum slope of the middle of a side
-UNIFORM = 12.0**0.5  # width of a pixel [standard deviations of an edge in it]
-MIN_CLEARANCE = 0.03  # minimum height difference of camera and rim to measure distance [m]
-SPAN_SIGMA = 0.02  # minimum relative standard deviation of a distance from a span [1]
+PARTS = 4.0  # of a rim with independent errors by the roundness of the cylinder
 TURNS = 3.0  # an edge that crosses n pixels has a common error 1 + TURNS*n times smaller
 
 
@@ -56,83 +51,29 @@ def _of_mean(count: float, common: float) -> float:
 
 
 @njit(cache=True)
-def _rim_distance(rims: Array, points: Table, slope: Array, h: float, radius: float) -> float:
-    """Return the initial distance from the rims, 0 if there is none; see `locate`."""
-    lowest = highest = -1
-    for j in range(len(rims)):
-        if points[j] < points[j + 1] and abs(rims[j, 0] - h) >= MIN_CLEARANCE:
-            lowest = j if lowest < 0 else lowest
-            highest = j
-    if lowest < 0:
-        return 0.0
-    low = slope[(points[lowest] + points[lowest + 1]) // 2]
-    high = slope[(points[highest] + points[highest + 1]) // 2]
-    if low > FAR_SLOPE and high > low:
-        # Far away the difference of the slopes is more robust against a tilt error.
-        return float(min((rims[highest, 0] - rims[lowest, 0]) / (high - low), MAX_DISTANCE))
-    for j in range(lowest, highest + 1):
-        if points[j] == points[j + 1] or abs(rims[j, 0] - h) < MIN_CLEARANCE:
-            continue
-        middle = slope[(points[j] + points[j + 1]) // 2]
-        run = (rims[j, 0] - h) / (middle if middle != 0.0 else MIN_SLOPE)
-        if MIN_DISTANCE < run < MAX_DISTANCE:
-            return float(run + rims[j, 1] * radius)
-    return 0.0
-
-
-@njit(cache=True)
-def _span(sides: Array, height: float, h: float) -> tuple[float, float]:
-    """Return the distance to the only trusted side and its standard deviation, 0, 0 if none [m].
-
-    The visible span of the side lies between foot and head. Of a close cylinder at the border
-    of the image often neither is visible.
-    """
-    if (sides[0, 5] != 0.0) == (sides[1, 5] != 0.0):
-        return 0.0, 0.0
-    low, high = sides[0, 3], sides[0, 4]
-    if sides[1, 5] != 0.0:
-        low, high = sides[1, 3], sides[1, 4]
-    if h <= height or high >= -MIN_SLOPE or low >= high:
-        return 0.0, 0.0
-    farthest, nearest = -h / low, (height - h) / high
-    middle = 0.5 * (farthest + nearest)
-    return middle, hypot(SPAN_SIGMA * middle, (farthest - nearest) / UNIFORM)
-
-
-@njit(cache=True)
-def _guess(x: Array, sides: Array, known: Array, distance: float) -> None:
-    """Write the initial azimuth, distance and radius x (3,); `distance` 0 if unknown [m]."""
-    left, right, radius = sides[0, 0], sides[1, 0], known[0]
-    left_trusted, right_trusted = sides[0, 5] != 0.0, sides[1, 5] != 0.0
-    half = min(max(0.5 * (left - right), MIN_HALF), MAX_HALF)
-    if distance == 0.0:
-        distance = radius / sin(half)
-    if left_trusted and right_trusted:
-        radius = min(max(distance * sin(half), 0.7 * known[0]), 1.5 * known[0])
-    distance = max(distance, MIN_DISTANCE + radius)
-    azimuth = 0.5 * (left + right)
-    if left_trusted != right_trusted:
-        reach = asin(min(radius / distance, 0.9))
-        azimuth = left - reach if left_trusted else right + reach
-    x[0], x[1], x[2] = azimuth, distance, radius
-
-
-@njit(cache=True)
 def _keep_inner(
-    keep: Bools, mean_sigma: Array, x: Array, edges: Edges, h: float, common: float
+    keep: Bools,
+    mean_sigma: Array,
+    point_variance: Array,
+    x: Array,
+    edges: Edges,
+    h: float,
+    options: Array,
 ) -> int:
     """Select the rim points away from the ends of their rim; return their number.
 
-    Writes which points to `keep`, and the standard deviation of the mean slope of each rim (3,)
-    to `mean_sigma` [1].
+    Writes which points to `keep`; for each rim the standard deviation of the mean slope to
+    `mean_sigma` (3,) [1], and the variance of a point's deviation from this mean to
+    `point_variance` (3,) [1], larger by the number of points per independent one.
     """
     theta, d, r = x[0], x[1], x[2]
     rims, points, azimuth, slope = edges
+    roundness, common, clearance = options[0], options[1], options[3]
     used = 0
     mean_sigma[:] = NO_INFORMATION
     for j in range(len(rims)):
         count, low, high = 0, inf, -inf
-        clear = abs(rims[j, 0] - h) >= MIN_CLEARANCE
+        clear = abs(rims[j, 0] - h) >= clearance
         for i in range(points[j], points[j + 1]):
             keep[i] = clear and abs(sin(azimuth[i] - theta) * d / r) < RIM_WIDTH
             if keep[i]:
@@ -141,6 +82,8 @@ def _keep_inner(
         if count:
             own = independent(float(count), (high - low) / (UNIFORM * rims[j, 2]))
             mean_sigma[j] = rims[j, 2] * _of_mean(own, common)
+            rough = (rims[j, 0] - h) / d * roundness * r / d
+            point_variance[j] = count * (rims[j, 2] ** 2 / own + rough * rough / PARTS)
             used += count
     return used
 
@@ -150,6 +93,7 @@ def _linearise(
     H: Array,
     residual: Array,
     point_residual: Array,
+    shape: Array,
     x: Array,
     sides: Array,
     prior: float,
@@ -157,12 +101,20 @@ def _linearise(
     edges: Edges,
     h: float,
     span: float,
+    point_variance: Array,
 ) -> None:
-    """Write Jacobian (7, 3) and residuals (7,) of a candidate at x, and residuals of its points."""
+    """Write Jacobian (7, 3) and residuals (7,) of a candidate at x, and residuals of its points.
+
+    Writes the normal equations of the shape of the rims, matrix and right side, to `shape` (3, 4):
+    the points measure their deviations from the mean of their rim. Of a cylinder whose side is
+    cut by the border of the image, only the shape measures azimuth and radius well.
+    """
     theta, d, r = x[0], x[1], x[2]
     rims, points, azimuth, slope = edges
     H[:] = 0.0
     residual[:] = 0.0
+    shape[:] = 0.0
+    row, total, products = np.empty(4), np.empty(4), np.empty((3, 4))
     reach, half = sqrt(d * d - r * r), asin(r / d)
     residual[0] = sides[0, 0] - theta - half
     residual[1] = sides[1, 0] - theta + half
@@ -175,7 +127,9 @@ def _linearise(
         H[SPAN, 1], H[SPAN, 2] = d / reach, -r / reach
     for j in range(len(rims)):
         sign, drop = rims[j, 1], rims[j, 0] - h
-        count, total, by_theta, by_d, by_r = 0, 0.0, 0.0, 0.0, 0.0
+        count = 0
+        total[:] = 0.0
+        products[:] = 0.0
         for i in range(points[j], points[j + 1]):
             if not keep[i]:
                 continue
@@ -188,15 +142,23 @@ def _linearise(
             predicted = drop / run
             gain = -predicted / run  # d slope / d run
             point_residual[i] = slope[i] - predicted
-            total += point_residual[i]
-            by_theta += gain * d * (sine - lean * cosine)
-            by_d += gain * (cosine + lean * sine)
-            by_r -= gain * sign / c
+            row[0] = gain * d * (sine - lean * cosine)
+            row[1] = gain * (cosine + lean * sine)
+            row[2] = -gain * sign / c
+            row[3] = point_residual[i]
             count += 1
+            for a in range(4):
+                total[a] += row[a]
+                for b in range(3):
+                    products[b, a] += row[b] * row[a]
         if count:
+            for a in range(4):
+                for b in range(3):
+                    deviation = products[b, a] - total[b] * total[a] / count
+                    shape[b, a] += deviation / point_variance[j]
             k = SIDES + j
-            residual[k] = total / count
-            H[k, 0], H[k, 1], H[k, 2] = by_theta / count, by_d / count, by_r / count
+            H[k, 0], H[k, 1], H[k, 2] = total[0] / count, total[1] / count, total[2] / count
+            residual[k] = total[3] / count
 
 
 @njit(cache=True)
@@ -264,9 +226,9 @@ def _whiten(R: Array, H: Array, residual: Array) -> None:
 
 
 @njit(cache=True)
-def _step(x: Array, P: Array, H: Array, residual: Array) -> None:
-    """Take one Gauss-Newton step of x from whitened rows; write its covariance P (3, 3)."""
-    N, g = np.zeros((3, 3)), np.zeros(3)
+def _step(x: Array, P: Array, H: Array, residual: Array, shape: Array, options: Array) -> None:
+    """Take a Gauss-Newton step of x from whitened rows and shape; write its covariance P (3, 3)."""
+    N, g = shape[:, :3].copy(), shape[:, 3].copy()
     for i in range(ROWS):
         for j in range(3):
             g[j] += H[i, j] * residual[i]
@@ -284,7 +246,7 @@ def _step(x: Array, P: Array, H: Array, residual: Array) -> None:
     for i in range(3):
         x[i] += P[i, 0] * g[0] + P[i, 1] * g[1] + P[i, 2] * g[2]
     x[2] = min(max(x[2], MIN_RADIUS), MAX_RADIUS)
-    x[1] = min(max(x[1], 1.1 * x[2], MIN_DISTANCE), MAX_DISTANCE)
+    x[1] = min(max(x[1], 1.1 * x[2], options[4]), options[5])
 
 
 @njit(cache=True)
@@ -324,6 +286,8 @@ def locate(
     slope: Array,
     pose: Array,
     options: Array,
+    start: Array,
+    spans: Array,
 ) -> tuple[Array, Array]:
     """Return the least-squares cylinder of each candidate.
 
@@ -341,7 +305,9 @@ def locate(
         pose: height of the camera [m]; variances of its tilt, roll, yaw [rad²], height [m²], and
             of the motion blur by pan and tilt [rad²] (7,).
         options: roundness, edge correlation and outlier threshold as for
-            `vision.cylinder.locate` (3,).
+            `vision.cylinder.locate`, and its `LIMITS` (6,).
+        start: first azimuth [rad], distance [m] and radius [m] (n, 3).
+        spans: distance to the only trusted side and its standard deviation, or 0 (n, 2) [m].
 
     Returns:
         Azimuth [rad], distance [m], radius [m], misfit and outlier fraction (n, 5); covariance
@@ -352,7 +318,8 @@ def locate(
     keep, point_residual = np.empty(len(slope), np.bool_), np.empty(len(slope))
     H, residual = np.empty((ROWS, 3)), np.empty(ROWS)
     R, G = np.empty((ROWS, ROWS)), np.empty((ROWS, 4))
-    mean_sigma, means = np.empty(MAX_RIMS), np.empty(MAX_RIMS)
+    mean_sigma, means, point_variance = np.empty(MAX_RIMS), np.empty(MAX_RIMS), np.empty(MAX_RIMS)
+    shape = np.empty((3, 4))
     sigma, trusted = np.empty(SIDES), np.empty(SIDES, np.bool_)
     h, roundness, common, threshold = pose[0], options[0], options[1], options[2]
     for k in range(n):
@@ -360,20 +327,27 @@ def locate(
         first, last = first_rims[k], first_rims[k + 1]
         rim, ends = rims[first:last], points[first : last + 1]
         edges = (rim, ends, azimuth, slope)
-        distance = _rim_distance(rim, ends, slope, h, size[0])
-        _guess(x, side, size, distance)
-        used = _keep_inner(keep, mean_sigma, x, edges, h, common)
-        span = span_sigma = 0.0
-        if used == 0:
-            span, span_sigma = _span(side, size[2], h)
-            if span > 0.0:
-                _guess(x, side, size, span)
-                _keep_inner(keep, mean_sigma, x, edges, h, common)
+        x[:] = start[k]
         for j in range(SIDES):
             sigma[j] = side[j, 1] * _of_mean(side[j, 2], common)
             trusted[j] = side[j, 5] != 0.0
         for _ in range(ITERATIONS):
-            _linearise(H, residual, point_residual, x, side, size[0], keep, edges, h, span)
+            used = _keep_inner(keep, mean_sigma, point_variance, x, edges, h, options)
+            span, span_sigma = (0.0, 0.0) if used else (spans[k, 0], spans[k, 1])
+            _linearise(
+                H,
+                residual,
+                point_residual,
+                shape,
+                x,
+                side,
+                size[0],
+                keep,
+                edges,
+                h,
+                span,
+                point_variance,
+            )
             means[:] = residual[SIDES:PRIOR]
             # A side visible beyond foot or head is not an edge of the cylinder.
             reach = sqrt(x[1] * x[1] - x[2] * x[2])
@@ -388,7 +362,7 @@ def locate(
                 R, G, x, side, sigma, trusted, size, rim, mean_sigma, pose, roundness, span_sigma
             )
             _whiten(R, H, residual)
-            _step(x, covariances[k], H, residual)
+            _step(x, covariances[k], H, residual, shape, options)
         if not _positive(covariances[k]):
             # The iteration diverges if the edges are not those of one cylinder.
             covariances[k] = NO_INFORMATION * NO_INFORMATION * np.eye(3)

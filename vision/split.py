@@ -13,8 +13,7 @@ from numpy.typing import NDArray
 
 from vision import split_kernel
 from vision.blob import Blob
-from vision.cylinder import Candidate, RimCue
-from vision.cylinder_kernel import MIN_CLEARANCE
+from vision.cylinder import MIN_CLEARANCE, Candidate, RimCue
 from vision.outline import Outline, Rim, Side
 from vision.outline_kernel import envelopes
 from vision.parameters import VisionParameters

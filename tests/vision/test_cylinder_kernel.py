@@ -3,10 +3,12 @@ from math import asin
 import numpy as np
 import pytest
 
+from vision.cylinder import LIMITS
+from vision.cylinder_guess_kernel import guess
 from vision.cylinder_kernel import OUTER, locate
 
 HEIGHT = 0.47
-OPTIONS = np.array([0.008, 0.02, 4.0])
+OPTIONS = np.array([0.008, 0.02, 4.0, *LIMITS])
 POSE = np.array([HEIGHT, 8e-7, 6e-7, 2.5e-7, 9e-8, 0.0, 0.0])
 
 
@@ -42,17 +44,16 @@ def candidates(seed, n, share=0.7):
 
 def packed(made):
     rims = [rim for candidate in made for rim in candidate["rims"]]
-    return (
+    edges = (
         np.array([[tuple(map(float, s)) for s in c["sides"]] for c in made]),
         np.array([c["known"] for c in made]),
         np.array([rim[:3] for rim in rims]).reshape(-1, 3),
         np.cumsum([0, *(len(c["rims"]) for c in made)]),
         np.cumsum([0, *(len(rim[3]) for rim in rims)]),
-        np.concatenate([np.empty(0), *(rim[3] for rim in rims)]),
-        np.concatenate([np.empty(0), *(rim[4] for rim in rims)]),
-        POSE,
-        OPTIONS,
     )
+    azimuth = np.concatenate([np.empty(0), *(rim[3] for rim in rims)])
+    slope = np.concatenate([np.empty(0), *(rim[4] for rim in rims)])
+    return (*edges, azimuth, slope, POSE, OPTIONS, *guess(*edges, slope, HEIGHT, LIMITS))
 
 
 @pytest.mark.parametrize("seed", range(3))
@@ -70,6 +71,40 @@ def test_estimates_are_consistent():
     nees = np.einsum("ni,nij,nj->n", errors, np.linalg.inv(covariances), errors) / 3
     assert 0.1 < nees.mean() < 1.2
     assert results[:, 3].max() < 30.0
+
+
+def cut(seed, n):
+    """Foot and one side of close cylinders, whose other side is outside the image."""
+    rng = np.random.default_rng(seed)
+    made = []
+    for _ in range(n):
+        x = np.array([rng.uniform(-0.5, 0.5), rng.uniform(0.35, 0.8), rng.uniform(0.05, 0.12)])
+        half, sign = asin(x[2] / x[1]), rng.choice([1.0, -1.0])
+        border = rng.uniform(-0.6, 0.3)  # where the image ends, from the axis
+        azimuth = x[0] + sign * half * np.linspace(border, 0.9, 60)
+        # The outline is a polygon, as that of a rendered cylinder.
+        rough = 0.008 * 2**0.5 * np.sin(16.0 * azimuth * x[1] / x[2] + rng.uniform(0.0, 6.0))
+        slope = -HEIGHT / rim_run(x, azimuth, 1.0) * (1.0 + rough * x[2] / x[1])
+        slope += 1e-3 * rng.standard_normal(60)
+        slope += POSE[1] ** 0.5 * rng.standard_normal() * (1.0 + slope**2)
+        span = (-HEIGHT / (x[1] - x[2]), (0.3 - HEIGHT) / (x[1] + x[2]))
+        seen = (x[0] + sign * half + 5e-4 * rng.standard_normal(), 1e-3, 9.0, *span, 1.0)
+        hidden = (x[0] + sign * half * border, 1e-3, 1.0, *span, 0.0)
+        sides = [seen, hidden] if sign > 0.0 else [hidden, seen]
+        rims = [(0.0, 1.0, 1e-3, azimuth, slope)]
+        made.append({"sides": sides, "known": (0.085, 0.02, 0.3), "rims": rims, "truth": x})
+    return made
+
+
+def test_the_foot_of_a_cut_cylinder_measures_its_axis_and_radius():
+    made = cut(6, 300)
+    results, covariances = locate(*packed(made))
+    errors = results[:, :3] - [candidate["truth"] for candidate in made]
+    nees = np.einsum("ni,nij,nj->n", errors, np.linalg.inv(covariances), errors) / 3
+    assert 0.1 < nees.mean() < 1.5
+    radius_sigma = np.sqrt(covariances[:, 2, 2])
+    assert np.median(radius_sigma) < 0.2 * 0.02  # of the prior
+    assert np.mean(results[:, 4] < 0.2) > 0.9
 
 
 def one_side(seed, n, least):
