@@ -1,5 +1,6 @@
 """What every test may rely on: a drawing backend without a display, and repeatable examples."""
 
+import gc
 import os
 
 import pytest
@@ -9,6 +10,7 @@ from hsr8.errors import RenderingUnavailable
 from hsr8.gl import choose_backend, require_gl
 
 choose_backend()  # before any test imports MuJoCo
+gc.set_threshold(50_000)  # the default takes a tenth of the time of the suite
 
 # The same examples on every machine and in every run: a failure is never a matter of luck.
 settings.register_profile("repeatable", derandomize=True, deadline=None, database=None)
