@@ -228,6 +228,7 @@ def _whiten(R: Array, H: Array, residual: Array) -> None:
 @njit(cache=True)
 def _step(x: Array, P: Array, H: Array, residual: Array, shape: Array, options: Array) -> None:
     """Take a Gauss-Newton step of x from whitened rows and shape; write its covariance P (3, 3)."""
+    min_distance, max_distance = options[4], options[5]
     N, g = shape[:, :3].copy(), shape[:, 3].copy()
     for i in range(ROWS):
         for j in range(3):
@@ -246,7 +247,7 @@ def _step(x: Array, P: Array, H: Array, residual: Array, shape: Array, options: 
     for i in range(3):
         x[i] += P[i, 0] * g[0] + P[i, 1] * g[1] + P[i, 2] * g[2]
     x[2] = min(max(x[2], MIN_RADIUS), MAX_RADIUS)
-    x[1] = min(max(x[1], 1.1 * x[2], options[4]), options[5])
+    x[1] = min(max(x[1], 1.1 * x[2], min_distance), max_distance)
 
 
 @njit(cache=True)

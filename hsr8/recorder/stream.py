@@ -21,7 +21,7 @@ from hsr8.recorder.table import Table
 
 SUFFIX = ".arrows"
 CHECKSUMS = "checksums.txt"
-OPTIONS = pa.ipc.IpcWriteOptions(compression="lz4", use_threads=False)  # zstd: 7 % less, 6x as slow
+WRITE = pa.ipc.IpcWriteOptions(compression="lz4", use_threads=False)  # zstd: 7 % less, 6x as slow
 READ = pa.ipc.IpcReadOptions(use_threads=False)  # threads take ten times as long for many batches
 
 
@@ -66,7 +66,7 @@ class TableWriter:
             if self._file is None:
                 self._schema = schema_of(self._rows, objects, self._labels)
                 self._file = io.FileIO(self._folder / f"{self._name}{SUFFIX}", "w")
-                self._writer = pa.ipc.new_stream(self._sink, self._schema, options=OPTIONS)
+                self._writer = pa.ipc.new_stream(self._sink, self._schema, options=WRITE)
             batch = batch_of(self._rows, objects, self._schema)
             self._writer.write_batch(batch)
             self.count += len(objects)
