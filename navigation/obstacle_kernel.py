@@ -1,6 +1,6 @@
 """Compiled part of the obstacle set: standard deviations of positions and velocities."""
 
-from math import hypot, sqrt
+from math import sqrt
 
 import numpy as np
 from numba import njit
@@ -12,7 +12,8 @@ Array = NDArray[np.float64]
 @njit(cache=True)
 def deviation(xx: float, xy: float, yy: float) -> float:
     """Return the square root of the larger eigenvalue of a symmetric matrix (2, 2)."""
-    return sqrt(max(0.5 * (xx + yy) + hypot(0.5 * (xx - yy), xy), 0.0))
+    half = 0.5 * (xx - yy)
+    return sqrt(max(0.5 * (xx + yy) + sqrt(half * half + xy * xy), 0.0))
 
 
 @njit(cache=True)

@@ -1,6 +1,6 @@
 """Compiled part of the pose estimation of cylinders: the initial cylinder of a candidate."""
 
-from math import asin, hypot, sin
+from math import asin, sin, sqrt
 
 import numpy as np
 from numba import njit
@@ -59,7 +59,8 @@ def _span(sides: Array, height: float, h: float) -> tuple[float, float]:
         return 0.0, 0.0
     farthest, nearest = -h / low, (height - h) / high
     middle = 0.5 * (farthest + nearest)
-    return middle, hypot(SPAN_SIGMA * middle, (farthest - nearest) / 12.0**0.5)
+    own, width = SPAN_SIGMA * middle, farthest - nearest
+    return middle, sqrt(own * own + width * width / 12.0)
 
 
 @njit(cache=True)

@@ -1,6 +1,6 @@
 """Compiled part of the pose estimation of cylinders: the Gauss-Newton steps."""
 
-from math import asin, cos, hypot, inf, sin, sqrt
+from math import asin, cos, inf, sin, sqrt
 
 import numpy as np
 from numba import njit
@@ -14,7 +14,7 @@ Edges = tuple[Array, Table, Array, Array]  # rims, points, azimuth and slope, se
 ITERATIONS = 4
 MAX_RIMS = 3  # a beacon shows three
 SIDES = 2
-UNIFORM = 12.0**0.5  # width of a pixel [standard deviations of an edge in it]
+UNIFORM = sqrt(12.0)  # width of a pixel [standard deviations of an edge in it]
 PRIOR = SIDES + MAX_RIMS  # row of the prior of the radius
 SPAN = PRIOR + 1  # row of the span of a side
 ROWS = SPAN + 1
@@ -83,7 +83,7 @@ def _keep_inner(
             own = independent(float(count), (high - low) / (UNIFORM * rims[j, 2]))
             mean_sigma[j] = rims[j, 2] * _of_mean(own, common)
             rough = (rims[j, 0] - h) / d * roundness * r / d
-            point_variance[j] = count * (rims[j, 2] ** 2 / own + rough * rough / PARTS)
+            point_variance[j] = count * (rims[j, 2] * rims[j, 2] / own + rough * rough / PARTS)
             used += count
     return used
 
@@ -185,8 +185,10 @@ def _covariance(
     for j in range(SIDES):
         level = max(0.5 * (sides[j, 3] + sides[j, 4]), MIN_SLOPE_OF_SIDE)
         G[j, 0], G[j, 1], G[j, 2] = -level * s, -level * c, 1.0
-        sigma = hypot(side_sigma[j], roundness * r / d) if trusted[j] else HIDDEN_WIDTH / d
-        R[j, j] = sigma * sigma + smear[0]
+        sigma, rough = HIDDEN_WIDTH / d, 0.0
+        if trusted[j]:
+            sigma, rough = side_sigma[j], roundness * r / d
+        R[j, j] = sigma * sigma + rough * rough + smear[0]
     for j in range(MAX_RIMS):
         k = SIDES + j
         R[k, k] = NO_INFORMATION * NO_INFORMATION
@@ -195,8 +197,8 @@ def _covariance(
         slope = (rims[j, 0] - h) / d
         lift = 1.0 + slope * slope
         G[k, 0], G[k, 1], G[k, 3] = -lift * c, lift * s, -1.0 / d
-        sigma = hypot(mean_sigma[j], slope * roundness * r / d)
-        R[k, k] = sigma * sigma + lift * lift * smear[1]
+        rough = slope * roundness * r / d
+        R[k, k] = mean_sigma[j] * mean_sigma[j] + rough * rough + lift * lift * smear[1]
     R[PRIOR, PRIOR] = known[1] * known[1]
     R[SPAN, SPAN] = span_sigma * span_sigma if span_sigma > 0.0 else 1.0
     for i in range(PRIOR):

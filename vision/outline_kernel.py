@@ -4,7 +4,7 @@ A view is a packed array: half width, half height and focal length of the camera
 the nine elements of R_RC row by row, and the cosine and the sine of its heading.
 """
 
-from math import atan2, ceil, cos, floor, hypot, inf, sin, sqrt
+from math import atan2, ceil, cos, floor, inf, sin, sqrt
 
 import numpy as np
 from numba import njit
@@ -38,7 +38,7 @@ def angles(view: Array, u: float, v: float) -> tuple[float, float]:
     Y = view[6] * x + view[7] * y + view[8]
     Z = view[9] * x + view[10] * y + view[11]
     forward, left = view[12] * X + view[13] * Y, view[12] * Y - view[13] * X
-    return atan2(left, forward), Z / max(hypot(X, Y), MIN_RUN)
+    return atan2(left, forward), Z / max(sqrt(X * X + Y * Y), MIN_RUN)
 
 
 @njit(cache=True)
@@ -66,7 +66,7 @@ def resolution(view: Array, u: float, v: float) -> tuple[float, float, float, fl
     X = view[3] * x + view[4] * y + view[5]
     Y = view[6] * x + view[7] * y + view[8]
     Z = view[9] * x + view[10] * y + view[11]
-    run2 = max(X * X + Y * Y, MIN_RUN**2)
+    run2 = max(X * X + Y * Y, MIN_RUN * MIN_RUN)
     run = sqrt(run2)
     slope = Z / run
     return (

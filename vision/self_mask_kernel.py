@@ -1,6 +1,6 @@
 """Compiled part of the self mask: projection of a limb."""
 
-from math import cos, hypot, inf, pi, sin, sqrt
+from math import cos, inf, pi, sin, sqrt
 
 import numpy as np
 from numba import njit
@@ -44,11 +44,11 @@ def outline(centres: Array, radii: Array, position: Array, rotation: Array, came
             return points[:0]
         if p[2] <= -r:
             continue
-        shrink = 1.0 - (r / distance) ** 2
+        shrink = 1.0 - (r / distance) * (r / distance)
         radius = SWELL * r * sqrt(shrink)
         # Two axes perpendicular to the direction of the sphere, (x, y, z).
         x, y, z = p[0] / distance, p[1] / distance, p[2] / distance
-        level = max(hypot(z, x), 1e-9)
+        level = max(sqrt(z * z + x * x), 1e-9)
         u, w = z / level, -x / level
         for k in range(RIM_POINTS):
             angle = 2.0 * pi * k / RIM_POINTS

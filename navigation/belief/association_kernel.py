@@ -21,7 +21,8 @@ def overlapping(centres: Array, radii: Array) -> Indices:
     for i in range(n):
         for j in range(i + 1, n):
             dx, dy = centres[i, 0] - centres[j, 0], centres[i, 1] - centres[j, 1]
-            if dx * dx + dy * dy < (radii[i] + radii[j]) ** 2:
+            reach = radii[i] + radii[j]
+            if dx * dx + dy * dy < reach * reach:
                 pairs[count, 0], pairs[count, 1] = i, j
                 count += 1
     return pairs[:count]

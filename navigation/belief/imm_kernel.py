@@ -166,7 +166,7 @@ def predict(
                         P[a, b] += moved[a, i] * F[b, i]
                     P[b, a] = P[a, b]
             for a in range(2):
-                P[a, a] += dt**3 / 3.0 * (q * q)
+                P[a, a] += dt * dt * dt / 3.0 * (q * q)
                 P[a, 2 + a] += 0.5 * dt * dt * (q * q)
                 P[2 + a, a] += 0.5 * dt * dt * (q * q)
                 P[2 + a, 2 + a] += dt * (q * q)

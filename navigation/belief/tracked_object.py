@@ -1,7 +1,7 @@
 """One tracked obstacle: detection history and motion class."""
 
 from dataclasses import dataclass
-from math import hypot
+from math import sqrt
 
 import numpy as np
 from numpy.typing import NDArray
@@ -10,6 +10,7 @@ from navigation.belief import imm_kernel
 from navigation.belief.belief import Motion, Particles, Track
 from navigation.belief.imm import Modes
 from navigation.belief.particle_kernel import moments
+from navigation.obstacle_kernel import deviation
 from navigation.parameters.belief import TrackingParameters
 
 Array = NDArray[np.float64]
@@ -111,12 +112,11 @@ class TrackedObject:
 
 def speed(modes: Modes) -> float:
     """Return the speed of one obstacle, given that it moves [m/s]."""
-    return hypot(*imm_kernel.mean(modes.weights, modes.states)[2:4].tolist())
+    vx, vy = imm_kernel.mean(modes.weights, modes.states)[2:4].tolist()
+    return sqrt(vx * vx + vy * vy)
 
 
 def reach_of(covariance: Array, p: TrackingParameters) -> float:
     """Return the radius of the confidence disc of a detection of `covariance` (2, 2) [m]."""
     (xx, xy), (_, yy) = covariance.tolist()
-    eigenvalue = 0.5 * (xx + yy) + hypot(0.5 * (xx - yy), xy)
-    reach: float = p.reach_sigmas * eigenvalue**0.5
-    return reach
+    return p.reach_sigmas * deviation(xx, xy, yy)

@@ -5,7 +5,7 @@ track that may move becomes a particle filter. Association uses colour and posit
 """
 
 from itertools import compress
-from math import hypot, inf, log, pi
+from math import inf, log, pi
 
 import numpy as np
 from numpy.typing import NDArray
@@ -175,7 +175,7 @@ class Tracker:
             if any(
                 o.label == observation.label
                 and o.last_time == time
-                and hypot(*(position - z).tolist()) < reach + p.merge_fraction * o.radius
+                and _within(position - z, reach + p.merge_fraction * o.radius)
                 for o, position in zip(self._objects, positions, strict=True)
             ):
                 continue
@@ -326,3 +326,9 @@ class Tracker:
             for o, estimate in zip(self._objects, estimates, strict=True)
             if o.hits >= p.birth_hits
         )
+
+
+def _within(offset: Array, reach: float) -> bool:
+    """Return whether an offset (2,) is shorter than `reach` [m]."""
+    x, y = offset.tolist()
+    return bool(x * x + y * y < reach * reach)

@@ -1,6 +1,6 @@
 """Compiled part of visibility: field of view, range and occlusion of points of the floor."""
 
-from math import atan2, pi
+from math import atan2, pi, sqrt
 
 import numpy as np
 from numba import njit
@@ -36,7 +36,8 @@ def in_shadow(dx: float, dy: float, heading: float, shadow: Array) -> bool:
         shadow: distance up to which the body hides the floor, in equal steps of the bearing (n,).
     """
     step = round((atan2(dy, dx) - heading) * len(shadow) / (2.0 * pi))
-    return bool(dx * dx + dy * dy < shadow[int(step) % len(shadow)] ** 2)
+    reach = shadow[int(step) % len(shadow)]
+    return bool(dx * dx + dy * dy < reach * reach)
 
 
 @njit(cache=True)
@@ -55,8 +56,8 @@ def in_view(dx: float, dy: float, camera: Camera, shadow: Array) -> bool:
     if dx * dx + dy * dy > camera[12] * camera[12]:
         return False
     if camera[10] < 0.0:
-        across = (camera[2] ** 2 + camera[5] ** 2) * (dx * dx + dy * dy)
-        return bool(camera[2] * dx + camera[5] * dy >= camera[11] * across**0.5)
+        across = (camera[2] * camera[2] + camera[5] * camera[5]) * (dx * dx + dy * dy)
+        return bool(camera[2] * dx + camera[5] * dy >= camera[11] * sqrt(across))
     if camera[13] < 0.0 and in_image(dx, dy, camera[13], camera):
         return True
     return in_image(dx, dy, camera[9], camera) and not in_shadow(dx, dy, camera[14], shadow)
@@ -97,7 +98,7 @@ def relative_discs(eye: Array, centres: Array, radii: Array, margin: float) -> A
         ax, ay = centres[j, 0] - eye[0], centres[j, 1] - eye[1]
         discs[j, 0], discs[j, 1] = ax, ay
         discs[j, 2] = ax * ax + ay * ay
-        discs[j, 3] = (radii[j] + margin) ** 2
+        discs[j, 3] = (radii[j] + margin) * (radii[j] + margin)
     return discs
 
 

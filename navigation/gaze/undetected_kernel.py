@@ -1,5 +1,7 @@
 """Compiled part of the density of undetected obstacles."""
 
+from math import sqrt
+
 import numpy as np
 from numba import njit
 from numpy.typing import NDArray
@@ -30,7 +32,7 @@ def time_to_collision(x: float, y: float, vx: float, vy: float, gap: float) -> f
     root = closing * closing - speed * (square - gap * gap)
     if root <= 0.0:
         return NEVER
-    return float((closing - root**0.5) / speed)
+    return (closing - sqrt(root)) / speed
 
 
 @njit(cache=True)

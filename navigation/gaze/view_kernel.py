@@ -1,6 +1,6 @@
 """Compiled part of the risk gaze: the value per time of every view of the head."""
 
-from math import cos, hypot, sin
+from math import cos, sin, sqrt
 
 import numpy as np
 from numba import njit
@@ -25,7 +25,7 @@ def move_time(angle: float, speed: float, rate: float, acceleration: float) -> f
     stopping = 0.5 * speed * abs(speed) / acceleration  # angle of a full stop
     sign = 1.0 if angle >= stopping else -1.0
     angle, speed = sign * angle, sign * speed
-    peak = max(0.0, acceleration * angle + 0.5 * speed * speed) ** 0.5
+    peak = sqrt(max(0.0, acceleration * angle + 0.5 * speed * speed))
     if peak <= rate:
         return float((2.0 * peak - speed) / acceleration)
     ramps = (2.0 * rate * rate - speed * speed) / (2.0 * acceleration)
@@ -44,7 +44,8 @@ def hidden(x: float, y: float, discs: Array, edge: float) -> bool:
     """
     for j in range(len(discs)):
         ax, ay, radius = discs[j, 0], discs[j, 1], discs[j, 2]
-        if x * ax + y * ay <= ax * ax + ay * ay or (ax - x) ** 2 + (ay - y) ** 2 <= edge * edge:
+        dx, dy = ax - x, ay - y
+        if x * ax + y * ay <= ax * ax + ay * ay or dx * dx + dy * dy <= edge * edge:
             continue
         across = x * ay - y * ax
         if across * across < radius * radius * (x * x + y * y):
@@ -145,7 +146,7 @@ def view_values(
             ahead, aside = c * x + s * y - eye[0], c * y - s * x
             if ahead < 0.0 and ahead * ahead + aside * aside > eye[1] * eye[1]:
                 continue
-            if abs(aside) > BESIDE * lens[0] * hypot(ahead, farthest_up):
+            if abs(aside) > BESIDE * lens[0] * sqrt(ahead * ahead + farthest_up * farthest_up):
                 continue  # at every tilt
             for t in range(len(tilts)):
                 part = visible_part(ahead, aside, eye[1], top, credit, tilted[t], lens)

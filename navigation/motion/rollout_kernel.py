@@ -4,7 +4,7 @@ An envelope is (vx, vx_backward, vy, wz, turn gain): the maximum speeds [m/s, ra
 turn rate per heading error [1/s].
 """
 
-from math import atan2, ceil, cos, hypot, inf, isfinite, isnan, pi, sin, sqrt
+from math import atan2, ceil, cos, inf, isfinite, isnan, pi, sin, sqrt
 
 import numpy as np
 from numba import njit
@@ -75,14 +75,15 @@ def rollout(
     velocity = np.zeros((steps + 2, len(candidates), 2))
     duration = np.empty((steps + 2, len(candidates)))
     for i in range(len(candidates)):
-        speed = hypot(candidates[i, 0], candidates[i, 1])
-        direction = course if speed < 1e-9 else atan2(candidates[i, 1], candidates[i, 0])
+        u, w = candidates[i, 0], candidates[i, 1]
+        speed = sqrt(u * u + w * w)
+        direction = course if speed < 1e-9 else atan2(w, u)
         target = direction if isnan(facing) else facing
         vx, vy, wz, now = body_now[0], body_now[1], body_now[2], heading
         for step in range(steps):
             goal = body_velocity(direction - now, speed, target - now, envelope)
             dx, dy = goal[0] - vx, goal[1] - vy
-            scale = min(1.0, change / max(hypot(dx, dy), 1e-9))
+            scale = min(1.0, change / max(sqrt(dx * dx + dy * dy), 1e-9))
             vx += scale * dx
             vy += scale * dy
             wz += min(max(goal[2] - wz, -turn_change), turn_change)
@@ -94,7 +95,7 @@ def rollout(
             now += wz * footstep
         wait = max(0.0, abs(wrapped(direction - now)) - turn_first_angle) / envelope[3]
         duration[steps, i] = wait if speed > fast else 0.0
-        velocity[steps + 1, i, 0], velocity[steps + 1, i, 1] = candidates[i, 0], candidates[i, 1]
+        velocity[steps + 1, i, 0], velocity[steps + 1, i, 1] = u, w
         duration[steps + 1, i] = inf
     return velocity, duration
 
@@ -152,14 +153,14 @@ def contact_times(
             u, w = velocity[segment, i, 0], velocity[segment, i, 1]
             start[segment + 1, i] = start[segment, i] + duration[segment, i]
             latest[segment] = max(latest[segment], start[segment + 1, i])
-            fastest[segment] = max(fastest[segment], hypot(u, w))
+            fastest[segment] = max(fastest[segment], sqrt(u * u + w * w))
             if segment < k - 1:
                 moved[segment + 1, i, 0] = moved[segment, i, 0] + duration[segment, i] * u
                 moved[segment + 1, i, 1] = moved[segment, i, 1] + duration[segment, i] * w
     for j in range(m):
         ox, oy = centres[j, 0] - position[0], centres[j, 1] - position[1]
         mx, my, radius2 = motions[j, 0], motions[j, 1], radii[j] * radii[j]
-        distance, speed = hypot(ox, oy), hypot(mx, my)
+        distance, speed = sqrt(ox * ox + oy * oy), sqrt(mx * mx + my * my)
         for segment in range(k):
             # Skip discs out of reach.
             within = (speed + fastest[segment]) * latest[segment]

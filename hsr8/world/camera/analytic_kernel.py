@@ -5,7 +5,7 @@ as columns (9), width, height and focal length of the image [pixel], and whether
 panoramic.
 """
 
-from math import asin, atan2, ceil, hypot, inf, pi
+from math import asin, atan2, ceil, inf, pi, sqrt
 
 import numpy as np
 from numba import njit
@@ -29,7 +29,7 @@ def _wrap(angle: float) -> float:
 @njit(cache=True)
 def _panorama_box(x: float, y: float, radius: float, height: float, eye: Array) -> Box:
     """Return the box in a panorama around the forward axis; it contains every direction."""
-    distance = hypot(x, y)
+    distance = sqrt(x * x + y * y)
     half = asin(min(1.0, radius / distance))
     left = _wrap(atan2(y, x) - atan2(eye[8], eye[5]))
     column = eye[12] * (0.5 - left / (2.0 * pi))
@@ -43,7 +43,7 @@ def _panorama_box(x: float, y: float, radius: float, height: float, eye: Array) 
 def _image_box(x: float, y: float, radius: float, height: float, eye: Array) -> Box:
     """Return the box in a pinhole image and whether it is cut; `NO_BOX` if outside."""
     left, top, right, bottom = inf, inf, -inf, -inf
-    ratio = radius / hypot(x, y)
+    ratio = radius / sqrt(x * x + y * y)
     for side in (-ratio, ratio):
         X, Y = x - side * y, y + side * x
         for level in (0.0, 0.5, 1.0):
@@ -109,7 +109,7 @@ def project_all(positions: Array, sizes: Array, beacon: NDArray[np.bool_], eye: 
     views, azimuth, half = np.empty((n, 7)), np.empty(n), np.empty(n)
     for i in range(n):
         x, y = positions[i, 0] - eye[0], positions[i, 1] - eye[1]
-        distance, radius = hypot(x, y), sizes[i, 0]
+        distance, radius = sqrt(x * x + y * y), sizes[i, 0]
         views[i] = 0.0
         views[i, DISTANCE] = distance
         half[i] = 0.0

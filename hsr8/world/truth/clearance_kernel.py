@@ -1,6 +1,6 @@
 """Lower bounds of the gaps between the robot and the obstacles, compiled."""
 
-from math import hypot
+from math import sqrt
 
 import numpy as np
 from numba import njit
@@ -27,6 +27,7 @@ def gap_bounds(
     for i in range(len(obstacles)):
         x, y = positions[obstacles[i], 0], positions[obstacles[i], 1]
         for k in range(len(geoms)):
-            distance = hypot(positions[geoms[k], 0] - x, positions[geoms[k], 1] - y)
+            dx, dy = positions[geoms[k], 0] - x, positions[geoms[k], 1] - y
+            distance = sqrt(dx * dx + dy * dy)
             bounds[i, k] = distance - spheres[k] - radii[i]
     return bounds
