@@ -1,6 +1,6 @@
 # `make` alone prints this list. Every verb sets up what it needs first.
 PY := .venv/bin/python
-PACKAGES := hsr8 navigation walking vision
+PACKAGES := compilation hsr8 navigation walking vision
 SOURCES := $(PACKAGES) examples scripts tests
 # One thread per process: linear algebra on tiny matrices only loses time to more.
 export OMP_NUM_THREADS := 1

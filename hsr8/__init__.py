@@ -15,7 +15,6 @@ from typing import TYPE_CHECKING, Any
 
 from hsr8 import arithmetic as arithmetic  # sets the environment, before NumPy is imported
 from hsr8.gl import choose_backend
-from hsr8.kernel_cache import choose_kernel_cache
 from hsr8.version import VERSION
 
 if TYPE_CHECKING:
@@ -38,7 +37,6 @@ _PLACES = {
 }
 
 choose_backend()
-choose_kernel_cache()
 
 
 def __getattr__(name: str) -> Any:

@@ -22,7 +22,7 @@ from numba.core import event
 from hsr8.parent_watch import end_with_parent
 
 LIST = Path(__file__).with_name("kernels.txt")
-PACKAGES = ("hsr8", "navigation", "vision", "walking")
+PACKAGES = ("compilation", "hsr8", "navigation", "vision", "walking")
 PROCESSES = 2
 COMPILE = "numba:compile"  # event of a kernel that is not on disk
 

@@ -3,20 +3,21 @@
 from math import sqrt
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
+
+from compilation import compiled
 
 Array = NDArray[np.float64]
 
 
-@njit(cache=True)
+@compiled
 def deviation(xx: float, xy: float, yy: float) -> float:
     """Return the square root of the larger eigenvalue of a symmetric matrix (2, 2)."""
     half = 0.5 * (xx - yy)
     return sqrt(max(0.5 * (xx + yy) + sqrt(half * half + xy * xy), 0.0))
 
 
-@njit(cache=True)
+@compiled
 def deviations(covariances: Array) -> tuple[Array, Array]:
     """Return the major standard deviations of positions and velocities (n,), (n,) [m, m/s].
 

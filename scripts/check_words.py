@@ -15,7 +15,7 @@ from collections.abc import Iterator
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[1]
-PACKAGES = ("hsr8", "navigation", "walking", "vision", "scripts", "examples")
+PACKAGES = ("compilation", "hsr8", "navigation", "walking", "vision", "scripts", "examples")
 
 BANNED = {
     r"what (?:stands?|moves?|it|has|had|was|were|falls?|comes?|they|happens|nobody)\b": "a noun: "

@@ -158,7 +158,7 @@ def replacements(node: ast.AST) -> Iterator[ast.AST]:
 
 def mutants(source: str) -> list[Mutant]:
     """All mutants of a module."""
-    tree = _Uncached().visit(ast.parse(source))
+    tree = ast.parse(source)
     result = []
     for k, node in enumerate(candidates(tree)):
         for other in replacements(node):
@@ -180,14 +180,6 @@ class _Replace(ast.NodeTransformer):
     def visit(self, node: ast.AST) -> ast.AST:
         """Replace the one node."""
         return self._new if node is self._old else self.generic_visit(node)
-
-
-class _Uncached(ast.NodeTransformer):
-    """Numba refuses to keep compiled kernels of a module that is in no file."""
-
-    def visit_keyword(self, node: ast.keyword) -> ast.keyword | None:
-        """Leave ``cache=True`` away."""
-        return None if node.arg == "cache" else node
 
 
 class Planted(importlib.abc.MetaPathFinder, importlib.abc.Loader):

@@ -12,7 +12,7 @@ from hsr8.scenario.public_keys import PUBLIC
 
 ROOT = Path(__file__).parents[1]
 TEXT = (ROOT / "docs" / "equations.md").read_text(encoding="utf-8")
-PACKAGES = ("hsr8", "navigation", "vision", "walking", "scripts", "tests")
+PACKAGES = ("compilation", "hsr8", "navigation", "vision", "walking", "scripts", "tests")
 NAMES = sorted(set(re.findall(r"`([\w/]+\.py)::([\w.]+)`", TEXT)))
 
 

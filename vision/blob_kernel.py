@@ -1,8 +1,9 @@
 """Compiled part of the blobs: connected-component labelling by run-length encoding."""
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
+
+from compilation import compiled
 
 Labels = NDArray[np.uint8]
 Table = NDArray[np.int32]
@@ -14,7 +15,7 @@ WORD = 8  # pixels that are compared at once
 REPEAT = np.uint64(0x0101010101010101)  # a label times this is a word of that label
 
 
-@njit(cache=True)
+@compiled
 def _root(parent: Table, run: int) -> int:
     """Return the root of a run in the union-find forest, with path halving."""
     while parent[run] != run:
@@ -23,7 +24,7 @@ def _root(parent: Table, run: int) -> int:
     return run
 
 
-@njit(cache=True)
+@compiled
 def _end(flat: Labels, words: NDArray[np.uint64], start: int, stop: int) -> int:
     """Return the end of the run that begins at `start`.
 
@@ -43,7 +44,7 @@ def _end(flat: Labels, words: NDArray[np.uint64], start: int, stop: int) -> int:
     return end
 
 
-@njit(cache=True)
+@compiled
 def _runs_of(labels: Labels) -> tuple[Table, Table]:
     """Return all runs, by row, then column (n, 4), and the parent of each (n,)."""
     height, width = labels.shape
@@ -78,7 +79,7 @@ def _runs_of(labels: Labels) -> tuple[Table, Table]:
     return runs[:n], parent[:n]
 
 
-@njit(cache=True)
+@compiled
 def _measure(runs: Table, parent: Table, min_area: Table) -> tuple[Table, Table]:
     """Return the large enough regions (n, 7), and the region of each run, or -1 (m,)."""
     n = len(runs)
@@ -115,7 +116,7 @@ def _measure(runs: Table, parent: Table, min_area: Table) -> tuple[Table, Table]
     return regions[:m], region
 
 
-@njit(cache=True)
+@compiled
 def regions_of(labels: Labels, min_area: Table) -> tuple[Table, Table, Table]:
     """Return the connected components of a label image: two-scan labelling of runs.
 

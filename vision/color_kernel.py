@@ -1,13 +1,14 @@
 """Compiled part of the colour classification."""
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
+
+from compilation import compiled
 
 Labels = NDArray[np.uint8]
 
 
-@njit(cache=True)
+@compiled
 def classify(image: Labels, table: Labels) -> Labels:
     """Return the label of every pixel of an RGB image (h, w, 3): (h, w).
 

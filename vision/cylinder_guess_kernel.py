@@ -3,8 +3,9 @@
 from math import asin, sin, sqrt
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
+
+from compilation import compiled
 
 Array = NDArray[np.float64]
 Table = NDArray[np.int64]
@@ -15,7 +16,7 @@ MIN_SLOPE = 1e-6
 SPAN_SIGMA = 0.02  # minimum relative standard deviation of a distance from a span [1]
 
 
-@njit(cache=True)
+@compiled
 def _rim_distance(
     rims: Array, points: Table, slope: Array, h: float, radius: float, limits: Array
 ) -> float:
@@ -43,7 +44,7 @@ def _rim_distance(
     return 0.0
 
 
-@njit(cache=True)
+@compiled
 def _span(sides: Array, height: float, h: float) -> tuple[float, float]:
     """Return the distance to the only trusted side and its standard deviation, 0, 0 if none [m].
 
@@ -63,7 +64,7 @@ def _span(sides: Array, height: float, h: float) -> tuple[float, float]:
     return middle, sqrt(own * own + width * width / 12.0)
 
 
-@njit(cache=True)
+@compiled
 def _cylinder(x: Array, sides: Array, radius: float, distance: float, min_distance: float) -> None:
     """Write azimuth, distance and radius x (3,); `distance` 0 if unknown [m]."""
     typical, left, right = radius, sides[0, 0], sides[1, 0]
@@ -81,7 +82,7 @@ def _cylinder(x: Array, sides: Array, radius: float, distance: float, min_distan
     x[0], x[1], x[2] = azimuth, distance, radius
 
 
-@njit(cache=True)
+@compiled
 def guess(
     sides: Array,
     known: Array,

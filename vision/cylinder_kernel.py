@@ -3,8 +3,9 @@
 from math import asin, cos, inf, sin, sqrt
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
+
+from compilation import compiled
 
 Array = NDArray[np.float64]
 Bools = NDArray[np.bool_]
@@ -29,7 +30,7 @@ PARTS = 4.0  # of a rim with independent errors by the roundness of the cylinder
 TURNS = 3.0  # an edge that crosses n pixels has a common error 1 + TURNS*n times smaller
 
 
-@njit(cache=True)
+@compiled
 def independent(count: float, crossed: float) -> float:
     """Return the number of points of an edge with independent errors.
 
@@ -44,13 +45,13 @@ def independent(count: float, crossed: float) -> float:
     return 1.0 / max(1.0 / count, common * common)
 
 
-@njit(cache=True)
+@compiled
 def _of_mean(count: float, common: float) -> float:
     """Return the standard deviation of the mean of `count` points, relative to that of one."""
     return sqrt(common + (1.0 - common) / count)
 
 
-@njit(cache=True)
+@compiled
 def _keep_inner(
     keep: Bools,
     mean_sigma: Array,
@@ -88,7 +89,7 @@ def _keep_inner(
     return used
 
 
-@njit(cache=True)
+@compiled
 def _linearise(
     H: Array,
     residual: Array,
@@ -161,7 +162,7 @@ def _linearise(
             residual[k] = total[3] / count
 
 
-@njit(cache=True)
+@compiled
 def _covariance(
     R: Array,
     G: Array,
@@ -207,7 +208,7 @@ def _covariance(
                 R[i, j] += G[i, k] * pose_variance[k] * G[j, k]
 
 
-@njit(cache=True)
+@compiled
 def _whiten(R: Array, H: Array, residual: Array) -> None:
     """Whiten H and the residual by the Cholesky factor of R, which replaces R's lower half."""
     for i in range(ROWS):
@@ -227,7 +228,7 @@ def _whiten(R: Array, H: Array, residual: Array) -> None:
         residual[i] = total / R[i, i]
 
 
-@njit(cache=True)
+@compiled
 def _step(x: Array, P: Array, H: Array, residual: Array, shape: Array, options: Array) -> None:
     """Take a Gauss-Newton step of x from whitened rows and shape; write its covariance P (3, 3)."""
     min_distance, max_distance = options[4], options[5]
@@ -252,7 +253,7 @@ def _step(x: Array, P: Array, H: Array, residual: Array, shape: Array, options: 
     x[1] = min(max(x[1], 1.1 * x[2], min_distance), max_distance)
 
 
-@njit(cache=True)
+@compiled
 def _positive(P: Array) -> bool:
     """Return whether P (3, 3) is positive definite."""
     minor = P[0, 0] * P[1, 1] - P[0, 1] * P[1, 0]
@@ -264,7 +265,7 @@ def _positive(P: Array) -> bool:
     return bool(P[0, 0] > 0.0 and minor > 0.0 and determinant > 0.0)
 
 
-@njit(cache=True)
+@compiled
 def _outlier_fraction(
     residual: Array, means: Array, keep: Bools, rims: Array, points: Table, threshold: float
 ) -> float:
@@ -278,7 +279,7 @@ def _outlier_fraction(
     return outliers / max(total, 1)
 
 
-@njit(cache=True)
+@compiled
 def locate(
     sides: Array,
     known: Array,

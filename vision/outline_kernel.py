@@ -7,8 +7,9 @@ the nine elements of R_RC row by row, and the cosine and the sine of its heading
 from math import atan2, ceil, cos, floor, inf, sin, sqrt
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
+
+from compilation import compiled
 
 Array = NDArray[np.float64]
 Bools = NDArray[np.bool_]
@@ -30,7 +31,7 @@ MIN_SLOPE = 1e-4  # minimum slope of a pixel [1]
 OUTLIERS = 8  # one in so many points of a side may be an outlier
 
 
-@njit(cache=True)
+@compiled
 def angles(view: Array, u: float, v: float) -> tuple[float, float]:
     """Return azimuth from the heading of the camera [rad] and slope [1] of an image point."""
     x, y = (u - view[0]) / view[2], (v - view[1]) / view[2]
@@ -41,14 +42,14 @@ def angles(view: Array, u: float, v: float) -> tuple[float, float]:
     return atan2(left, forward), Z / max(sqrt(X * X + Y * Y), MIN_RUN)
 
 
-@njit(cache=True)
+@compiled
 def level(view: Array, azimuth: float) -> tuple[float, float]:
     """Return the horizontal unit vector (X, Y) of an azimuth from the heading of the camera."""
     c, s = cos(azimuth), sin(azimuth)
     return view[12] * c - view[13] * s, view[13] * c + view[12] * s
 
 
-@njit(cache=True)
+@compiled
 def project(view: Array, X: float, Y: float, slope: float) -> tuple[float, float, bool]:
     """Return the image point (u, v) of a direction, and whether it is in front of the camera."""
     z = view[5] * X + view[8] * Y + view[11] * slope
@@ -59,7 +60,7 @@ def project(view: Array, X: float, Y: float, slope: float) -> tuple[float, float
     return u, v, ahead
 
 
-@njit(cache=True)
+@compiled
 def resolution(view: Array, u: float, v: float) -> tuple[float, float, float, float]:
     """Return |d azimuth / du|, |d azimuth / dv| [rad], |d slope / du|, |d slope / dv| [1]."""
     x, y, f = (u - view[0]) / view[2], (v - view[1]) / view[2], view[2]
@@ -77,14 +78,14 @@ def resolution(view: Array, u: float, v: float) -> tuple[float, float, float, fl
     )
 
 
-@njit(cache=True)
+@compiled
 def upright(view: Array, u: float, v: float) -> bool:
     """Return whether vertical lines are closer to columns than to rows at (u, v)."""
     x, y = (u - view[0]) / view[2], (v - view[1]) / view[2]
     return bool(abs(view[10] - y * view[11]) >= abs(view[9] - x * view[11]))
 
 
-@njit(cache=True)
+@compiled
 def _edge(
     points: Array, outer: Labels, box: Table, extents: Table, padded: Labels, view: Array, e: int
 ) -> tuple[float, float]:
@@ -113,7 +114,7 @@ def _edge(
     return azimuth_pixel, slope_pixel
 
 
-@njit(cache=True)
+@compiled
 def _sort(values: Array) -> None:
     """Sort by insertion, in place."""
     for i in range(1, len(values)):
@@ -124,7 +125,7 @@ def _sort(values: Array) -> None:
         values[j] = value
 
 
-@njit(cache=True)
+@compiled
 def _side(side: Array, points: Array, outer: Labels, pixel: float, sign: float) -> None:
     """Write one side (8,) from the points of an edge; see `trace`.
 
@@ -173,7 +174,7 @@ def _side(side: Array, points: Array, outer: Labels, pixel: float, sign: float) 
     side[7] = 2 * covered > low
 
 
-@njit(cache=True)
+@compiled
 def _rim(
     rims: Array, rim_outer: Labels, points: Array, outer: Labels, right: float, left: float
 ) -> int:
@@ -192,7 +193,7 @@ def _rim(
     return count if CUT * count >= cut else 0
 
 
-@njit(cache=True)
+@compiled
 def trace(
     boxes: Table, extents: Table, padded: Labels, view: Array
 ) -> tuple[Array, Table, Array, Array, Labels]:
@@ -256,7 +257,7 @@ def trace(
     return sides, counts, sizes, rims[:, :m], rim_outer[:m]
 
 
-@njit(cache=True)
+@compiled
 def _label(padded: Labels, view: Array, X: float, Y: float, slope: float) -> int:
     """Return the label of the pixel in a direction, `OUTSIDE` if there is none."""
     u, v, ahead = project(view, X, Y, slope)
@@ -267,7 +268,7 @@ def _label(padded: Labels, view: Array, X: float, Y: float, slope: float) -> int
     return int(padded[row + 1, column + 1])
 
 
-@njit(cache=True)
+@compiled
 def envelopes(
     box: Table, extents: Table, runs: Table, padded: Labels, view: Array
 ) -> tuple[float, float, float, Array, Bools]:

@@ -3,8 +3,9 @@
 from math import cos, inf, pi, sin, sqrt
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
+
+from compilation import compiled
 
 Array = NDArray[np.float64]
 
@@ -14,7 +15,7 @@ FAR = 4096.0  # limit of the image coordinates [pixel]
 SWELL = 1.0 / cos(pi / RIM_POINTS)  # circumscribed polygon / circle
 
 
-@njit(cache=True)
+@compiled
 def outline(centres: Array, radii: Array, position: Array, rotation: Array, camera: Array) -> Array:
     """Return points whose convex hull contains the image of spheres (12 n, 2) [pixel].
 

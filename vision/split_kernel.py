@@ -6,8 +6,9 @@ An envelope is the slope of an outline in each column of a grid of azimuth, from
 from math import floor, inf
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
+
+from compilation import compiled
 
 Array = NDArray[np.float64]
 Bools = NDArray[np.bool_]
@@ -20,7 +21,7 @@ NEAR_QUANTILE = 0.1  # of the distances of the points, for the nearest [1]
 RIGHT, LEFT, RIGHT_TRUE, LEFT_TRUE, RUN, POINTS = range(6)  # columns of a table of pieces
 
 
-@njit(cache=True)
+@compiled
 def quantile(ranked: Array, fraction: float) -> float:
     """Return a quantile of sorted values (n,), with linear interpolation."""
     position = fraction * (len(ranked) - 1)
@@ -31,7 +32,7 @@ def quantile(ranked: Array, fraction: float) -> float:
     return low + part * gap if part < 0.5 else high - (1.0 - part) * gap
 
 
-@njit(cache=True)
+@compiled
 def borders(envelope: Array, min_step: float) -> Ints:
     """Return the first columns of the pieces of an envelope (n,), and n.
 
@@ -66,7 +67,7 @@ def borders(envelope: Array, min_step: float) -> Ints:
     return columns[: count + 1]
 
 
-@njit(cache=True)
+@compiled
 def _ends(
     envelope: Array, usable: Bools, last: int, beyond: int, nearest: bool, outer: bool
 ) -> bool:
@@ -79,7 +80,7 @@ def _ends(
     return bool((envelope[beyond] > envelope[last]) == nearest)
 
 
-@njit(cache=True)
+@compiled
 def pieces(
     envelope: Array,
     usable: Bools,

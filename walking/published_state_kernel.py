@@ -2,8 +2,7 @@
 
 from math import cos, sin
 
-from numba import njit
-
+from compilation import compiled
 from walking.arrays import Array, Point, Vector
 
 Pendulum = tuple[float, float, float, float, float, float]
@@ -16,7 +15,7 @@ Frame = tuple[float, float, float, float, float]
 """Origin x, y [m], cosine and sine of the direction, and the direction [rad] of the plan frame."""
 
 
-@njit(cache=True)
+@compiled
 def show(
     planned: Vector,
     foot: Vector,
@@ -77,7 +76,7 @@ def show(
     return c * vector[0] - s * vector[1], s * vector[0] + c * vector[1]
 
 
-@njit(cache=True)
+@compiled
 def incline(roll: float, pitch: float, rotation: Array) -> None:
     """Set the attitude R_RB (3, 3) of a trunk with roll and pitch [rad]."""
     cr, sr, cp, sp = cos(roll), sin(roll), cos(pitch), sin(pitch)
@@ -86,7 +85,7 @@ def incline(roll: float, pitch: float, rotation: Array) -> None:
     rotation[2, 0], rotation[2, 1], rotation[2, 2] = -sp, cp * sr, cp * cr
 
 
-@njit(cache=True)
+@compiled
 def frame_of(planned: Vector, foot: Vector, odometry: Vector) -> Frame:
     """Return the plan frame, given a foot in the plan and as measured.
 
@@ -108,7 +107,7 @@ def frame_of(planned: Vector, foot: Vector, odometry: Vector) -> Frame:
     )
 
 
-@njit(cache=True)
+@compiled
 def transform(frame: Frame, rows: Array, yaw: int) -> None:
     """Transform points of the plan frame into the odometry frame.
 

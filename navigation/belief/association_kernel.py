@@ -1,14 +1,15 @@
 """Compiled part of the data association: overlapping tracks."""
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
+
+from compilation import compiled
 
 Array = NDArray[np.float64]
 Indices = NDArray[np.int64]
 
 
-@njit(cache=True)
+@compiled
 def overlapping(centres: Array, radii: Array) -> Indices:
     """Return the pairs i < j of overlapping discs (k, 2), by i, then j.
 

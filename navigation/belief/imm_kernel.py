@@ -6,8 +6,9 @@ Modes are STATIC, FORWARD, REVERSED, see `imm`; states are (x, y, vx, vy, turn r
 from math import cos, exp, inf, log, sin
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
+
+from compilation import compiled
 
 Array = NDArray[np.float64]
 Rows = NDArray[np.int64]
@@ -19,7 +20,7 @@ SIZE = 5  # of a state
 FLOOR = 1e-6  # minimum probability of a mode
 
 
-@njit(cache=True)
+@compiled
 def _reversal(i: int, j: int) -> float:
     """Return the factor of velocity and turn rate at a switch from mode i to mode j."""
     if min(i, j) == STATIC:
@@ -27,7 +28,7 @@ def _reversal(i: int, j: int) -> float:
     return 1.0 if i == j else -1.0
 
 
-@njit(cache=True)
+@compiled
 def mix(
     weights: Array,
     states: Array,
@@ -86,7 +87,7 @@ def mix(
     return mixed_weights, mixed, spread
 
 
-@njit(cache=True)
+@compiled
 def arc(turn: float, dt: float) -> tuple[float, float, float, float]:
     """Return the mean rotation of a turning velocity.
 
@@ -108,7 +109,7 @@ def arc(turn: float, dt: float) -> tuple[float, float, float, float]:
     return sinc * c, sinc * s, by * (slope * c - sinc * s), by * (slope * s + sinc * c)
 
 
-@njit(cache=True)
+@compiled
 def predict(
     states: Array,
     covariances: Array,
@@ -173,7 +174,7 @@ def predict(
             P[4, 4] += (1.0 - keep * keep) * turn_variance
 
 
-@njit(cache=True)
+@compiled
 def mahalanobis(u: float, v: float, xx: float, xy: float, yy: float) -> tuple[float, float]:
     """Return the squared Mahalanobis distance and log likelihood of an innovation.
 
@@ -192,7 +193,7 @@ def mahalanobis(u: float, v: float, xx: float, xy: float, yy: float) -> tuple[fl
     return distance, -0.5 * (distance + log(det))
 
 
-@njit(cache=True)
+@compiled
 def nis(states: Array, covariances: Array, rows: Rows, z: Array, R: Array) -> Array:
     """Return the normalized innovation squared of detections under their nearest modes (m,).
 
@@ -215,7 +216,7 @@ def nis(states: Array, covariances: Array, rows: Rows, z: Array, R: Array) -> Ar
     return min_nis
 
 
-@njit(cache=True)
+@compiled
 def costs(
     weights: Array, states: Array, covariances: Array, z: Array, R: Array, gate: float
 ) -> Array:
@@ -247,7 +248,7 @@ def costs(
     return cost
 
 
-@njit(cache=True)
+@compiled
 def correct(x: Array, P: Array, z: Array, R: Array) -> float:
     """Correct one filter by a detection in place (Joseph form).
 
@@ -283,7 +284,7 @@ def correct(x: Array, P: Array, z: Array, R: Array) -> float:
     return likelihood
 
 
-@njit(cache=True)
+@compiled
 def update(
     weights: Array, states: Array, covariances: Array, rows: Rows, z: Array, R: Array, limit: float
 ) -> None:
@@ -316,7 +317,7 @@ def update(
                 probability[mode] /= total
 
 
-@njit(cache=True)
+@compiled
 def mean(weights: Array, states: Array) -> Array:
     """Return the mean (5,) of one obstacle, given that it moves; weights (3,), states (3, 5)."""
     moving = weights[FORWARD] + weights[REVERSED]
@@ -328,7 +329,7 @@ def mean(weights: Array, states: Array) -> Array:
     return average
 
 
-@njit(cache=True)
+@compiled
 def positions(weights: Array, states: Array, static: Mask) -> Array:
     """Return the positions of obstacles, given their motion class (n, 2) [m]; see `estimates`."""
     position = np.empty((len(weights), 2))
@@ -338,7 +339,7 @@ def positions(weights: Array, states: Array, static: Mask) -> Array:
     return position
 
 
-@njit(cache=True)
+@compiled
 def moments(weights: Array, states: Array, covariances: Array) -> tuple[Array, Array]:
     """Return mean (5,) and covariance (5, 5) of one obstacle, given that it moves; see `mean`."""
     on = weights[FORWARD] / (weights[FORWARD] + weights[REVERSED])
@@ -356,7 +357,7 @@ def moments(weights: Array, states: Array, covariances: Array) -> tuple[Array, A
     return average, covariance
 
 
-@njit(cache=True)
+@compiled
 def estimates(
     weights: Array,
     states: Array,

@@ -1,15 +1,16 @@
 """Compiled part of the local map: look-up of cells at points."""
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
+
+from compilation import compiled
 
 Array = NDArray[np.float64]
 Mask = NDArray[np.bool_]
 Corner = tuple[int, int]
 
 
-@njit(cache=True)
+@compiled
 def lookup(points: Array, corner: Corner, cell: float, cells: Array, outside: float) -> Array:
     """Return the values of a square grid at points (m,).
 
@@ -31,7 +32,7 @@ def lookup(points: Array, corner: Corner, cell: float, cells: Array, outside: fl
     return values
 
 
-@njit(cache=True)
+@compiled
 def free(points: Array, corner: Corner, cell: float, log_odds: Array) -> Mask:
     """Return whether the five cells in a cross around each point are free (m,).
 

@@ -3,13 +3,14 @@
 from math import cos, exp, log, sin
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
+
+from compilation import compiled
 
 Array = NDArray[np.float64]
 
 
-@njit(cache=True)
+@compiled
 def advance(
     positions: Array,
     velocities: Array,
@@ -51,7 +52,7 @@ def advance(
     return moved, turned, rates
 
 
-@njit(cache=True)
+@compiled
 def moments(positions: Array, velocities: Array, weights: Array) -> tuple[Array, Array]:
     """Return mean (4,) and covariance (4, 4) of x, y, vx, vy.
 
@@ -76,7 +77,7 @@ def moments(positions: Array, velocities: Array, weights: Array) -> tuple[Array,
     return mean, covariance
 
 
-@njit(cache=True)
+@compiled
 def costs(
     positions: Array,
     weights: Array,

@@ -3,8 +3,9 @@
 from math import atan2, pi, sqrt
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
+
+from compilation import compiled
 
 Array = NDArray[np.float64]
 Mask = NDArray[np.bool_]
@@ -14,7 +15,7 @@ Camera = tuple[float, ...]
 UNSEEN, FREE, OCCUPIED = 0, 1, 2
 
 
-@njit(cache=True)
+@compiled
 def in_image(dx: float, dy: float, dz: float, camera: Camera) -> bool:
     """Return whether a point projects into the image; its position from the camera [m]."""
     forward = (camera[2] * dx + camera[8] * dz) + camera[5] * dy
@@ -25,7 +26,7 @@ def in_image(dx: float, dy: float, dz: float, camera: Camera) -> bool:
     return bool(abs(right) <= camera[10] * forward and abs(down) <= camera[11] * forward)
 
 
-@njit(cache=True)
+@compiled
 def in_shadow(dx: float, dy: float, heading: float, shadow: Array) -> bool:
     """Return whether the robot's own body hides a point of the floor.
 
@@ -40,7 +41,7 @@ def in_shadow(dx: float, dy: float, heading: float, shadow: Array) -> bool:
     return bool(dx * dx + dy * dy < reach * reach)
 
 
-@njit(cache=True)
+@compiled
 def in_view(dx: float, dy: float, camera: Camera, shadow: Array) -> bool:
     """Return whether the image shows an obstacle at a point of the floor: its top or its foot.
 
@@ -63,7 +64,7 @@ def in_view(dx: float, dy: float, camera: Camera, shadow: Array) -> bool:
     return in_image(dx, dy, camera[9], camera) and not in_shadow(dx, dy, camera[14], shadow)
 
 
-@njit(cache=True)
+@compiled
 def occluded(dx: float, dy: float, discs: Array) -> bool:
     """Return whether a nearer disc intersects the ray to a point.
 
@@ -83,7 +84,7 @@ def occluded(dx: float, dy: float, discs: Array) -> bool:
     return False
 
 
-@njit(cache=True)
+@compiled
 def relative_discs(eye: Array, centres: Array, radii: Array, margin: float) -> Array:
     """Return discs relative to the camera: x, y, squared distance and radius (m, 4) [m, m²].
 
@@ -102,7 +103,7 @@ def relative_discs(eye: Array, centres: Array, radii: Array, margin: float) -> A
     return discs
 
 
-@njit(cache=True)
+@compiled
 def in_clear_view(
     points: Array,
     eye: Array,
@@ -131,7 +132,7 @@ def in_clear_view(
     return clear
 
 
-@njit(cache=True)
+@compiled
 def observed_cells(
     corner: Array,
     cell: float,
@@ -177,7 +178,7 @@ def observed_cells(
     return marks
 
 
-@njit(cache=True)
+@compiled
 def update_grid(
     marks: Marks, seen_at: Array, log_odds: Array, time: float, evidence: tuple[float, float, float]
 ) -> None:

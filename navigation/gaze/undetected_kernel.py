@@ -3,8 +3,9 @@
 from math import sqrt
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
+
+from compilation import compiled
 
 Array = NDArray[np.float64]
 
@@ -12,7 +13,7 @@ NEVER = 1e9  # time of a collision that does not happen [s]
 MIN_DENSITY = 1e-5  # density below which a cell counts as empty [1/m²]
 
 
-@njit(cache=True)
+@compiled
 def time_to_collision(x: float, y: float, vx: float, vy: float, gap: float) -> float:
     """Return the time until a point comes within a distance of the origin [s].
 
@@ -35,7 +36,7 @@ def time_to_collision(x: float, y: float, vx: float, vy: float, gap: float) -> f
     return (closing - sqrt(root)) / speed
 
 
-@njit(cache=True)
+@compiled
 def see(movers: Array, static: Array, in_view: NDArray[np.bool_], missed: float) -> None:
     """Reduce the densities in the cells that a frame shows, in place.
 
@@ -54,7 +55,7 @@ def see(movers: Array, static: Array, in_view: NDArray[np.bool_], missed: float)
                     movers[k, row, column] *= missed
 
 
-@njit(cache=True)
+@compiled
 def risks(
     movers: Array, static: Array, velocities: Array, corner: Array, robot: Array, limits: Array
 ) -> Array:

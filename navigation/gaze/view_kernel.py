@@ -3,8 +3,9 @@
 from math import cos, sin, sqrt
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
+
+from compilation import compiled
 
 Array = NDArray[np.float64]
 
@@ -12,7 +13,7 @@ MIN_DEPTH = 0.05  # of a visible point, relative to its distance [1]
 BESIDE = 1.001  # a point that far beyond the widest border is in no image, despite rounding [1]
 
 
-@njit(cache=True)
+@compiled
 def move_time(angle: float, speed: float, rate: float, acceleration: float) -> float:
     """Return the duration of the fastest move that ends at rest [s].
 
@@ -32,7 +33,7 @@ def move_time(angle: float, speed: float, rate: float, acceleration: float) -> f
     return float((2.0 * rate - speed) / acceleration + (angle - ramps) / rate)
 
 
-@njit(cache=True)
+@compiled
 def hidden(x: float, y: float, discs: Array, edge: float) -> bool:
     """Return whether a nearer disc hides a point of the floor.
 
@@ -53,7 +54,7 @@ def hidden(x: float, y: float, discs: Array, edge: float) -> bool:
     return False
 
 
-@njit(cache=True)
+@compiled
 def in_image(ahead: float, aside: float, up: float, tilt: tuple[float, float], lens: Array) -> bool:
     """Return whether a point is in the image of the head camera.
 
@@ -70,7 +71,7 @@ def in_image(ahead: float, aside: float, up: float, tilt: tuple[float, float], l
     return bool(abs(up * tilt[0] - ahead * tilt[1]) <= lens[1] * depth)
 
 
-@njit(cache=True)
+@compiled
 def visible_part(
     ahead: float,
     aside: float,
@@ -98,7 +99,7 @@ def visible_part(
     return credit if credit > 0.0 and in_image(ahead, aside, -height, tilt, lens) else 0.0
 
 
-@njit(cache=True)
+@compiled
 def view_values(
     pans: Array,
     tilts: Array,
@@ -163,7 +164,7 @@ def view_values(
     return values
 
 
-@njit(cache=True)
+@compiled
 def saccade_times(pans: Array, tilts: Array, neck: Array) -> Array:
     """Return the duration of the saccade to every view (tilts, pans) [s]; see `view_values`."""
     pan, pan_rate, tilt, tilt_rate, rate, acceleration = neck

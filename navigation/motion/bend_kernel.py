@@ -3,13 +3,14 @@
 from math import cos, sin
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
+
+from compilation import compiled
 
 Array = NDArray[np.float64]
 
 
-@njit(cache=True)
+@compiled
 def mean_velocity(velocity: Array, turn_rate: Array, time: float) -> Array:
     """Return the velocity along the chord of the arc covered in `time` (n, 2) [m/s].
 

@@ -7,21 +7,22 @@ turn rate per heading error [1/s].
 from math import atan2, ceil, cos, inf, isfinite, isnan, pi, sin, sqrt
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
+
+from compilation import compiled
 
 Array = NDArray[np.float64]
 Envelope = tuple[float, float, float, float, float]
 Velocity = tuple[float, float, float]
 
 
-@njit(cache=True)
+@compiled
 def wrapped(a: float) -> float:
     """Wrap an angle into (-pi, pi] [rad]."""
     return a - 2.0 * pi * ceil((a - pi) / (2.0 * pi))
 
 
-@njit(cache=True)
+@compiled
 def body_velocity(error: float, speed: float, turn: float, envelope: Envelope) -> Velocity:
     """Return the velocity of the body, scaled into the envelope without a change of direction.
 
@@ -42,7 +43,7 @@ def body_velocity(error: float, speed: float, turn: float, envelope: Envelope) -
     return scale * vx, scale * vy, min(max(rate, -envelope[3]), envelope[3])
 
 
-@njit(cache=True)
+@compiled
 def rollout(
     candidates: Array,
     heading: float,
@@ -100,7 +101,7 @@ def rollout(
     return velocity, duration
 
 
-@njit(cache=True)
+@compiled
 def contact_time(rate: float, square: float, outside: float) -> float:
     """Return the time to collision of two closing discs, inf if they pass, 0 inside [s].
 
@@ -115,7 +116,7 @@ def contact_time(rate: float, square: float, outside: float) -> float:
     return max(0.0, (-rate - sqrt(max(discriminant, 0.0))) / max(square, 1e-12))
 
 
-@njit(cache=True)
+@compiled
 def contact_times(
     velocity: Array,
     duration: Array,
@@ -184,7 +185,7 @@ def contact_times(
     return first, closing
 
 
-@njit(cache=True)
+@compiled
 def penalties(
     first: Array,
     closing: Array,

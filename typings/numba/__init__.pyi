@@ -1,16 +1,16 @@
 from collections.abc import Callable
-from typing import Generic, ParamSpec, TypeVar, overload
+from typing import Generic, ParamSpec, TypeVar
+
+from numba.core.caching import NullCache
+
+__version__: str
 
 P = ParamSpec("P")
 R_co = TypeVar("R_co", covariant=True)
 
 class Dispatcher(Generic[P, R_co]):
     py_func: Callable[P, R_co]
+    _cache: NullCache
     def __call__(self, *args: P.args, **kwargs: P.kwargs) -> R_co: ...
 
-@overload
 def njit(function: Callable[P, R_co], /) -> Dispatcher[P, R_co]: ...
-@overload
-def njit(
-    *, cache: bool = ..., error_model: str = ...
-) -> Callable[[Callable[P, R_co]], Dispatcher[P, R_co]]: ...

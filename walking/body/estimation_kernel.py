@@ -14,8 +14,7 @@ Constant numbers are passed in arrays, too: tuples are unpacked at every call.
 
 from math import atan2, cos, hypot, pi, sin, sqrt
 
-from numba import njit
-
+from compilation import compiled
 from walking.arrays import Array, Point, Vector
 
 Plan = tuple[float, float, float, float, float, float, float, float, float, float, float]
@@ -26,7 +25,7 @@ RELEASED = 0.2  # load fraction below which a foot is not the stance foot [1]
 MEASURED, LOAD = 24, 10  # number of measurements; index of the left foot's load
 
 
-@njit(cache=True)
+@compiled
 def estimate(
     legs: Array,
     pads: Array,
@@ -83,7 +82,7 @@ def estimate(
     return inclined, dcm, (x, y), (odometry[0], odometry[1], odometry[2])
 
 
-@njit(cache=True)
+@compiled
 def observe(
     legs: Array,
     pads: Array,
@@ -134,7 +133,7 @@ def observe(
     return inclined
 
 
-@njit(cache=True)
+@compiled
 def roll_pitch_yaw(quaternion: tuple[float, float, float, float]) -> Vector:
     """Return roll, pitch and heading of an attitude R = Rz(yaw) Ry(pitch) Rx(roll) [rad]."""
     w, x, y, z = quaternion
@@ -147,7 +146,7 @@ def roll_pitch_yaw(quaternion: tuple[float, float, float, float]) -> Vector:
     )
 
 
-@njit(cache=True)
+@compiled
 def follow_tilt(
     tilt: Array, roll: float, pitch: float, gyro: Array, gain: float, period: float
 ) -> None:
@@ -173,7 +172,7 @@ def follow_tilt(
     tilt[2] = predicted_pitch + gain * (pitch - predicted_pitch)
 
 
-@njit(cache=True)
+@compiled
 def load_of(pads: Array, sole: Vector) -> Vector:
     """Return the load on a sole [N] and its centre of pressure in the foot frame x, y [m]."""
     centre, half_length, half_width = sole
@@ -188,7 +187,7 @@ def load_of(pads: Array, sole: Vector) -> Vector:
     return force, ahead, aside
 
 
-@njit(cache=True)
+@compiled
 def pressure(measured: Array, feet: Array) -> Vector:
     """Return centre of pressure (0, 0 in the air) x, y [m] and load [N] of feet at `feet`."""
     x = y = load = 0.0
@@ -202,7 +201,7 @@ def pressure(measured: Array, feet: Array) -> Vector:
     return (x / load, y / load, load) if load > 0.0 else (0.0, 0.0, 0.0)
 
 
-@njit(cache=True)
+@compiled
 def reckon(
     odometry: Array,
     heading: float,
@@ -251,7 +250,7 @@ def reckon(
     odometry[8], odometry[9] = right
 
 
-@njit(cache=True)
+@compiled
 def jump(odometry: Array, displacement: float, turn: float) -> None:
     """Add an unmeasured motion: standard deviation per axis [m] and of the yaw [rad]."""
     _turn(odometry, turn * turn)
@@ -259,7 +258,7 @@ def jump(odometry: Array, displacement: float, turn: float) -> None:
     odometry[17] += displacement * displacement
 
 
-@njit(cache=True)
+@compiled
 def _turn(odometry: Array, variance: float) -> None:
     """Add an unmeasured turn about the present position [rad²]."""
     x, y = odometry[0], odometry[1]
@@ -271,7 +270,7 @@ def _turn(odometry: Array, variance: float) -> None:
     odometry[19] += variance
 
 
-@njit(cache=True)
+@compiled
 def _watch_slip(odometry: Array, x: float, y: float, load: float, ratio: float) -> None:
     """Add the slip of a double support to the covariance.
 
@@ -286,7 +285,7 @@ def _watch_slip(odometry: Array, x: float, y: float, load: float, ratio: float) 
         odometry[11] = 0.0
 
 
-@njit(cache=True)
+@compiled
 def filter_error(
     error: Array, measured: Point, zmp_shift: Point, slip: Point, gains: Array, period: float
 ) -> None:
@@ -311,7 +310,7 @@ def filter_error(
         error[axis + 2] = rate + period * change + kv * innovation
 
 
-@njit(cache=True)
+@compiled
 def com_error(
     com: Point, foot: Vector, reference: Array, planned: Point
 ) -> tuple[float, float, float, float]:
@@ -334,7 +333,7 @@ def com_error(
     return x + reference[0] - planned[0], y + reference[1] - planned[1], x, y
 
 
-@njit(cache=True)
+@compiled
 def level(point: Vector, tilt: Point) -> Vector:
     """Transform a point of the base frame to the level frame, given roll and pitch [rad]."""
     cr, sr, cp, sp = cos(tilt[0]), sin(tilt[0]), cos(tilt[1]), sin(tilt[1])

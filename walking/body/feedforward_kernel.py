@@ -5,8 +5,7 @@ Constant numbers are rows of arrays: tuples are unpacked at every call.
 
 from math import cos, sin
 
-from numba import njit
-
+from compilation import compiled
 from walking.arrays import Array, Indices, Point, Vector
 
 AnkleTask = tuple[Point, Array]
@@ -14,7 +13,7 @@ AnkleTask = tuple[Point, Array]
 (3,) [rad/s]."""
 
 
-@njit(cache=True)
+@compiled
 def rates(
     position: Array,
     before: Array,
@@ -56,7 +55,7 @@ def rates(
         a[in_v[joint]] = min(limit, max(-limit, change))
 
 
-@njit(cache=True)
+@compiled
 def offsets(
     forces: Array,
     in_v: Indices,
@@ -119,7 +118,7 @@ def offsets(
                 offset[joint] += ankle(task, pelvis[2], load, axes[side, k], compliance, ankles)
 
 
-@njit(cache=True)
+@compiled
 def support_torque(axis: Array, origin: Array, point: Vector, force: Vector) -> float:
     """Return the torque of a joint [N m] of a massless leg that transmits a force to the base.
 
@@ -137,7 +136,7 @@ def support_torque(axis: Array, origin: Array, point: Vector, force: Vector) -> 
     return torque
 
 
-@njit(cache=True)
+@compiled
 def ankle(
     task: AnkleTask, yaw: float, load: float, axis: Array, compliance: float, ankles: Array
 ) -> float:
@@ -159,7 +158,7 @@ def ankle(
     return load * (shift + damping)
 
 
-@njit(cache=True)
+@compiled
 def _in_base(pelvis: Vector, point: Point) -> Point:
     """Express a point of the plan frame in the base frame [m]."""
     c, s = cos(pelvis[2]), sin(pelvis[2])

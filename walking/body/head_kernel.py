@@ -2,12 +2,11 @@
 
 from math import sqrt
 
-from numba import njit
-
+from compilation import compiled
 from walking.arrays import Array, Point
 
 
-@njit(cache=True)
+@compiled
 def advance(position: Array, velocity: Array, target: Point, limits: Array, motion: Array) -> Point:
     """Run one tick: time-optimal approach to the target on each axis, without overshoot.
 

@@ -8,8 +8,8 @@ frame at the end of the chain, with no axis. The first row is relative to the ba
 from math import cos, sin, sqrt
 
 import numpy as np
-from numba import njit
 
+from compilation import compiled
 from walking.arrays import Array, Indices, Point, Vector
 
 Matrix = tuple[float, float, float, float, float, float, float, float, float]
@@ -27,7 +27,7 @@ MIN_DAMPING, MAX_DAMPING = 1e-14, 1e-3  # of the normal equations, near and far 
 MIN_PIVOT = 1e-18  # of their Cholesky factor
 
 
-@njit(cache=True)
+@compiled
 def _times(a: Matrix, b: Matrix) -> Matrix:
     """Return the product of two rotations."""
     return (
@@ -43,7 +43,7 @@ def _times(a: Matrix, b: Matrix) -> Matrix:
     )
 
 
-@njit(cache=True)
+@compiled
 def _turned(a: Matrix, x: float, y: float, z: float) -> Vector:
     """Return a rotated vector."""
     return (
@@ -53,7 +53,7 @@ def _turned(a: Matrix, x: float, y: float, z: float) -> Vector:
     )
 
 
-@njit(cache=True)
+@compiled
 def _about(x: float, y: float, z: float, angle: float) -> Matrix:
     """Return the rotation about a unit axis by an angle [rad]."""
     c, s = cos(angle), sin(angle)
@@ -71,7 +71,7 @@ def _about(x: float, y: float, z: float, angle: float) -> Matrix:
     )
 
 
-@njit(cache=True)
+@compiled
 def _end(chain: Array, angles: Array, axes: Array, origins: Array) -> tuple[Matrix, Vector]:
     """Return rotation and position [m] of the end of a chain.
 
@@ -97,7 +97,7 @@ def _end(chain: Array, angles: Array, axes: Array, origins: Array) -> tuple[Matr
     return R, (px, py, pz)
 
 
-@njit(cache=True)
+@compiled
 def chain_end(chain: Array, angles: Array, rotation: Array, position: Array) -> None:
     """Set rotation (3, 3) and position (3,) [m] of the end of a chain (forward kinematics)."""
     k = angles.shape[0]
@@ -107,13 +107,13 @@ def chain_end(chain: Array, angles: Array, rotation: Array, position: Array) -> 
         position[i] = p[i]
 
 
-@njit(cache=True)
+@compiled
 def chain_joints(chain: Array, angles: Array, axes: Array, origins: Array) -> None:
     """Set axes (k, 3) and origins (k, 3) [m] of the joints of a chain."""
     _end(chain, angles, axes, origins)
 
 
-@njit(cache=True)
+@compiled
 def feet_poses(chains: Array, moving: Indices, joints: Array, feet: Array) -> None:
     """Set x, y, z [m] and yaw [rad] of both feet in the base frame.
 
@@ -133,7 +133,7 @@ def feet_poses(chains: Array, moving: Indices, joints: Array, feet: Array) -> No
         feet[side, 3] = np.arctan2(R[3], R[0])
 
 
-@njit(cache=True)
+@compiled
 def solve(leg: Array, foot: Pose, angles: Array, length: float) -> tuple[int, float]:
     """Find the joint angles of a leg for a foot pose (inverse kinematics) by Newton's method.
 
@@ -151,7 +151,7 @@ def solve(leg: Array, foot: Pose, angles: Array, length: float) -> tuple[int, fl
     return _solve(leg, foot, angles, length, np.empty((6, 3)), np.empty((6, 3)))
 
 
-@njit(cache=True)
+@compiled
 def _solve(
     leg: Array, foot: Pose, angles: Array, length: float, axes: Array, origins: Array
 ) -> tuple[int, float]:
@@ -191,7 +191,7 @@ def _solve(
     return MAX_ITERATIONS, error
 
 
-@njit(cache=True)
+@compiled
 def _least_squares(J: Array, e: Array, damping: float, A: Array, step: Array) -> None:
     """Set `step` (6,) to the solution of (JᵀJ + damping) step = Jᵀe by Cholesky; A is scratch."""
     for i in range(6):
@@ -215,7 +215,7 @@ def _least_squares(J: Array, e: Array, damping: float, A: Array, step: Array) ->
         step[i] /= A[i, i]
 
 
-@njit(cache=True)
+@compiled
 def pose(
     position: Array,
     angles: Array,
@@ -288,14 +288,14 @@ def pose(
     return pelvis, error
 
 
-@njit(cache=True)
+@compiled
 def pelvis_of(feet: Array, com: Point, ahead: float) -> Vector:
     """Return the pelvis for a centre of mass `com` ahead of it; its heading is between the feet."""
     yaw = 0.5 * (feet[0][2] + feet[1][2])
     return com[0] - ahead * cos(yaw), com[1] - ahead * sin(yaw), yaw
 
 
-@njit(cache=True)
+@compiled
 def _level_feet(tilts: Array, airborne: int, tilt: Point, tilt_control: Array) -> None:
     """Update the tilts of the feet: of the foot in the air against that of the trunk."""
     gain, zone, pull, decay = tilt_control[0], tilt_control[1], tilt_control[2], tilt_control[3]
@@ -311,7 +311,7 @@ def _level_feet(tilts: Array, airborne: int, tilt: Point, tilt_control: Array) -
                     own[axis] = 0.0
 
 
-@njit(cache=True)
+@compiled
 def _foot_targets(
     tilts: Array, feet: Array, support: Array, pelvis: Vector, base: float
 ) -> tuple[Pose, Pose]:
@@ -320,7 +320,7 @@ def _foot_targets(
     return left, _foot_target(tilts[1], feet[1], support, pelvis, base)
 
 
-@njit(cache=True)
+@compiled
 def _foot_target(own: Array, foot: Array, support: Array, pelvis: Vector, base: float) -> Pose:
     c, s = cos(pelvis[2]), sin(pelvis[2])
     x, y, yaw, height = foot[0], foot[1], foot[2], foot[3]
@@ -340,7 +340,7 @@ def _foot_target(own: Array, foot: Array, support: Array, pelvis: Vector, base: 
     )
 
 
-@njit(cache=True)
+@compiled
 def _sink(foot: Pose, reach: Array) -> float:
     """Return how far the base must sink for a leg to reach a foot [m].
 

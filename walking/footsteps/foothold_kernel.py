@@ -6,8 +6,8 @@ A foothold is a row x, y [m], yaw [rad], 1 for the left or 0 for the right foot.
 from math import cos, sin
 
 import numpy as np
-from numba import njit
 
+from compilation import compiled
 from walking.arrays import Array, Point
 from walking.footsteps.stride import Placement
 
@@ -27,7 +27,7 @@ Chain = tuple[Placements, Placements, tuple[float, float], int]
 RAMP = 13  # columns of a ramp, see `Ramps`
 
 
-@njit(cache=True)
+@compiled
 def plan_walk(
     unloading: Row,
     support: Row,
@@ -43,7 +43,7 @@ def plan_walk(
     return steps, ramps(unloading, support, steps, zmp, ticks, zmp_offset, ends)
 
 
-@njit(cache=True)
+@compiled
 def sequence(support: Row, landing: Row, chain: Chain, moving: bool) -> tuple[Array, bool]:
     """Return the footholds from `landing` on, and whether the walk ends after the last.
 
@@ -73,7 +73,7 @@ def sequence(support: Row, landing: Row, chain: Chain, moving: bool) -> tuple[Ar
     return steps, False
 
 
-@njit(cache=True)
+@compiled
 def ramps(
     unloading: Row,
     support: Row,
@@ -124,7 +124,7 @@ def ramps(
     return table[:row]
 
 
-@njit(cache=True)
+@compiled
 def _landing(support: Row, strides: Placements) -> Row:
     """Return the next foothold of the swing foot."""
     x, y, turned = strides[0] if support[3] > 0.0 else strides[1]
@@ -137,7 +137,7 @@ def _landing(support: Row, strides: Placements) -> Row:
     )
 
 
-@njit(cache=True)
+@compiled
 def _under(foot: Row, zmp_offset: ZmpOffset) -> Point:
     """Return the ZMP of single support on a foot [m]."""
     forward = zmp_offset[0]
@@ -146,7 +146,7 @@ def _under(foot: Row, zmp_offset: ZmpOffset) -> Point:
     return foot[0] + c * forward - s * inward, foot[1] + s * forward + c * inward
 
 
-@njit(cache=True)
+@compiled
 def _ramp(
     row: Array, ticks: int, ax: float, ay: float, bx: float, by: float, one: Row, two: Row
 ) -> None:

@@ -2,8 +2,7 @@
 
 from math import cos, sin
 
-from numba import njit
-
+from compilation import compiled
 from walking.arrays import Point, Vector
 from walking.footsteps.stride import Placement
 
@@ -12,7 +11,7 @@ Build = tuple[float, float, float, float, float]
 width of a sole [m]."""
 
 
-@njit(cache=True)
+@compiled
 def strides(
     velocity: Vector, time: float, limits: Vector, build: Build
 ) -> tuple[Placement, Placement, bool]:
@@ -41,7 +40,7 @@ def strides(
     )
 
 
-@njit(cache=True)
+@compiled
 def stance_after(dx: float, dy: float, turned: float, stance: float) -> Point:
     """Return the landing for a middle of the stance that moves along the chord of the arc.
 
@@ -61,7 +60,7 @@ def stance_after(dx: float, dy: float, turned: float, stance: float) -> Point:
     )
 
 
-@njit(cache=True)
+@compiled
 def clear(y: float, turned: float, side: float, gap: float, sole: Vector) -> float:
     """Return the lateral landing with every corner clear of the strip of the support foot.
 
@@ -79,7 +78,7 @@ def clear(y: float, turned: float, side: float, gap: float, sole: Vector) -> flo
     return side * max(side * y, min_distance)
 
 
-@njit(cache=True)
+@compiled
 def _opened(
     dx: float, vy: float, wz: float, time: float, side: float, limits: Vector, half: float
 ) -> Placement:

@@ -4,14 +4,13 @@ Rows of the left and right foot: x, y [m], yaw [rad], height above the floor [m]
 accelerations of x, y and yaw (2, 10).
 """
 
-from numba import njit
-
+from compilation import compiled
 from walking.arrays import Array, Vector
 
 HEIGHT, RATE, ACCELERATION, WIDTH = 3, 4, 7, 10  # columns, and their number
 
 
-@njit(cache=True)
+@compiled
 def advance(
     feet: Array,
     decay: float,
@@ -41,14 +40,14 @@ def advance(
     feet[swing, HEIGHT] = lift[0] * lift_profile(lift[1])
 
 
-@njit(cache=True)
+@compiled
 def lift_profile(phase: float) -> float:
     """Return the height of the swing foot relative to mid-swing, at rest at both ends [1]."""
     bump = 4.0 * phase * (1.0 - phase)
     return bump * bump * bump
 
 
-@njit(cache=True)
+@compiled
 def _towards(foot: Array, axis: int, target: float, ticks_left: int, period: float) -> None:
     """Move one coordinate by a tick of the minimum-jerk motion to a target at rest.
 

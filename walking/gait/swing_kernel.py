@@ -3,8 +3,8 @@
 from math import cos, exp, sin
 
 import numpy as np
-from numba import njit
 
+from compilation import compiled
 from walking.arrays import Array, Point, Vector
 from walking.footsteps.foothold_kernel import Row, ZmpOffset
 
@@ -14,7 +14,7 @@ Feet = tuple[Row, Row, Row]
 SWING = 10  # columns of a swing
 
 
-@njit(cache=True)
+@compiled
 def profile(ticks: int, ramp: Vector, period: float) -> Array:
     """Return the accelerations of a swing over unit distance and height, and their preview sums.
 
@@ -48,7 +48,7 @@ def profile(ticks: int, ramp: Vector, period: float) -> Array:
     return table
 
 
-@njit(cache=True)
+@compiled
 def react(
     feet: Feet,
     steps: Array,
@@ -92,7 +92,7 @@ def react(
     return (cx, cy), (w * w * (cx + now_x), w * w * (cy + now_y))
 
 
-@njit(cache=True)
+@compiled
 def swings(
     feet: Feet,
     steps: Array,
@@ -131,7 +131,7 @@ def swings(
     return table[:row]
 
 
-@njit(cache=True)
+@compiled
 def _moved(swing: Array, reaction: Vector, forward: float, up: float, both: float) -> Point:
     """Return the shift of the ZMP [m]; `both` is `up` weighted by the distance covered."""
     thrust, weight, knee = reaction[0], reaction[1] * swing[1], reaction[2] * swing[1] * up
@@ -143,7 +143,7 @@ def _moved(swing: Array, reaction: Vector, forward: float, up: float, both: floa
     )
 
 
-@njit(cache=True)
+@compiled
 def _under(foot: Row, zmp_offset: ZmpOffset) -> Point:
     """Return the ZMP of single support on a foot [m]."""
     forward = zmp_offset[0]
@@ -152,7 +152,7 @@ def _under(foot: Row, zmp_offset: ZmpOffset) -> Point:
     return foot[0] + c * forward - s * inward, foot[1] + s * forward + c * inward
 
 
-@njit(cache=True)
+@compiled
 def _swing(row: Array, begin: int, lift: float, origin: Row, landing: Row, zmp: Point) -> None:
     row[0], row[1] = begin, lift
     for k in range(3):

@@ -1,7 +1,6 @@
 """Pendulum along a planned ZMP, compiled; see `walking.pattern.robust_pattern`."""
 
-from numba import njit
-
+from compilation import compiled
 from walking.arrays import Array, Point
 
 Pendulum = tuple[float, float, float, float, float, float]
@@ -11,7 +10,7 @@ Tick = tuple[float, float, float, float]
 """Control tick of the pendulum, see `Lipm.tick`."""
 
 
-@njit(cache=True)
+@compiled
 def follow(knots: Array, begin: int, pendulum: Pendulum, tick: Tick) -> tuple[Pendulum, int]:
     """Advance the pendulum by a tick along a plan.
 
@@ -39,7 +38,7 @@ def follow(knots: Array, begin: int, pendulum: Pendulum, tick: Tick) -> tuple[Pe
     return (x, y, vx, vy, px, py), begin
 
 
-@njit(cache=True)
+@compiled
 def _slide(position: float, velocity: float, before: float, after: float, tick: Tick) -> Point:
     """Return position [m] and velocity [m/s] one tick later under a linearly moving ZMP."""
     w, c, s, period = tick

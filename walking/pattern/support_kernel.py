@@ -7,12 +7,11 @@ vector x, y, length [m] (n, 5).
 
 from math import inf
 
-from numba import njit
-
+from compilation import compiled
 from walking.arrays import Array, Point
 
 
-@njit(cache=True)
+@compiled
 def load_fraction(region: Array, x: float, y: float) -> float:
     """Return the load fraction of the second sole for a ZMP at x, y [m], in [0, 1]."""
     dx, dy = region[4] - region[0], region[5] - region[1]
@@ -23,7 +22,7 @@ def load_fraction(region: Array, x: float, y: float) -> float:
     return min(1.0, max(0.0, float(along / square)))
 
 
-@njit(cache=True)
+@compiled
 def clip(region: Array, x: float, y: float) -> Point:
     """Clip a point to the region: to the rectangle at its load fraction [m]."""
     s = load_fraction(region, x, y)
@@ -42,7 +41,7 @@ def clip(region: Array, x: float, y: float) -> Point:
     return cx + c * u - n * v, cy + n * u + c * v
 
 
-@njit(cache=True)
+@compiled
 def depth(edges: Array, x: float, y: float) -> float:
     """Return the distance of a point from the edge of a polygon, negative outside [m]."""
     distance = inf

@@ -17,8 +17,8 @@ Knots in the same parallelogram are a *cell*, a row of
 from math import cos, exp, hypot, sin
 
 import numpy as np
-from numba import njit
 
+from compilation import compiled
 from walking.arrays import Array, Indices, Point, Vector
 from walking.pattern.pendulum_kernel import Pendulum, Tick
 
@@ -32,7 +32,7 @@ REST = 72  # ticks of standing at the end of a plan
 CELL = 15  # columns of a cell
 
 
-@njit(cache=True)
+@compiled
 def lay_out(
     ramps: Array, pendulum: Pendulum, sole: Sole, tick: Tick, rate: float
 ) -> tuple[Array, Indices, Array, Point, Array]:
@@ -86,7 +86,7 @@ def lay_out(
     return cells[:count], starts[: count + 1], weights[:number], (x, y), knots[: number + 1]
 
 
-@njit(cache=True)
+@compiled
 def dcm(ramps: Array, wh: float) -> Point:
     """Return the DCM from which a reference can be walked for ever: the backward recursion [m].
 
@@ -102,7 +102,7 @@ def dcm(ramps: Array, wh: float) -> Point:
     return x, y
 
 
-@njit(cache=True)
+@compiled
 def limit(cell: Array, x: float, y: float, reach: float) -> None:
     """Limit the box of a cell to within `reach` of a point along both sides [m]."""
     u, v = sides(cell, x - cell[0], y - cell[1])
@@ -111,7 +111,7 @@ def limit(cell: Array, x: float, y: float, reach: float) -> None:
     cell[10], cell[11] = max(cell[10], v - reach), min(cell[11], v + reach)
 
 
-@njit(cache=True)
+@compiled
 def sides(cell: Array, x: float, y: float) -> Point:
     """Return the coordinates of a vector along the sides of a cell."""
     ax, ay, bx, by = cell[2], cell[3], cell[4], cell[5]
@@ -119,7 +119,7 @@ def sides(cell: Array, x: float, y: float) -> Point:
     return (x * by - y * bx) / scale, (y * ax - x * ay) / scale
 
 
-@njit(cache=True)
+@compiled
 def _ramp(wh: float, ticks: float) -> Vector:
     """See `Lipm.ramp`."""
     if ticks == 0.0:
@@ -129,7 +129,7 @@ def _ramp(wh: float, ticks: float) -> Vector:
     return growth, growth - 1.0 - last, last
 
 
-@njit(cache=True)
+@compiled
 def _near(ramps: Array) -> int:
     """Return the number of ramps whose ZMP is planned.
 
@@ -145,7 +145,7 @@ def _near(ramps: Array) -> int:
     return int(ramps.shape[0]) + 1
 
 
-@njit(cache=True)
+@compiled
 def _lay_cells(ramps: Array, sole: Sole, cells: Array, starts: Indices, knots: Array) -> int:
     """Set cells and times of the knots; return the number of cells.
 
@@ -197,7 +197,7 @@ def _lay_cells(ramps: Array, sole: Sole, cells: Array, starts: Indices, knots: A
     return count
 
 
-@njit(cache=True)
+@compiled
 def _stands_on(ramp: Array, before: Array) -> bool:
     """Whether a ramp is the single support on the loading foot of the previous ramp."""
     same = True
@@ -206,7 +206,7 @@ def _stands_on(ramp: Array, before: Array) -> bool:
     return same
 
 
-@njit(cache=True)
+@compiled
 def _on_sole(ramp: Array, sole: Sole, cell: Array) -> None:
     """Set a cell to the rectangle of the support sole."""
     centre, length, width = sole
@@ -219,7 +219,7 @@ def _on_sole(ramp: Array, sole: Sole, cell: Array) -> None:
     cell[8], cell[9], cell[10], cell[11] = -length, length, -width, width
 
 
-@njit(cache=True)
+@compiled
 def between(ramp: Array, elapsed: float, sole: Sole, cell: Array) -> None:
     """Set a cell to a parallelogram between the outer edges of two soles."""
     centre, length, width = sole
@@ -241,7 +241,7 @@ def between(ramp: Array, elapsed: float, sole: Sole, cell: Array) -> None:
     cell[8], cell[9], cell[10], cell[11] = -length, length, -0.5 * span, 0.5 * span
 
 
-@njit(cache=True)
+@compiled
 def _edge(foot: Array, centre: float, outward: float) -> Point:
     """Return a point on the outer side of a sole [m]."""
     c, s = cos(foot[2]), sin(foot[2])
@@ -249,7 +249,7 @@ def _edge(foot: Array, centre: float, outward: float) -> Point:
     return foot[0] + centre * c - s * across, foot[1] + centre * s + c * across
 
 
-@njit(cache=True)
+@compiled
 def _limit_first(
     cells: Array, starts: Indices, count: int, x: float, y: float, reach: float
 ) -> int:
@@ -268,7 +268,7 @@ def _limit_first(
     return count
 
 
-@njit(cache=True)
+@compiled
 def _weigh(
     knots: Array, weights: Array, pendulum: Pendulum, rest_x: float, rest_y: float, tick: Tick
 ) -> Point:
@@ -299,7 +299,7 @@ def _weigh(
     )
 
 
-@njit(cache=True)
+@compiled
 def _sum_up(cells: Array, starts: Indices, count: int, weights: Array) -> None:
     for k in range(count):
         total = squares = max_weight = 0.0

@@ -5,8 +5,7 @@ linear and solved by Newton's method with step halving. An infeasible program is
 boxes do not reach the DCM in the direction of the residual.
 """
 
-from numba import njit
-
+from compilation import compiled
 from walking.arrays import Array, Indices, Point
 
 SOLVED = 1e-10  # maximum residual of the DCM [m]
@@ -14,7 +13,7 @@ ITERATIONS = 20
 HALVINGS = 6
 
 
-@njit(cache=True)
+@compiled
 def solve(
     cells: Array, starts: Indices, weights: Array, dcm: Point, start: Point, knots: Array
 ) -> tuple[bool, Point, int]:
@@ -44,7 +43,7 @@ def solve(
     return outcome == 1, (lx, ly), evaluations
 
 
-@njit(cache=True)
+@compiled
 def _set_points(cells: Array, starts: Indices, weights: Array, dual: Point, knots: Array) -> None:
     lx, ly = dual
     for k in range(starts.size - 1):
@@ -57,7 +56,7 @@ def _set_points(cells: Array, starts: Indices, weights: Array, dual: Point, knot
             knots[knot, 2] = cell[1] + cell[3] * u + cell[5] * v
 
 
-@njit(cache=True)
+@compiled
 def _newton(
     cells: Array, starts: Indices, weights: Array, x: float, y: float, lx: float, ly: float
 ) -> tuple[int, float, float, int]:
@@ -93,7 +92,7 @@ def _newton(
     return outcome, lx, ly, evaluations
 
 
-@njit(cache=True)
+@compiled
 def _beyond(cells: Array, starts: Indices, x: float, y: float, dx: float, dy: float) -> bool:
     """Whether the boxes do not reach the DCM in a direction."""
     reach = 0.0
@@ -105,7 +104,7 @@ def _beyond(cells: Array, starts: Indices, x: float, y: float, dx: float, dy: fl
     return reach < dx * x + dy * y
 
 
-@njit(cache=True)
+@compiled
 def _gradient(
     cells: Array, starts: Indices, weights: Array, lx: float, ly: float
 ) -> tuple[float, float, float, float, float]:
@@ -125,7 +124,7 @@ def _gradient(
     return gx, gy, xx, xy, yy
 
 
-@njit(cache=True)
+@compiled
 def _along(
     cell: Array, weights: Array, nominal: float, slope: float, low: float, high: float
 ) -> Point:

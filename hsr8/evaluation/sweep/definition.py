@@ -18,7 +18,7 @@ from hsr8.robots.models import models_dir
 from hsr8.scenario.loader import Table, loads, tables
 from hsr8.version import VERSION
 
-PACKAGES = ("hsr8", "navigation", "walking", "vision")
+PACKAGES = ("compilation", "hsr8", "navigation", "walking", "vision")
 MAX_TEXT = 1000  # of a value in a message [characters]
 # Folders and files of hsr8:
 NOT_IN_DIGEST = ("cli", "render", "evaluation/sweep", "evaluation/bench", "_models")

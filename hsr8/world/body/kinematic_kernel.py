@@ -6,8 +6,9 @@ A pose is x, y, z and the quaternion w-x-y-z of the attitude (7,) [m].
 from math import atan2, cos, sin, sqrt
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
+
+from compilation import compiled
 
 Array = NDArray[np.float64]
 Ints = NDArray[np.intp]
@@ -18,7 +19,7 @@ PI = 3.141592653589793
 GRAVITY = 9.81  # [m/s²]
 
 
-@njit(cache=True)
+@compiled
 def _product(a: Quaternion, b: Quaternion) -> Quaternion:
     """Return the Hamilton product: first `b`, then `a`."""
     aw, ax, ay, az = a
@@ -31,7 +32,7 @@ def _product(a: Quaternion, b: Quaternion) -> Quaternion:
     )
 
 
-@njit(cache=True)
+@compiled
 def _rotate(q: Quaternion, v: Vector) -> Vector:
     """Rotate a vector by a unit quaternion."""
     w, x, y, z = q
@@ -46,7 +47,7 @@ def _rotate(q: Quaternion, v: Vector) -> Vector:
     )
 
 
-@njit(cache=True)
+@compiled
 def base_pose(
     positions: Array,
     attitudes: Array,
@@ -90,7 +91,7 @@ def base_pose(
     other[2], other[3] = atan2(x_axis[1], x_axis[0]), pose[2] + offset[2]
 
 
-@njit(cache=True)
+@compiled
 def imu_motion(
     before: Array, after: Array, period: float, velocity: Array, gyro: Array, force: Array
 ) -> None:

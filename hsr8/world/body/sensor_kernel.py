@@ -8,8 +8,9 @@ and heading drift [rad] for errors, and with the attitude quaternion w-x-y-z for
 from math import cos, sin, sqrt
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
+
+from compilation import compiled
 
 Array = NDArray[np.float64]
 Quaternion = tuple[float, float, float, float]
@@ -17,7 +18,7 @@ Quaternion = tuple[float, float, float, float]
 GYRO, FORCE, PADS, ATTITUDE, WIDTH = 0, 3, 6, 14, 18  # columns after those of the joints
 
 
-@njit(cache=True)
+@compiled
 def _product(a: Quaternion, b: Quaternion) -> Quaternion:
     """Return the Hamilton product: first `b`, then `a`."""
     aw, ax, ay, az = a
@@ -30,7 +31,7 @@ def _product(a: Quaternion, b: Quaternion) -> Quaternion:
     )
 
 
-@njit(cache=True)
+@compiled
 def reading(
     joint_position: Array,
     joint_velocity: Array,

@@ -8,8 +8,9 @@ panoramic.
 from math import asin, atan2, ceil, inf, pi, sqrt
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
+
+from compilation import compiled
 
 Array = NDArray[np.float64]
 Box = tuple[float, float, float, float, bool]
@@ -20,13 +21,13 @@ NO_BOX = (0.0, 0.0, 0.0, 0.0, False)
 DISTANCE, HIDDEN, LEFT, TOP, RIGHT, BOTTOM, CUT = range(7)  # columns of a view
 
 
-@njit(cache=True)
+@compiled
 def _wrap(angle: float) -> float:
     """Wrap an angle to (-pi, pi] [rad]."""
     return angle - 2.0 * pi * ceil((angle - pi) / (2.0 * pi))
 
 
-@njit(cache=True)
+@compiled
 def _panorama_box(x: float, y: float, radius: float, height: float, eye: Array) -> Box:
     """Return the box in a panorama around the forward axis; it contains every direction."""
     distance = sqrt(x * x + y * y)
@@ -39,7 +40,7 @@ def _panorama_box(x: float, y: float, radius: float, height: float, eye: Array) 
     return column - reach, top, column + reach, bottom, False
 
 
-@njit(cache=True)
+@compiled
 def _image_box(x: float, y: float, radius: float, height: float, eye: Array) -> Box:
     """Return the box in a pinhole image and whether it is cut; `NO_BOX` if outside."""
     left, top, right, bottom = inf, inf, -inf, -inf
@@ -65,7 +66,7 @@ def _image_box(x: float, y: float, radius: float, height: float, eye: Array) -> 
     return left, top, right, bottom, left < 0.0 or top < 0.0 or right > eye[12] or bottom > eye[13]
 
 
-@njit(cache=True)
+@compiled
 def project(x: float, y: float, radius: float, height: float, beacon: bool, eye: Array) -> Box:
     """Return left, top, right and bottom of a cylinder in the image [pixel], and whether it is cut.
 
@@ -91,7 +92,7 @@ def project(x: float, y: float, radius: float, height: float, beacon: bool, eye:
     return left, top, min(eye[12], int(right) + 1.0), min(eye[13], int(bottom) + 1.0), cut
 
 
-@njit(cache=True)
+@compiled
 def project_all(positions: Array, sizes: Array, beacon: NDArray[np.bool_], eye: Array) -> Array:
     """Return the view of every cylinder, from near to far.
 

@@ -1,15 +1,16 @@
 """Frustum culling of spheres and boxes, compiled."""
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
+
+from compilation import compiled
 
 Array = NDArray[np.float64]
 Bools = NDArray[np.bool_]
 Ints = NDArray[np.intp]
 
 
-@njit(cache=True)
+@compiled
 def outside(
     positions: Array,
     eye: Array,

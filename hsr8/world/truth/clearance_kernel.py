@@ -3,14 +3,15 @@
 from math import sqrt
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
+
+from compilation import compiled
 
 Array = NDArray[np.float64]
 Ints = NDArray[np.intp]
 
 
-@njit(cache=True)
+@compiled
 def gap_bounds(
     positions: Array, obstacles: Ints, radii: Array, geoms: Ints, spheres: Array
 ) -> Array:
