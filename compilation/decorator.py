@@ -28,7 +28,7 @@ def compiled(function: Callable[P, R]) -> "Dispatcher[P, R]":
     """Compile a function of numbers, arrays and records at its first call, or load it from disk.
 
     Args:
-        function: function at the top level of a module; its code is not kept where it is in no file.
+        function: function at the top level of a module; the code of one typed in is not kept.
 
     Raises:
         TypeError: the function uses variables of an enclosing function, which the file on disk
