@@ -2,10 +2,9 @@
 
 import hashlib
 from collections.abc import Iterator
-from dataclasses import dataclass, fields
+from dataclasses import dataclass, fields, replace
 from itertools import islice
 from operator import attrgetter
-from typing import Any
 
 import numpy as np
 
@@ -14,8 +13,10 @@ from hsr8.decisions import DecisionContext
 from hsr8.errors import SimulationDiverged
 from hsr8.frame_record import FrameRecord
 from hsr8.loop import HASH
+from hsr8.recorder.columns import attributes
+from hsr8.recorder.frame_row import CONTEXT, DETECTION, FRAME, MEASURED
 from hsr8.recorder.recorded import FrameSampler, RecordedFrame
-from hsr8.recorder.rows import TABLES, FrameRow
+from hsr8.recorder.rows import TABLES
 from hsr8.recorder.run.run_reader import Run
 from hsr8.recorder.table import Table
 from hsr8.recorder.table_difference import first_cell
@@ -117,7 +118,7 @@ def replay_decisions(run: Run) -> tuple[Replayed, Replayed]:
         recorded = frames.rows(first, first + CHUNK)
         again = list(islice(computed, len(recorded)))
         row, stage, channel = len(again), "estimator", "order"
-        cell = first_cell(recorded, Table.from_objects("frames", FrameRow, again))
+        cell = first_cell(recorded, Table.from_objects("frames", FRAME, again))
         if cell is not None:
             row, channel = cell.row, cell.channel
             stage = "estimator" if cell.column in BELIEF else "decisions"
@@ -164,47 +165,17 @@ def _inputs(
 ) -> Iterator[tuple[tuple[Detection, ...], Frame, DecisionContext]]:
     """Yield the inputs of estimator and decisions of every frame."""
     items = frames["detections"]
-    columns = [_values(items[field.name]) for field in fields(Detection)]
-    detections = (Detection(*values) for values in zip(*columns, strict=True))
-    for row, count in enumerate(items.counts.tolist()):
+    detections = (Detection(**parts) for parts in attributes(DETECTION, items))
+    objects = (attributes(FRAME, frames, path) for path in (MEASURED, CONTEXT))
+    views = (attributes(FRAME, frames, f"{path}.view") for path in (MEASURED, CONTEXT))
+    for count, measured, context, capture, now in zip(
+        items.counts.tolist(), *objects, *views, strict=True
+    ):
         detected = tuple(islice(detections, count))
-        capture = _view(frames, row, "capture", "capture_", sight)
-        now = _view(frames, row, "camera", "", sight)
-        measured = Frame(
-            time=float(frames["captured"][row]),
-            odometry=frames["capture_odometry"][row],
-            motion_covariance=frames["motion_covariance"][row],
-            view=capture,
+        view = CameraView(**now, sight=sight)
+        frame = Frame(
+            **measured,
+            view=replace(view, **capture),
             observations=tuple(Observation(*_observed(detection)) for detection in detected),
         )
-        context = DecisionContext(
-            time=float(frames["time"][row]),
-            odometry=frames["odometry"][row],
-            view=now,
-            step_count=int(frames["step_count"][row]),
-        )
-        yield detected, measured, context
-
-
-def _view(frames: Table, row: int, camera: str, head: str, sight: Sight) -> CameraView:
-    pan, tilt = frames[f"{head}head"][row].tolist()
-    pan_rate, tilt_rate = frames[f"{head}head_rate"][row].tolist()
-    horizontal_fov, vertical_fov = frames["fov"][row].tolist()
-    return CameraView(
-        rotation=frames[f"{camera}_rotation"][row],
-        position=frames[f"{camera}_position"][row],
-        pan=pan,
-        tilt=tilt,
-        horizontal_fov=horizontal_fov,
-        vertical_fov=vertical_fov,
-        yaw_sigma=float(frames["yaw_sigma"][row]),
-        pan_rate=pan_rate,
-        tilt_rate=tilt_rate,
-        blind=bool(frames[f"{head}blind"][row]),
-        sight=sight,
-    )
-
-
-def _values(column: Any) -> list[Any]:
-    """Return the values of the rows of a column: Python objects, and arrays."""
-    return list(column) if column.ndim > 1 else column.tolist()
+        yield detected, frame, DecisionContext(**context, view=view)

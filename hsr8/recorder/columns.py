@@ -1,131 +1,131 @@
-"""Columns of a table, derived from a dataclass.
+"""Columns of a table: one line states the name, source, text, unit and shape of each.
 
-The class states everything once: the annotation of a field gives the type of its column, the
-docstring of the class its description, shape and unit: ``zmp: planned ZMP (2,) [m].`` The default
-of a field, `at` or `computed`, states where the value is in the recorded object, by default in the
-attribute of the same name. Columns are filled from the objects directly, without rows.
+Columns are filled from the recorded objects directly, without rows. A source that is a path of
+attributes works in both directions: `arrays_of` reads the attributes of recorded objects,
+`attributes` returns them from a table.
 
-A shape contains numbers, names of sizes that are constant in a run, like ``(joints,)``, and, at
+A shape contains numbers, names of sizes that are constant in a run, like ``("joints",)``, and, at
 the front only, ``n`` for a size that differs between rows.
 """
 
-import re
-from collections.abc import Callable, Iterable, Mapping, Sequence
-from dataclasses import dataclass, field, fields, is_dataclass
-from functools import cache
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, field
 from itertools import accumulate, chain
 from operator import attrgetter
-from types import MappingProxyType, NoneType, UnionType
-from typing import (
-    Any,
-    TypeVar,
-    Union,
-    cast,
-    dataclass_transform,
-    get_args,
-    get_origin,
-    get_type_hints,
-)
+from types import MappingProxyType
+from typing import Any
 
 import numpy as np
 import pyarrow as pa
 
-T = TypeVar("T")
+FLOAT, INT, SHADE = pa.float64(), pa.int64(), pa.uint8()
+BOOL, TEXT, BYTES = pa.bool_(), pa.string(), pa.binary()
+VARYING = "n"
 
-_ENTRY = re.compile(r"^((?:\w+, )*\w+): (.*)$")
-_SHAPE = re.compile(r"\(((?:\w+, ?)*\w+,?)\)")
-_UNIT = re.compile(r"\[([^\[\]]+)\]")
-_VARYING = "n"
-_SCALARS = {float: pa.float64(), int: pa.int64(), bool: pa.bool_(), bytes: pa.binary()}
+Source = str | tuple[str, ...] | Callable[[Any], Any]
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True)
 class Column:
     """Column of a table.
 
     Attributes:
-        name: of the field.
-        description: of the field, without its unit.
-        unit: empty for text, numbers of objects and truth values.
-        shape: of the value of a row; empty for a scalar.
-        type: Arrow type of one element.
-        optional: whether a row may lack a value.
-        source: returns the value of a recorded object.
-        items: class of the items of a column of lists of objects.
+        name: name of the column.
+        source: path of attributes to the value in a recorded object, paths to its elements, or a
+            function that returns the value.
+        text: description, without unit and shape.
+        unit: unit; empty for text, numbers of objects and truth values.
+        shape: shape of the value of a row; empty for a scalar.
+        type: Arrow type of one element; text for enumerations.
+        optional: whether a row may lack a value; a path that leads through None has none.
+        items: columns of the objects of a column of lists of objects, whose shape is (n,).
+        get: returns the value of a recorded object.
     """
 
     name: str
-    description: str
-    unit: str
-    shape: tuple[int | str, ...]
-    type: pa.DataType
-    optional: bool
-    source: Callable[[Any], Any]
-    items: type | None = None
+    source: Source
+    text: str
+    unit: str = ""
+    shape: tuple[int | str, ...] = ()
+    type: pa.DataType = FLOAT
+    optional: bool = False
+    items: "Row | None" = None
+    get: Callable[[Any], Any] = field(init=False, repr=False, compare=False)
+
+    def __post_init__(self) -> None:
+        """Compile the source; complete shape and type of a column of objects."""
+        object.__setattr__(self, "get", _getter(self.source, optional=self.optional))
+        if self.items is not None:
+            object.__setattr__(self, "shape", (VARYING,))
+            object.__setattr__(self, "type", pa.struct(list(schema_of(self.items))))
 
     @property
     def varying(self) -> bool:
         """Whether the number of elements differs between rows."""
-        return self.shape[:1] == (_VARYING,)
+        return self.shape[:1] == (VARYING,)
 
 
-def at(*paths: str) -> Any:
-    """Return a field with the value at a path of attributes, or the values at several."""
-    return computed(attrgetter(*paths))
+class Row:
+    """Columns of a table or of the objects in a column.
 
-
-def computed(source: Callable[[Any], Any]) -> Any:
-    """Return a field with the value that `source` returns for a recorded object."""
-    return field(metadata={"source": source})
-
-
-@dataclass_transform(kw_only_default=True, field_specifiers=(at, computed))
-def row(rows: type[T]) -> type[T]:
-    """Make a dataclass of columns, which is not instantiated."""
-    return dataclass(kw_only=True)(rows)
-
-
-def columns_of(rows: type) -> tuple[Column, ...]:
-    """Return the columns of a dataclass.
-
-    Raises:
-        TypeError: a field has no description, or no type that a column can have.
+    Args:
+        text: description of a row.
+        columns: its columns.
     """
-    return _columns_of(rows)
 
-
-@cache
-def _columns_of(rows: Any) -> tuple[Column, ...]:
-    texts, hints = _descriptions(rows), get_type_hints(rows)
-    return tuple(
-        _column(f.name, hints[f.name], texts, f.metadata.get("source") or attrgetter(f.name))
-        for f in fields(rows)
-    )
+    def __init__(self, text: str, *columns: Column) -> None:
+        self.text = text
+        self.columns = columns
 
 
 def schema_of(
-    rows: type,
+    row: Row,
     objects: Sequence[Any] = (),
     labels: Mapping[str, Sequence[str]] = MappingProxyType({}),
 ) -> pa.Schema:
-    """Return the Arrow schema of a dataclass, with units and descriptions in the metadata.
+    """Return the Arrow schema of a row, with units and descriptions in the metadata.
 
     Args:
-        rows: the dataclass.
+        row: the columns.
         objects: recorded objects, which have the sizes of named dimensions.
         labels: names of the elements of named dimensions.
     """
     sizes: dict[str, int] = {}
-    for column in columns_of(rows):
-        value = next((v for v in map(column.source, objects) if v is not None), None)
+    for column in row.columns:
+        value = next((v for v in map(column.get, objects) if v is not None), None)
         if value is not None and not column.varying:
             sizes |= zip(map(str, column.shape), np.shape(value), strict=True)
-    return pa.schema([_field(column, sizes, labels) for column in columns_of(rows)])
+    return pa.schema([_field(column, sizes, labels) for column in row.columns])
 
 
-def batch_of(rows: type, objects: Sequence[Any], schema: pa.Schema) -> pa.RecordBatch:
-    """Return recorded objects, at least one, as a record batch with the columns of `rows`."""
-    return pa.RecordBatch.from_arrays(_arrays(rows, objects, schema), schema=schema)
+def batch_of(row: Row, objects: Sequence[Any], schema: pa.Schema) -> pa.RecordBatch:
+    """Return recorded objects, at least one, as a record batch with the columns of a row."""
+    return pa.RecordBatch.from_arrays(_arrays(row, objects, schema), schema=schema)
+
+
+def attributes(row: Row, table: Mapping[str, Any], path: str = "") -> Iterator[dict[str, Any]]:
+    """Yield the attributes of the objects at `path`, one dictionary for each row of a table.
+
+    It is the inverse of `batch_of` for sources that are paths of attributes; columns of objects
+    are left out.
+
+    Args:
+        row: columns of the table.
+        table: the table.
+        path: path of attributes from the recorded objects; empty for those themselves.
+    """
+    values: dict[str, list[Any]] = {}
+    for column in row.columns:
+        sources = column.source if isinstance(column.source, tuple) else (column.source,)
+        for k, source in enumerate(sources):
+            if callable(source) or column.items is not None or source.rpartition(".")[0] != path:
+                continue
+            rows = table[column.name]
+            rows = rows[:, k] if isinstance(column.source, tuple) else rows
+            plain = isinstance(rows, np.ndarray) and rows.ndim == 1
+            values[source.rpartition(".")[2]] = rows.tolist() if plain else list(rows)
+    for numbers in zip(*values.values(), strict=True):
+        yield dict(zip(values, numbers, strict=True))
 
 
 def shape_of(field: pa.Field) -> tuple[int, ...]:
@@ -134,45 +134,21 @@ def shape_of(field: pa.Field) -> tuple[int, ...]:
     return tuple(int(size) for size in text.split(",") if size)
 
 
-def _descriptions(rows: type) -> dict[str, str]:
-    """Return the text of every attribute in the docstring of a class."""
-    _, _, section = (rows.__doc__ or "").partition("Attributes:\n")
-    entries: list[tuple[str, str]] = []
-    for line in section.splitlines():
-        entry = _ENTRY.match(line.strip()) if line.startswith(" " * 8) else None
-        if entry is not None and not line.startswith(" " * 9):
-            entries += [(name, entry[2]) for name in entry[1].split(", ")]
-            last = len(entry[1].split(", "))
-        elif line.strip() and entries:
-            entries[-last:] = [(name, f"{text} {line.strip()}") for name, text in entries[-last:]]
-    return dict(entries)
+def _getter(source: Source, *, optional: bool) -> Callable[[Any], Any]:
+    """Return the function that returns the value at a source."""
+    if callable(source):
+        return source
+    if not optional:
+        return attrgetter(source) if isinstance(source, str) else attrgetter(*source)
+    assert isinstance(source, str)
+    steps = [*map(attrgetter, source.split("."))]
 
+    def get(value: Any) -> Any:
+        for step in steps:
+            value = None if value is None else step(value)
+        return value
 
-def _column(name: str, hint: Any, texts: dict[str, str], source: Callable[[Any], Any]) -> Column:
-    if name not in texts:
-        raise TypeError(f"{name}: the docstring does not describe it")
-    text = texts[name]
-    optional = NoneType in get_args(hint)
-    if get_origin(hint) in (Union, UnionType):
-        hint = next(part for part in get_args(hint) if part is not NoneType)
-    unit, shapes = _UNIT.findall(text), _SHAPE.findall(text)
-    description = _UNIT.sub("", text).rstrip(". ").strip()
-    sizes: tuple[int | str, ...] = ()
-    items, type_ = None, _SCALARS.get(hint, pa.string())  # enumerations and literals are text
-    origin, arguments = get_origin(hint), get_args(hint)
-    if origin is np.ndarray:
-        if not shapes:
-            raise TypeError(f"{name}: the docstring does not give the shape of the array")
-        type_ = pa.from_numpy_dtype(get_args(arguments[1])[0])
-        sizes = tuple(int(s) if s.isdigit() else s for s in re.findall(r"\w+", shapes[-1]))
-    elif origin is not None and is_dataclass(arguments[0]):
-        items, sizes = cast(type, arguments[0]), (_VARYING,)
-        type_ = pa.struct(list(schema_of(items)))
-    elif origin is tuple:
-        type_ = _SCALARS.get(arguments[0], pa.string())
-        sizes = (_VARYING,) if arguments[-1] is Ellipsis else (len(arguments),)
-    unit_text = unit[-1] if unit else ""
-    return Column(name, description, unit_text, sizes, type_, optional, source, items)
+    return get
 
 
 def _field(
@@ -187,7 +163,7 @@ def _field(
         type_ = pa.list_(type_)
     metadata = {
         "unit": column.unit,
-        "description": column.description,
+        "description": column.text,
         "shape": ",".join(map(str, inner)),
     }
     if isinstance(size := next(iter(column.shape), None), str) and size in labels:
@@ -195,11 +171,11 @@ def _field(
     return pa.field(column.name, type_, metadata=metadata)
 
 
-def _arrays(rows: type, objects: Sequence[Any], fields_: Iterable[pa.Field]) -> list[pa.Array]:
+def _arrays(row: Row, objects: Sequence[Any], fields: Iterable[pa.Field]) -> list[pa.Array]:
     """Return the columns of recorded objects as Arrow arrays."""
     return [
-        _array([*map(column.source, objects)], column, field_.type)
-        for column, field_ in zip(columns_of(rows), fields_, strict=True)
+        _array([*map(column.get, objects)], column, field_.type)
+        for column, field_ in zip(row.columns, fields, strict=True)
     ]
 
 

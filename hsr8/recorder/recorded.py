@@ -10,7 +10,6 @@ from numpy.typing import NDArray
 
 from hsr8.frame_record import FrameRecord
 from hsr8.record import Tick
-from hsr8.recorder.rows import ImageRow, ParticleRow
 from hsr8.recorder.sampled_field import NO_FIELD, SampledField, sampled
 from hsr8.recorder.throttle import Throttle
 from navigation.belief.belief import Belief
@@ -24,8 +23,23 @@ HASH = 16  # bytes of the hash of a local map
 
 
 @value
+class RecordedParticle:
+    """Particle of a lost mover.
+
+    Attributes:
+        label: colour class of its track.
+        position: position in W (2,) [m].
+        weight: weight relative to the mean weight of the track [1].
+    """
+
+    label: str
+    position: Array
+    weight: float
+
+
+@value
 class RecordedFrame:
-    """Camera frame, the source of a row of `hsr8.recorder.rows.FrameRow`.
+    """Camera frame, the source of a row of ``frames``.
 
     Attributes:
         frame: detections, belief and decisions.
@@ -41,8 +55,25 @@ class RecordedFrame:
     gaze_map: NDArray[np.uint8] | None
     local_map: NDArray[np.uint8] | None
     map_hash: bytes | None
-    particles: tuple[ParticleRow, ...]
+    particles: tuple[RecordedParticle, ...]
     field: SampledField
+
+
+@value
+class RecordedImage:
+    """Image of the head camera, the source of a row of ``images``.
+
+    Attributes:
+        index: number of its frame.
+        time: time at which the frame reached the robot [s].
+        captured: time at which the image was taken [s].
+        jpeg: the image.
+    """
+
+    index: int
+    time: float
+    captured: float
+    jpeg: bytes
 
 
 class FrameSampler:
@@ -103,12 +134,12 @@ def objects_of(ticks: Sequence[Tick], sampler: FrameSampler) -> dict[str, Sequen
     }
 
 
-def image_row(frame: FrameRecord, quality: int) -> ImageRow:
+def image_row(frame: FrameRecord, quality: int) -> RecordedImage:
     """Return the row of the image of a frame, compressed with a `quality` [%]."""
     assert frame.image is not None
     bgr = cv2.cvtColor(frame.image, cv2.COLOR_RGB2BGR)
     jpeg = cv2.imencode(".jpg", bgr, [cv2.IMWRITE_JPEG_QUALITY, quality])[1].tobytes()
-    return ImageRow(frame.index, frame.time, frame.measured.time, jpeg)
+    return RecordedImage(frame.index, frame.time, frame.measured.time, jpeg)
 
 
 def confidence_shades(belief: Belief) -> NDArray[np.uint8]:
@@ -123,9 +154,9 @@ def _map_hash(belief: Belief) -> bytes:
     return state.digest()
 
 
-def _particles(belief: Belief) -> tuple[ParticleRow, ...]:
+def _particles(belief: Belief) -> tuple[RecordedParticle, ...]:
     return tuple(
-        ParticleRow(track.label, position, len(cloud.weights) * weight)
+        RecordedParticle(track.label, position, len(cloud.weights) * weight)
         for track in belief.tracks
         if (cloud := track.particles) is not None
         for position, weight in zip(cloud.positions, cloud.weights.tolist(), strict=True)

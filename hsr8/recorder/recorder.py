@@ -12,8 +12,8 @@ from hsr8.frame_record import FrameRecord
 from hsr8.record import Tick
 from hsr8.recorder.files.writing import writing
 from hsr8.recorder.log_level import LogRates
-from hsr8.recorder.recorded import FrameSampler, image_row, objects_of
-from hsr8.recorder.rows import TABLES, ImageRow
+from hsr8.recorder.recorded import FrameSampler, RecordedImage, image_row, objects_of
+from hsr8.recorder.rows import TABLES
 from hsr8.recorder.stream import CHECKSUMS, TableWriter
 from hsr8.recorder.table import Table
 from hsr8.recorder.throttle import Throttle
@@ -111,7 +111,7 @@ class Recorder:
         objects = objects_of(ticks, self._sampler)
         return {**objects, "images": self._image_rows([f.frame for f in objects["frames"]])}
 
-    def _image_rows(self, frames: Sequence[FrameRecord]) -> Iterable[ImageRow]:
+    def _image_rows(self, frames: Sequence[FrameRecord]) -> Iterable[RecordedImage]:
         """Return the rows of images, which are compressed in another thread."""
         if self._images is None or not self._images.jpeg:
             return ()

@@ -1,397 +1,318 @@
-"""Rows of the tables of a run: what is recorded, with units, and its source.
+"""Rows of the tables of a run: one line for each column with its source, text, unit and shape.
 
 Poses are those of the robot frame R: x, y, heading [m, m, rad]. W is the world frame. Quantities
 "in odometry" are in the odometry frame of the robot, which drifts.
 """
 
-from collections.abc import Callable, Sequence
-from operator import attrgetter
-from typing import Any
-
 import numpy as np
-from numpy.typing import NDArray
 
-from hsr8.record import Second
-from hsr8.recorder.columns import at, computed, row
-from hsr8.recorder.limit_bits import limit_bits, limited_command_of, limits_of
-from hsr8.world.truth.truth import ActivePush, Contact
-from navigation.decision import VirtualObstacle
-from vision.detection import Detection
-from walking.foothold import Foothold
-from walking.value import value
+from hsr8.record import Tick, TickRecord
+from hsr8.recorder.columns import BOOL, BYTES, INT, TEXT, VARYING, Column, Row
+from hsr8.recorder.frame_row import FRAME, POSE, POSE_COVARIANCE, VELOCITY, camera_columns
+from hsr8.recorder.limit_bits import limit_bits
+from walking.arrays import Array
 
-Array = NDArray[np.float64]
-Vector = Array | tuple[float, ...]
-Shades = NDArray[np.uint8]
+JOINTS = ("joints",)
+LIMITS = "active limits of the command, bit k for limit k of `walking.command_limits.Limit`"
+DEPTH = "distance of the planned ZMP from the edge of the soles, negative outside"
+PADS = "front-left, front-right, back-left and back-right"
 
 
-def _saturation(name: str) -> Callable[[Second], Any]:
-    """Return the source of a counter of saturation, which a body without dynamics lacks."""
-    counter = attrgetter(name)
-    return lambda second: None if second.saturation is None else counter(second.saturation)
+def _tick_limits(tick: Tick) -> int:
+    return limit_bits(tick.limits)
 
 
-@row
-class TickRow:
-    """Sensors, as the robot receives them, and setpoints of one control tick.
-
-    Attributes:
-        tick: number of the control tick.
-        time: simulated time [s].
-        joint_position: encoder angles (joints,) [rad].
-        joint_velocity: encoder rates (joints,) [rad/s].
-        gyro: angular velocity of the trunk in the IMU frame (3,) [rad/s].
-        accelerometer: specific force in the IMU frame (3,) [m/s²].
-        orientation: attitude of the IMU, quaternion w-x-y-z (4,) [1].
-        foot_force: force under the front-left, front-right, back-left and back-right pad of the
-            left and the right foot (2, 4) [N].
-        setpoint: of the servos; NaN in the last tick, whose setpoints are not sent (joints,) [rad].
-        limits: active limits of the command, bit k for limit k of `walking.command_limits.Limit`.
-        zmp_depth: distance of the planned ZMP from the edge of the soles, negative outside [m].
-        down: whether the robot lies or gets up.
-        walking_time: wall time of the walking engine, the only column that differs between
-            repeated runs [s].
-    """
-
-    tick: int = at("number")
-    time: float
-    joint_position: Array = at("sensors.joint_position")
-    joint_velocity: Array = at("sensors.joint_velocity")
-    gyro: Array = at("sensors.gyro")
-    accelerometer: Array = at("sensors.accelerometer")
-    orientation: Array = at("sensors.orientation")
-    foot_force: Array = at("sensors.foot_force")
-    setpoint: Array
-    limits: int = computed(lambda tick: limit_bits(tick.limits))
-    zmp_depth: float
-    down: bool
-    walking_time: float
+def _limits(record: TickRecord) -> int:
+    """Return the bits of the limits of the command, none without a report."""
+    report = record.walking.command_limits
+    return 0 if report is None else limit_bits(report.limits)
 
 
-@row
-class RecordRow:
-    """True state of the world and state of the walking engine, every 20 ms.
-
-    Attributes:
-        tick: number of the control tick.
-        time: simulated time [s].
-        qpos: true generalised position of the robot, MuJoCo order (nq,) [m, rad].
-        robot: true pose (3,) [m, m, rad].
-        obstacle_positions: axes of all obstacles in W, layout order (obstacles, 2) [m].
-        obstacle_velocities: of the axes in W (obstacles, 2) [m/s].
-        clearance: true distance of the robot to the nearest obstacle or beacon [m].
-        joint_torque: true torque (joints,) [N m].
-        foot_load: true normal force under the left and right foot (2,) [N].
-        cop: true centre of pressure under both feet in W, NaN when airborne (2,) [m].
-        fallen: whether the robot has fallen.
-        contacts: since the previous row.
-        pushes: active since the previous row.
-        phase: gait phase.
-        odometry: pose in odometry, heading unwrapped (3,) [m, m, rad].
-        odometry_covariance: of its error, see `walking.body.odometry` (3, 3) [m, rad].
-        camera_rotation: R_RC, columns are the camera's right, down and forward axes (3, 3) [1].
-        camera_position: p_RC (3,) [m].
-        head: measured pan and tilt (2,) [rad].
-        head_rate: measured rates of pan and tilt (2,) [rad/s].
-        head_target: commanded pan and tilt (2,) [rad].
-        command: commanded velocity vx, vy, wz (3,) [m/s, m/s, rad/s].
-        applied_velocity: velocity that the footsteps follow (3,) [m/s, m/s, rad/s].
-        limited_command: command that `limits` refer to, NaN before the first
-            (3,) [m/s, m/s, rad/s].
-        limits: active limits of the command, bit k for limit k of `walking.command_limits.Limit`.
-        footsteps: planned footholds in odometry, the support foot first.
-        step_count: completed steps.
-        zmp: planned zero-moment point in odometry (2,) [m].
-        com: planned centre of mass in odometry (2,) [m].
-        measured_com: measured centre of mass in odometry (2,) [m].
-        dcm: planned divergent component of motion in odometry (2,) [m].
-        measured_dcm: measured divergent component of motion in odometry (2,) [m].
-        support: corners of the planned support polygon in odometry, counter-clockwise (n, 2) [m].
-        zmp_depth: distance of the planned ZMP from the edge of the soles, negative outside [m].
-        feet: references of the left and right foot in odometry: x, y, height, yaw (2, 4) [m, rad].
-        capture: shift of the landing by the capture step in odometry (2,) [m].
-        roll, pitch: measured attitude of the trunk [rad].
-        believes_fallen: whether the robot believes that it has fallen.
-    """
-
-    tick: int
-    time: float
-    qpos: Array = at("truth.qpos")
-    robot: Array = at("truth.robot")
-    obstacle_positions: Array = at("truth.obstacle_positions")
-    obstacle_velocities: Array = at("truth.obstacle_velocities")
-    clearance: float = at("truth.clearance")
-    joint_torque: Array = at("truth.joint_torque")
-    foot_load: Array = at("truth.foot_force")
-    cop: Array = at("truth.zmp")
-    fallen: bool = at("truth.fallen")
-    contacts: tuple[Contact, ...] = at("truth.contacts")
-    pushes: tuple[ActivePush, ...] = at("truth.pushes")
-    phase: str = at("walking.phase")
-    odometry: Vector = at("walking.odometry.x", "walking.odometry.y", "walking.odometry.yaw")
-    odometry_covariance: Array = at("walking.odometry.covariance")
-    camera_rotation: Array = at("walking.camera.rotation")
-    camera_position: Array = at("walking.camera.position")
-    head: Vector = at("walking.camera.pan", "walking.camera.tilt")
-    head_rate: Vector = at("walking.camera.pan_rate", "walking.camera.tilt_rate")
-    head_target: Vector = at("head.pan", "head.tilt")
-    command: Vector = at("command.velocity")
-    applied_velocity: Array = at("walking.applied_velocity")
-    limited_command: Vector = computed(limited_command_of)
-    limits: int = computed(limits_of)
-    footsteps: tuple[Foothold, ...] = at("walking.footsteps")
-    step_count: int = at("walking.step_count")
-    zmp: Array = at("walking.zmp")
-    com: Array = at("walking.balance.com")
-    measured_com: Array = at("walking.com")
-    dcm: Array = at("walking.dcm")
-    measured_dcm: Array = at("walking.balance.dcm")
-    support: Array = at("walking.balance.support")
-    zmp_depth: float = at("walking.balance.zmp_depth")
-    feet: Array = at("walking.balance.feet")
-    capture: Array = at("walking.balance.capture")
-    roll: float = at("walking.roll")
-    pitch: float = at("walking.pitch")
-    believes_fallen: bool = at("walking.fallen")
+def _limited_command(record: TickRecord) -> Array | tuple[float, ...]:
+    """Return the command before its limits (3,) [m/s, m/s, rad/s], NaN without a report."""
+    report = record.walking.command_limits
+    return np.full(3, np.nan) if report is None else report.commanded.velocity
 
 
-@row
-class TrackRow:
-    """Believed obstacle.
+TICK = Row(
+    "Sensors, as the robot receives them, and setpoints of one control tick.",
+    Column("tick", "number", "number of the control tick", type=INT),
+    Column("time", "time", "simulated time", "s"),
+    Column("joint_position", "sensors.joint_position", "encoder angles", "rad", JOINTS),
+    Column("joint_velocity", "sensors.joint_velocity", "encoder rates", "rad/s", JOINTS),
+    Column("gyro", "sensors.gyro", "angular velocity of the trunk in the IMU frame", "rad/s", (3,)),
+    Column(
+        "accelerometer", "sensors.accelerometer", "specific force in the IMU frame", "m/s²", (3,)
+    ),
+    Column(
+        "orientation", "sensors.orientation", "attitude of the IMU, quaternion w-x-y-z", "1", (4,)
+    ),
+    Column(
+        "foot_force",
+        "sensors.foot_force",
+        f"force under the {PADS} pad of the left and the right foot",
+        "N",
+        (2, 4),
+    ),
+    Column(
+        "setpoint",
+        "setpoint",
+        "setpoints of the servos; NaN in the last tick, whose setpoints are not sent",
+        "rad",
+        JOINTS,
+    ),
+    Column("limits", _tick_limits, LIMITS, type=INT),
+    Column("zmp_depth", "zmp_depth", DEPTH, "m"),
+    Column("down", "down", "whether the robot lies or gets up", type=BOOL),
+    Column(
+        "walking_time",
+        "walking_time",
+        "wall time of the walking engine, the only column that differs between repeated runs",
+        "s",
+    ),
+)
 
-    Attributes:
-        id: number, unique in a run.
-        label: colour class.
-        position: in W (2,) [m].
-        velocity: in W (2,) [m/s].
-        covariance: of x, y, vx, vy (4, 4) [m, m/s].
-        radius: of its cylinder [m].
-        radius_sigma: standard deviation of `radius` [m].
-        motion: static, moving or unknown.
-        hits: number of detections.
-        age: time from its last detection to the capture [s].
-        last_seen: position of its last detection in W (2,) [m].
-        visible: whether it was detected in this frame.
-        lost: whether particles represent it.
-        reach: radius of the disc around `last_seen` that it can have reached [m].
-        turn_rate: left positive [rad/s].
-    """
+CONTACT = Row(
+    "Contact of the robot with an obstacle or a beacon.",
+    Column("obstacle", "obstacle", "number in the layout: obstacles, then beacons", type=INT),
+    Column("name", "name", "name of the obstacle or beacon, for people", type=TEXT),
+    Column("moving", "moving", "whether it is a mover", type=BOOL),
+    Column("robot_geom", "robot_geom", "name of the geom of the robot, or of its body", type=TEXT),
+    Column("force", "force", "normal force", "N"),
+    Column("closing", "closing", "whether the motion of the robot closed the gap", type=BOOL),
+)
 
-    id: int
-    label: str
-    position: Array
-    velocity: Array
-    covariance: Array
-    radius: float
-    radius_sigma: float
-    motion: str
-    hits: int
-    age: float
-    last_seen: Array
-    visible: bool
-    lost: bool = computed(lambda track: track.particles is not None)
-    reach: float
-    turn_rate: float
+PUSH = Row(
+    "Push that acts on the robot.",
+    Column("number", "number", "number of the push in its run", type=INT),
+    Column("begin", "begin", "start of the push", "s"),
+    Column("duration", "duration", "total duration", "s"),
+    Column("body", "body", "name of the pushed body", type=TEXT),
+    Column(
+        "direction",
+        "direction",
+        "direction from the heading of the robot at the start, counter-clockwise",
+        "rad",
+    ),
+    Column("point", "point", "point of the force in W", "m", (3,)),
+    Column("force", "force", "force in W", "N", (3,)),
+)
 
+FOOTHOLD = Row(
+    "Planned pose of a foot on the floor.",
+    Column("left", "left", "whether it is the left foot", type=BOOL),
+    Column("x", "x", "position of the foot frame", "m"),
+    Column("y", "y", "position of the foot frame", "m"),
+    Column("yaw", "yaw", "yaw of the foot", "rad"),
+)
 
-@value
-class ParticleRow:
-    """Particle of a lost mover.
+RECORD = Row(
+    "True state of the world and state of the walking engine, every 20 ms.",
+    Column("tick", "tick", "number of the control tick", type=INT),
+    Column("time", "time", "simulated time", "s"),
+    Column(
+        "qpos",
+        "truth.qpos",
+        "true generalised position of the robot, MuJoCo order",
+        "m, rad",
+        ("nq",),
+    ),
+    Column("robot", "truth.robot", "true pose", POSE, (3,)),
+    Column(
+        "obstacle_positions",
+        "truth.obstacle_positions",
+        "axes of all obstacles in W, layout order",
+        "m",
+        ("obstacles", 2),
+    ),
+    Column(
+        "obstacle_velocities",
+        "truth.obstacle_velocities",
+        "velocities of the axes in W",
+        "m/s",
+        ("obstacles", 2),
+    ),
+    Column(
+        "clearance",
+        "truth.clearance",
+        "true distance of the robot to the nearest obstacle or beacon",
+        "m",
+    ),
+    Column("joint_torque", "truth.joint_torque", "true torque", "N m", JOINTS),
+    Column(
+        "foot_load",
+        "truth.foot_force",
+        "true normal force under the left and right foot",
+        "N",
+        (2,),
+    ),
+    Column(
+        "cop",
+        "truth.zmp",
+        "true centre of pressure under both feet in W, NaN when airborne",
+        "m",
+        (2,),
+    ),
+    Column("fallen", "truth.fallen", "whether the robot has fallen", type=BOOL),
+    Column("contacts", "truth.contacts", "contacts since the previous row", items=CONTACT),
+    Column("pushes", "truth.pushes", "pushes active since the previous row", items=PUSH),
+    Column("phase", "walking.phase", "gait phase", type=TEXT),
+    Column(
+        "odometry",
+        ("walking.odometry.x", "walking.odometry.y", "walking.odometry.yaw"),
+        "pose in odometry, heading unwrapped",
+        POSE,
+        (3,),
+    ),
+    Column(
+        "odometry_covariance",
+        "walking.odometry.covariance",
+        "covariance of its error, see `walking.body.odometry`",
+        POSE_COVARIANCE,
+        (3, 3),
+    ),
+    *camera_columns("walking.camera", "", "camera", "head"),
+    Column("head_target", ("head.pan", "head.tilt"), "commanded pan and tilt", "rad", (2,)),
+    Column("command", "command.velocity", "commanded velocity vx, vy, wz", VELOCITY, (3,)),
+    Column(
+        "applied_velocity",
+        "walking.applied_velocity",
+        "velocity that the footsteps follow",
+        VELOCITY,
+        (3,),
+    ),
+    Column(
+        "limited_command",
+        _limited_command,
+        "command that `limits` refer to, NaN before the first",
+        VELOCITY,
+        (3,),
+    ),
+    Column("limits", _limits, LIMITS, type=INT),
+    Column(
+        "footsteps",
+        "walking.footsteps",
+        "planned footholds in odometry, the support foot first",
+        items=FOOTHOLD,
+    ),
+    Column("step_count", "walking.step_count", "completed steps", type=INT),
+    Column("zmp", "walking.zmp", "planned zero-moment point in odometry", "m", (2,)),
+    Column("com", "walking.balance.com", "planned centre of mass in odometry", "m", (2,)),
+    Column("measured_com", "walking.com", "measured centre of mass in odometry", "m", (2,)),
+    Column("dcm", "walking.dcm", "planned divergent component of motion in odometry", "m", (2,)),
+    Column(
+        "measured_dcm",
+        "walking.balance.dcm",
+        "measured divergent component of motion in odometry",
+        "m",
+        (2,),
+    ),
+    Column(
+        "support",
+        "walking.balance.support",
+        "corners of the planned support polygon in odometry, counter-clockwise",
+        "m",
+        (VARYING, 2),
+    ),
+    Column("zmp_depth", "walking.balance.zmp_depth", DEPTH, "m"),
+    Column(
+        "feet",
+        "walking.balance.feet",
+        "references of the left and right foot in odometry: x, y, height, yaw",
+        "m, rad",
+        (2, 4),
+    ),
+    Column(
+        "capture",
+        "walking.balance.capture",
+        "shift of the landing by the capture step in odometry",
+        "m",
+        (2,),
+    ),
+    Column("roll", "walking.roll", "measured roll of the trunk", "rad"),
+    Column("pitch", "walking.pitch", "measured pitch of the trunk", "rad"),
+    Column(
+        "believes_fallen",
+        "walking.fallen",
+        "whether the robot believes that it has fallen",
+        type=BOOL,
+    ),
+)
 
-    Attributes:
-        label: colour class of its track.
-        position: in W (2,) [m].
-        weight: relative to the mean weight of the track [1].
-    """
+SECOND = Row(
+    "Hashes of the state and saturation of the servos so far, every second and at the end.",
+    Column("tick", "tick", "number of the next control tick", type=INT),
+    Column("time", "time", "simulated time", "s"),
+    Column("world", "world", "hash of the state of the world", type=BYTES),
+    Column("robot", "robot", "hash of the state of the world and the belief", type=BYTES),
+    Column(
+        "torque_saturated",
+        "saturation.torque_any",
+        "ticks with a joint at its maximum torque",
+        type=INT,
+        optional=True,
+    ),
+    Column(
+        "torque_saturated_by",
+        "saturation.torque_ticks",
+        "ticks at the maximum torque, by joint",
+        "1",
+        JOINTS,
+        INT,
+        optional=True,
+    ),
+    Column(
+        "at_stop",
+        "saturation.stop_any",
+        "ticks with a joint at the end of its range",
+        type=INT,
+        optional=True,
+    ),
+    Column(
+        "at_stop_by",
+        "saturation.stop_ticks",
+        "ticks at the end of the range, by joint",
+        "1",
+        JOINTS,
+        INT,
+        optional=True,
+    ),
+    Column(
+        "peak_torque",
+        "saturation.peak_torque",
+        "peak torque over maximum torque",
+        "1",
+        JOINTS,
+        optional=True,
+    ),
+    Column("peak_speed", "saturation.peak_speed", "peak speed", "rad/s", JOINTS, optional=True),
+)
 
-    label: str
-    position: Array
-    weight: float
+EVENT = Row(
+    "Event.",
+    Column("time", "time", "simulated time", "s"),
+    Column(
+        "kind",
+        "kind",
+        "fault, push, collision, fall, via_point, goal, lost, relocalized or diverged",
+        type=TEXT,
+    ),
+    Column("text", "text", "description", type=TEXT),
+)
 
+IMAGE = Row(
+    "Image of the head camera.",
+    Column("index", "index", "number of its frame", type=INT),
+    Column("time", "time", "time at which the frame reached the robot", "s"),
+    Column("captured", "captured", "time at which the image was taken", "s"),
+    Column("jpeg", "jpeg", "the image", type=BYTES),
+)
 
-@row
-class FrameRow:
-    """Detections, belief and decisions of one camera frame.
-
-    The local map, the particles and the field are recorded about once per second, the gaze map when
-    it is new.
-
-    Attributes:
-        index: number of the frame.
-        time: when the frame reached the robot [s].
-        captured: when the image was taken [s].
-        capture_odometry: pose in odometry at the capture (3,) [m, m, rad].
-        motion_covariance: of the motion since the previous frame (3, 3) [m, rad].
-        capture_rotation: R_RC at the capture (3, 3) [1].
-        capture_position: p_RC at the capture (3,) [m].
-        capture_head: measured pan and tilt at the capture (2,) [rad].
-        capture_head_rate: measured rates of pan and tilt at the capture (2,) [rad/s].
-        capture_blind: whether the camera turned too fast at the capture to see anything.
-        detections: in the image.
-        odometry: pose in odometry at `time` (3,) [m, m, rad].
-        camera_rotation: R_RC at `time` (3, 3) [1].
-        camera_position: p_RC at `time` (3,) [m].
-        head: measured pan and tilt at `time` (2,) [rad].
-        head_rate: measured rates of pan and tilt at `time` (2,) [rad/s].
-        blind: whether the camera turned too fast at `time`.
-        fov: horizontal and vertical field of view (2,) [rad].
-        yaw_sigma: standard deviation of the camera's yaw [rad].
-        step_count: completed steps at `time`.
-        pose: believed pose at `time` (3,) [m, m, rad].
-        pose_covariance: of `pose` (3, 3) [m, rad].
-        lost: whether localization reports being lost.
-        filter_faults: re-initializations of the pose filter so far.
-        seen_beacons: names of the beacons in the frame.
-        tracks: believed obstacles.
-        target: destination in W (2,) [m].
-        target_heading: heading to arrive with [rad].
-        is_goal: whether the target is the goal, not a via point.
-        via_points: passed so far.
-        aligning: whether the robot is at the goal and turns to its heading.
-        done: whether the mission is finished.
-        planned: whether the motion was decided in this frame.
-        first_plan: whether no earlier motion was in force.
-        velocity: decided velocity vx, vy, wz in R (3,) [m/s, m/s, rad/s].
-        direction: of motion in W [rad].
-        speed: along `direction` [m/s].
-        situation: outcome of velocity modification.
-        virtual_obstacles: in the field.
-        gaze: decided pan and tilt (2,) [rad].
-        stabilized: whether the gaze keeps its direction in W while the body turns.
-        body_direction: direction in W that the body turns to for a fixed camera [rad].
-        psi: partial evaluations of local map, self, obstacle and way (4,) [1].
-        gaze_map: gaze map GM in 255 shades of its maximum, from below and from the right
-            (tilts, pans) [1].
-        local_map: confidence in 255 shades, from minimum y and minimum x (rows, columns) [1].
-        map_hash: hash of the whole local map, recorded with it.
-        map_origin: corner of minimum x and y of the local map in W (2,) [m].
-        map_cell: side of a cell of the local map [m].
-        particles: of lost movers.
-        field_points: points in W at which the direction field is sampled (n, 2) [m].
-        field_directions: unit vectors there (n, 2) [1].
-        field_path: path along the field in W (n, 2) [m].
-    """
-
-    index: int = at("frame.index")
-    time: float = at("frame.time")
-    captured: float = at("frame.measured.time")
-    capture_odometry: Array = at("frame.measured.odometry")
-    motion_covariance: Array = at("frame.measured.motion_covariance")
-    capture_rotation: Array = at("frame.measured.view.rotation")
-    capture_position: Array = at("frame.measured.view.position")
-    capture_head: Vector = at("frame.measured.view.pan", "frame.measured.view.tilt")
-    capture_head_rate: Vector = at("frame.measured.view.pan_rate", "frame.measured.view.tilt_rate")
-    capture_blind: bool = at("frame.measured.view.blind")
-    detections: tuple[Detection, ...] = at("frame.detections")
-    odometry: Array = at("frame.context.odometry")
-    camera_rotation: Array = at("frame.context.view.rotation")
-    camera_position: Array = at("frame.context.view.position")
-    head: Vector = at("frame.context.view.pan", "frame.context.view.tilt")
-    head_rate: Vector = at("frame.context.view.pan_rate", "frame.context.view.tilt_rate")
-    blind: bool = at("frame.context.view.blind")
-    fov: Vector = at("frame.context.view.horizontal_fov", "frame.context.view.vertical_fov")
-    yaw_sigma: float = at("frame.context.view.yaw_sigma")
-    step_count: int = at("frame.context.step_count")
-    pose: Array = at("frame.decision.belief.pose")
-    pose_covariance: Array = at("frame.decision.belief.pose_covariance")
-    lost: bool = at("frame.decision.belief.lost")
-    filter_faults: int = at("frame.decision.belief.filter_faults")
-    seen_beacons: tuple[str, ...] = at("frame.decision.belief.seen_beacons")
-    tracks: Sequence[TrackRow] = at("frame.decision.belief.tracks")
-    target: Array = at("frame.decision.task.target")
-    target_heading: float = at("frame.decision.task.heading")
-    is_goal: bool = at("frame.decision.task.is_goal")
-    via_points: int = at("frame.decision.task.index")
-    aligning: bool = at("frame.decision.task.aligning")
-    done: bool = at("frame.decision.task.done")
-    planned: bool
-    first_plan: bool = at("frame.decision.fresh")
-    velocity: Array = at("frame.decision.motion.velocity")
-    direction: float = at("frame.decision.motion.direction")
-    speed: float = at("frame.decision.motion.speed")
-    situation: str = at("frame.decision.motion.situation")
-    virtual_obstacles: tuple[VirtualObstacle, ...] = at("frame.decision.motion.virtual_obstacles")
-    gaze: Vector = at("frame.decision.gaze.pan", "frame.decision.gaze.tilt")
-    stabilized: bool = at("frame.decision.gaze.stabilized")
-    body_direction: float | None = at("frame.decision.gaze.body_direction")
-    psi: Vector = at(*(f"frame.decision.gaze.psi_{name}" for name in ("lm", "sf", "ob", "way")))
-    gaze_map: Shades | None
-    local_map: Shades | None
-    map_hash: bytes | None
-    map_origin: Vector = at("frame.decision.belief.local_map.origin")
-    map_cell: float = at("frame.decision.belief.local_map.cell")
-    particles: Sequence[ParticleRow]
-    field_points: Array = at("field.points")
-    field_directions: Array = at("field.directions")
-    field_path: Array = at("field.path")
-
-
-@row
-class SecondRow:
-    """Hashes of the state and saturation of the servos so far, every second and at the end.
-
-    Attributes:
-        tick: number of the next control tick.
-        time: simulated time [s].
-        world: hash of the state of the world.
-        robot: hash of the state of the world and the belief.
-        torque_saturated: ticks with a joint at its maximum torque.
-        torque_saturated_by: the same by joint (joints,) [1].
-        at_stop: ticks with a joint at the end of its range.
-        at_stop_by: the same by joint (joints,) [1].
-        peak_torque: peak torque over maximum torque (joints,) [1].
-        peak_speed: peak speed (joints,) [rad/s].
-    """
-
-    tick: int
-    time: float
-    world: bytes
-    robot: bytes
-    torque_saturated: int | None = computed(_saturation("torque_any"))
-    torque_saturated_by: NDArray[np.int64] | None = computed(_saturation("torque_ticks"))
-    at_stop: int | None = computed(_saturation("stop_any"))
-    at_stop_by: NDArray[np.int64] | None = computed(_saturation("stop_ticks"))
-    peak_torque: Array | None = computed(_saturation("peak_torque"))
-    peak_speed: Array | None = computed(_saturation("peak_speed"))
-
-
-@value
-class EventRow:
-    """Event.
-
-    Attributes:
-        time: simulated time [s].
-        kind: fault, push, collision, fall, via_point, goal, lost, relocalized or diverged.
-        text: description.
-    """
-
-    time: float
-    kind: str
-    text: str
-
-
-@value
-class ImageRow:
-    """Image of the head camera.
-
-    Attributes:
-        index: number of its frame.
-        time: when the frame reached the robot [s].
-        captured: when the image was taken [s].
-        jpeg: the image.
-    """
-
-    index: int
-    time: float
-    captured: float
-    jpeg: bytes
-
-
-TABLES: dict[str, type[Any]] = {
-    "ticks": TickRow,
-    "records": RecordRow,
-    "frames": FrameRow,
-    "seconds": SecondRow,
-    "events": EventRow,
-    "images": ImageRow,
+TABLES = {
+    "ticks": TICK,
+    "records": RECORD,
+    "frames": FRAME,
+    "seconds": SECOND,
+    "events": EVENT,
+    "images": IMAGE,
 }

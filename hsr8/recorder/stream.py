@@ -15,7 +15,7 @@ from typing import Any, BinaryIO
 import pyarrow as pa
 
 from hsr8.errors import UsageError
-from hsr8.recorder.columns import batch_of, schema_of
+from hsr8.recorder.columns import Row, batch_of, schema_of
 from hsr8.recorder.files.writing import writing
 from hsr8.recorder.table import Table
 
@@ -31,7 +31,7 @@ class TableWriter:
     Args:
         folder: of the run.
         name: of the table.
-        rows: class of its rows.
+        row: its columns.
         labels: names of the elements of each named dimension, such as the joints.
         checksums: open file of the checksums.
 
@@ -46,13 +46,13 @@ class TableWriter:
         self,
         folder: Path,
         name: str,
-        rows: type,
+        row: Row,
         labels: Mapping[str, Sequence[str]],
         checksums: BinaryIO,
     ) -> None:
         self._folder = folder
         self._name = name
-        self._rows = rows
+        self._row = row
         self._labels = labels
         self._checksums = checksums
         self._sink = io.BytesIO()  # joins the many small pieces that Arrow writes
@@ -64,10 +64,10 @@ class TableWriter:
         """Append recorded objects, at least one, and return their rows as a table."""
         with writing(self._folder):
             if self._file is None:
-                self._schema = schema_of(self._rows, objects, self._labels)
+                self._schema = schema_of(self._row, objects, self._labels)
                 self._file = io.FileIO(self._folder / f"{self._name}{SUFFIX}", "w")
                 self._writer = pa.ipc.new_stream(self._sink, self._schema, options=WRITE)
-            batch = batch_of(self._rows, objects, self._schema)
+            batch = batch_of(self._row, objects, self._schema)
             self._writer.write_batch(batch)
             self.count += len(objects)
             self._write_part(self._file)
@@ -98,19 +98,19 @@ class TableWriter:
         self._checksums.flush()
 
 
-def read_table(path: Path, rows: type, *, whole: bool) -> Table:
+def read_table(path: Path, row: Row, *, whole: bool) -> Table:
     """Read a table; one without a file has no rows.
 
     Args:
         path: file.
-        rows: class of its rows.
+        row: its columns.
         whole: refuse a file that is cut off, which that of a killed run may be.
 
     Raises:
         UsageError: the file cannot be read or is damaged.
     """
     if not path.exists():
-        return Table(path.stem, schema_of(rows).empty_table())
+        return Table(path.stem, schema_of(row).empty_table())
     try:
         content = path.read_bytes()
         lines = (path.parent / CHECKSUMS).read_text().splitlines(keepends=True)
@@ -135,6 +135,6 @@ def read_table(path: Path, rows: type, *, whole: bool) -> Table:
     if whole:
         raise UsageError(f"{path}: cut off after {count} rows")
     if not size:
-        return Table(path.stem, schema_of(rows).empty_table())
+        return Table(path.stem, schema_of(row).empty_table())
     with pa.ipc.open_stream(content[:size], options=READ) as reader:
         return Table(path.stem, pa.Table.from_batches(reader, reader.schema))

@@ -9,7 +9,7 @@ import pyarrow as pa
 from numpy.typing import NDArray
 
 from hsr8.errors import UsageError
-from hsr8.recorder.columns import batch_of, schema_of, shape_of
+from hsr8.recorder.columns import Row, batch_of, schema_of, shape_of
 from hsr8.suggestion import suggestion
 
 NO_LABELS: Mapping[str, Sequence[str]] = MappingProxyType({})
@@ -42,20 +42,20 @@ class Table(Mapping[str, Any]):
     @staticmethod
     def from_objects(
         name: str,
-        rows: type,
+        row: Row,
         objects: Sequence[Any],
         labels: Mapping[str, Sequence[str]] = NO_LABELS,
     ) -> "Table":
-        """Return recorded objects as a table with the columns of the dataclass `rows`.
+        """Return recorded objects as a table with the columns of a row.
 
         Args:
             name: of the table.
-            rows: dataclass.
+            row: the columns.
             objects: recorded objects.
             labels: names of the elements of named dimensions.
         """
-        schema = schema_of(rows, objects, labels)
-        batches = [batch_of(rows, objects, schema)] if objects else []
+        schema = schema_of(row, objects, labels)
+        batches = [batch_of(row, objects, schema)] if objects else []
         return Table(name, pa.Table.from_batches(batches, schema))
 
     @staticmethod

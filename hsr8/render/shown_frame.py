@@ -7,8 +7,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from hsr8.frame_record import FrameRecord
+from hsr8.recorder.frame_row import FRAME
 from hsr8.recorder.recorded import FrameSampler
-from hsr8.recorder.rows import FrameRow
 from hsr8.recorder.run.run_reader import Run
 from hsr8.recorder.table import Table
 
@@ -119,7 +119,7 @@ def shown_frames(run: Run, times: Array) -> tuple[ShownFrame, ...]:
 
 def shown_frame(frame: FrameRecord, robot: Array) -> ShownFrame:
     """Return one camera frame with the true pose (3,) of the robot."""
-    frames = Table.from_objects("frames", FrameRow, [FrameSampler().sample(frame)])
+    frames = Table.from_objects("frames", FRAME, [FrameSampler().sample(frame)])
     return _shown(frames, robot[None], _gaze_maps(frames, np.array([0])))[0]
 
 

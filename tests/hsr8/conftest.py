@@ -11,7 +11,6 @@ import pytest
 from hsr8.decisions import Decision, DecisionContext
 from hsr8.frame_record import FrameRecord
 from hsr8.record import TickRecord
-from hsr8.recorder.columns import batch_of, schema_of
 from hsr8.recorder.recorded import FrameSampler
 from hsr8.recorder.rows import TABLES
 from hsr8.recorder.stream import CHECKSUMS
@@ -274,10 +273,7 @@ def rewrite():
 
 
 def _table(name, objects):
-    rows = TABLES[name]
-    schema = schema_of(rows, objects, {"joints": JOINT_NAMES})
-    batches = [batch_of(rows, objects, schema)] if objects else []
-    return Table(name, pa.Table.from_batches(batches, schema))
+    return Table.from_objects(name, TABLES[name], objects, {"joints": JOINT_NAMES})
 
 
 @pytest.fixture(scope="session")

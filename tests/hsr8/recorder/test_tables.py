@@ -1,14 +1,16 @@
 """Tables of a run: rows out are rows in, at any cut a readable rest, damage located."""
 
 import resource
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, fields, replace
+from types import SimpleNamespace
+from typing import Any
 
 import numpy as np
 import pytest
 from numpy.typing import NDArray
 
 from hsr8.errors import RecordingFailed, UsageError
-from hsr8.recorder.columns import columns_of
+from hsr8.recorder.columns import BYTES, INT, SHADE, TEXT, Column, Row, attributes
 from hsr8.recorder.rows import TABLES
 from hsr8.recorder.stream import CHECKSUMS, TableWriter, read_table
 
@@ -17,33 +19,12 @@ Array = NDArray[np.float64]
 
 @dataclass
 class Part:
-    """Part of a row.
-
-    Attributes:
-        name: of the part.
-        place: of the part (2,) [m].
-    """
-
     name: str
     place: Array
 
 
 @dataclass
-class Row:
-    """Row of a table.
-
-    Attributes:
-        time: simulated time [s].
-        count: number of things.
-        angle: of the joints (joints,) [rad].
-        outline: of something (n, 2) [m].
-        parts: of something.
-        labels: of something.
-        guess: may be missing [m].
-        image: may be missing (rows, columns) [1].
-        state: content.
-    """
-
+class Thing:
     time: float
     count: int
     angle: Array
@@ -53,12 +34,35 @@ class Row:
     guess: float | None
     image: NDArray[np.uint8] | None
     state: bytes
+    pair: Any
+
+
+PART = Row(
+    "Part of a thing.",
+    Column("name", "name", "name of the part", type=TEXT),
+    Column("place", "place", "place of the part", "m", (2,)),
+)
+THING = Row(
+    "Thing.",
+    Column("time", "time", "simulated time", "s"),
+    Column("count", "count", "number of things", type=INT),
+    Column("angle", "angle", "angles of the joints", "rad", ("joints",)),
+    Column("outline", "outline", "outline of something", "m", ("n", 2)),
+    Column("parts", "parts", "parts of something", items=PART),
+    Column("labels", "labels", "labels of something", shape=("n",), type=TEXT),
+    Column("guess", "guess", "guess, which may be missing", "m", optional=True),
+    Column("image", "image", "shades", "1", ("rows", "columns"), SHADE, optional=True),
+    Column("state", "state", "content", type=BYTES),
+    Column("sides", ("pair.left", "pair.right"), "left and right side", "m", (2,)),
+    Column("middle", "pair.middle.value", "middle, which may be missing", "m", optional=True),
+    Column("sum", lambda thing: thing.pair.left + thing.pair.right, "sum of the sides", "m"),
+)
 
 
 def rows(n, seed=0):
     rng = np.random.default_rng(seed)
     return [
-        Row(
+        Thing(
             time=0.1 * k,
             count=k,
             angle=rng.normal(size=3),
@@ -68,6 +72,11 @@ def rows(n, seed=0):
             guess=None if k % 2 else 0.5 * k,
             image=rng.integers(0, 255, (2, 5)).astype(np.uint8) if k % 3 == 0 else None,
             state=bytes([k % 256]),
+            pair=SimpleNamespace(
+                left=0.1 * k,
+                right=-0.2 * k,
+                middle=SimpleNamespace(value=0.3 * k) if k % 2 else None,
+            ),
         )
         for k in range(n)
     ]
@@ -80,7 +89,7 @@ def write_all(writer, content, size=7):
 
 def written(folder, content):
     checksums = (folder / CHECKSUMS).open("wb")
-    writer = TableWriter(folder, "things", Row, {"joints": ("hip", "knee", "ankle")}, checksums)
+    writer = TableWriter(folder, "things", THING, {"joints": ("hip", "knee", "ankle")}, checksums)
     write_all(writer, content)
     writer.close()
     checksums.close()
@@ -107,11 +116,17 @@ def check(table, content):
     assert np.array_equal(images, [row.image for row in content if row.image is not None])
     assert np.array_equal(np.isnan(table["guess"]), [row.guess is None for row in content])
     assert [*table["state"]] == [row.state for row in content]
+    assert [*map(tuple, table["sides"])] == [(row.pair.left, row.pair.right) for row in content]
+    middles = [row.pair.middle for row in content]
+    chosen, values = table.present("middle")
+    assert chosen.tolist() == [k for k, middle in enumerate(middles) if middle is not None]
+    assert values.tolist() == [middle.value for middle in middles if middle is not None]
+    assert table["sum"].tolist() == [row.pair.left + row.pair.right for row in content]
 
 
 def test_rows_out_are_rows_in(tmp_path):
     content = rows(30)
-    table = read_table(written(tmp_path, content), Row, whole=True)
+    table = read_table(written(tmp_path, content), THING, whole=True)
     check(table, content)
     check(table.rows(4, 19), content[4:19])
     check(table.window(0.5, 1.2), content[5:13])
@@ -125,17 +140,34 @@ def test_rows_out_are_rows_in(tmp_path):
     assert table["parts"].unit("place") == "m"
 
 
+def test_attributes_are_the_inverse_of_the_columns_at_every_path(tmp_path):
+    content = rows(9)
+    table = read_table(written(tmp_path, content), THING, whole=True)
+    things = [*attributes(THING, table)]
+    parts = [Part(**part) for part in attributes(PART, table["parts"])]
+    assert [part.name for part in parts] == [part.name for row in content for part in row.parts]
+    for row, thing in zip(content, things, strict=True):
+        assert {*thing} == {field.name for field in fields(Thing)} - {"parts", "pair"}
+        assert thing["time"] == row.time
+        assert type(thing["count"]) is int
+        assert np.array_equal(thing["angle"], row.angle)
+        assert np.array_equal(thing["outline"], row.outline)
+        assert thing["state"] == row.state
+    pairs = [*attributes(THING, table, "pair")]
+    assert pairs == [{"left": row.pair.left, "right": row.pair.right} for row in content]
+
+
 def test_a_table_cut_off_at_any_byte_keeps_its_whole_batches(tmp_path):
     content = rows(21)
     file = written(tmp_path, content)
     whole, lengths = file.read_bytes(), set()
     for size in (*range(0, len(whole), 97), len(whole) - 1):
         file.write_bytes(whole[:size])
-        table = read_table(file, Row, whole=False)
+        table = read_table(file, THING, whole=False)
         check(table, content[: len(table)])
         lengths.add(len(table))
         with pytest.raises(UsageError, match=r"things\.arrows: cut off after \d+ rows"):
-            read_table(file, Row, whole=True)
+            read_table(file, THING, whole=True)
     assert lengths == {0, 7, 14, 21}
 
 
@@ -146,14 +178,14 @@ def test_checksums_cut_off_at_any_byte_lose_the_last_batches_only(tmp_path):
     whole = checksums.read_bytes()
     for size in range(len(whole)):
         checksums.write_bytes(whole[:size])
-        table = read_table(file, Row, whole=False)
+        table = read_table(file, THING, whole=False)
         check(table, content[: 7 * min(3, whole[:size].count(b"\n"))])
 
 
 @pytest.mark.parametrize("size", [100, 3000, 7001])
 def test_a_full_disk_is_one_error_and_the_whole_batches_stay(tmp_path, size):
     content, lines = rows(70), (tmp_path / CHECKSUMS).open("wb")
-    writer = TableWriter(tmp_path, "things", Row, {}, lines)
+    writer = TableWriter(tmp_path, "things", THING, {}, lines)
     limits = resource.getrlimit(resource.RLIMIT_FSIZE)
     resource.setrlimit(resource.RLIMIT_FSIZE, (size, limits[1]))
     try:
@@ -164,7 +196,7 @@ def test_a_full_disk_is_one_error_and_the_whole_batches_stay(tmp_path, size):
     writer.close()  # with room again
     lines.close()
     assert (tmp_path / "things.arrows").stat().st_size == size
-    check(read_table(tmp_path / "things.arrows", Row, whole=False), content[: writer.count - 7])
+    check(read_table(tmp_path / "things.arrows", THING, whole=False), content[: writer.count - 7])
 
 
 def test_a_damaged_table_is_refused_with_the_rows(tmp_path):
@@ -173,32 +205,34 @@ def test_a_damaged_table_is_refused_with_the_rows(tmp_path):
     for k in range(0, len(whole), 61):
         file.write_bytes(whole[:k] + bytes([whole[k] ^ 0x5A]) + whole[k + 1 :])
         with pytest.raises(UsageError, match=r"things\.arrows: damaged in rows \d+ to \d+"):
-            read_table(file, Row, whole=bool(k % 2))
+            read_table(file, THING, whole=bool(k % 2))
 
 
 def test_a_column_may_have_no_elements(tmp_path):
     content = [replace(row, angle=np.empty(0)) for row in rows(9)]
-    check(read_table(written(tmp_path, content), Row, whole=True), content)
+    check(read_table(written(tmp_path, content), THING, whole=True), content)
 
 
 def test_an_unknown_column_is_an_error_with_a_suggestion(tmp_path):
-    table = read_table(written(tmp_path, rows(3)), Row, whole=True)
+    table = read_table(written(tmp_path, rows(3)), THING, whole=True)
     with pytest.raises(UsageError, match=r"unknown column 'angel'.*angle"):
         table["angel"]
 
 
 @pytest.mark.parametrize("name", TABLES)
 def test_every_column_has_a_description_and_every_quantity_a_unit(name):
-    for column in columns_of(TABLES[name]):
-        assert column.description
+    columns = [*TABLES[name].columns]
+    for column in columns:  # and those of the objects in columns
+        assert column.text
         if str(column.type) == "double":
             assert column.unit, column.name
+        columns += () if column.items is None else column.items.columns
 
 
 @pytest.mark.parametrize("name", TABLES)
 def test_a_table_without_rows_has_all_columns(name, tmp_path):
     table = read_table(tmp_path / f"{name}.arrows", TABLES[name], whole=True)
     assert len(table) == 0
-    assert [*table] == [column.name for column in columns_of(TABLES[name])]
+    assert [*table] == [column.name for column in TABLES[name].columns]
     for column in table:
         assert len(table[column]) == 0

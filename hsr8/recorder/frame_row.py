@@ -1,0 +1,261 @@
+"""Row of a camera frame: detections, belief and decisions, with the objects in its columns."""
+
+from hsr8.recorder.columns import BOOL, BYTES, INT, SHADE, TEXT, VARYING, Column, Row
+
+POSE, VELOCITY, POSE_COVARIANCE = "m, m, rad", "m/s, m/s, rad/s", "m, rad"
+MEASURED, CONTEXT = "frame.measured", "frame.context"
+BELIEF, TASK, MOTION, GAZE = (
+    f"frame.decision.{part}" for part in ("belief", "task", "motion", "gaze")
+)
+
+
+def camera_columns(path: str, when: str, camera: str, head: str) -> tuple[Column, ...]:
+    """Return the columns of the pose of the camera and the head.
+
+    Args:
+        path: path of attributes to the view.
+        when: end of the descriptions.
+        camera: beginning of the names of rotation and position.
+        head: name of pan and tilt, and beginning of that of their rates.
+    """
+    pan_tilt, rates = (f"{path}.pan", f"{path}.tilt"), (f"{path}.pan_rate", f"{path}.tilt_rate")
+    axes = f"R_RC{when}, columns are the camera's right, down and forward axes"
+    return (
+        Column(f"{camera}_rotation", f"{path}.rotation", axes, "1", (3, 3)),
+        Column(f"{camera}_position", f"{path}.position", f"p_RC{when}", "m", (3,)),
+        Column(head, pan_tilt, f"measured pan and tilt{when}", "rad", (2,)),
+        Column(f"{head}_rate", rates, f"measured rates of pan and tilt{when}", "rad/s", (2,)),
+    )
+
+
+DETECTION = Row(
+    "Cylinder detected in an image, in the robot frame R at the capture.",
+    Column("kind", "kind", "obstacle or beacon", type=TEXT),
+    Column(
+        "label",
+        "label",
+        "colour class of an obstacle; ``top/bottom`` colour classes of a beacon",
+        type=TEXT,
+    ),
+    Column("bearing", "bearing", "direction of the axis, counter-clockwise from x of R", "rad"),
+    Column("distance", "distance", "horizontal distance of the axis from the origin of R", "m"),
+    Column(
+        "covariance", "covariance", "covariance of (distance, bearing)", "m², m rad, rad²", (2, 2)
+    ),
+    Column("radius", "radius", "radius of the cylinder", "m"),
+    Column("radius_sigma", "radius_sigma", "standard deviation of `radius`", "m"),
+    Column(
+        "by_radius",
+        "by_radius",
+        "partial derivatives of (distance, bearing) with respect to the radius",
+        "1, rad/m",
+        (2,),
+    ),
+    Column(
+        "cut", "cut", "whether the blob touches the border of the image or the self mask", type=BOOL
+    ),
+    Column("occluded", "occluded", "whether the cylinder is partly occluded", type=BOOL),
+    Column(
+        "box",
+        "box",
+        "left, top, right, bottom pixel of the blob, right and bottom exclusive",
+        shape=(4,),
+        type=INT,
+    ),
+)
+
+TRACK = Row(
+    "Believed obstacle.",
+    Column("id", "id", "number, unique in a run", type=INT),
+    Column("label", "label", "colour class", type=TEXT),
+    Column("position", "position", "position in W", "m", (2,)),
+    Column("velocity", "velocity", "velocity in W", "m/s", (2,)),
+    Column("covariance", "covariance", "covariance of x, y, vx, vy", "m, m/s", (4, 4)),
+    Column("radius", "radius", "radius of its cylinder", "m"),
+    Column("radius_sigma", "radius_sigma", "standard deviation of `radius`", "m"),
+    Column("motion", "motion", "static, moving or unknown", type=TEXT),
+    Column("hits", "hits", "number of detections", type=INT),
+    Column("age", "age", "time from its last detection to the capture", "s"),
+    Column("last_seen", "last_seen", "position of its last detection in W", "m", (2,)),
+    Column("visible", "visible", "whether it was detected in this frame", type=BOOL),
+    Column(
+        "lost",
+        lambda track: track.particles is not None,
+        "whether particles represent it",
+        type=BOOL,
+    ),
+    Column("reach", "reach", "radius of the disc around `last_seen` that it can have reached", "m"),
+    Column("turn_rate", "turn_rate", "turn rate, left positive", "rad/s"),
+)
+
+VIRTUAL_OBSTACLE = Row(
+    "Dynamic virtual obstacle (Yoo & Kim, eq. (11)).",
+    Column("position", "position", "p_vo in W", "m", (2,)),
+    Column("radius", "radius", "R_vo", "m"),
+    Column("track_id", "track_id", "number of the track of its mover", type=INT),
+)
+
+PARTICLE = Row(
+    "Particle of a lost mover.",
+    Column("label", "label", "colour class of its track", type=TEXT),
+    Column("position", "position", "position in W", "m", (2,)),
+    Column("weight", "weight", "weight relative to the mean weight of the track", "1"),
+)
+
+FRAME = Row(
+    "Detections, belief and decisions of one camera frame. The local map, the particles and the "
+    "field are recorded about once per second, the gaze map when it is new.",
+    Column("index", "frame.index", "number of the frame", type=INT),
+    Column("time", f"{CONTEXT}.time", "time at which the frame reached the robot", "s"),
+    Column("captured", f"{MEASURED}.time", "time at which the image was taken", "s"),
+    Column(
+        "capture_odometry", f"{MEASURED}.odometry", "pose in odometry at the capture", POSE, (3,)
+    ),
+    Column(
+        "motion_covariance",
+        f"{MEASURED}.motion_covariance",
+        "covariance of the motion since the previous frame",
+        POSE_COVARIANCE,
+        (3, 3),
+    ),
+    *camera_columns(f"{MEASURED}.view", " at the capture", "capture", "capture_head"),
+    Column(
+        "capture_blind",
+        f"{MEASURED}.view.blind",
+        "whether the camera turned too fast at the capture to see anything",
+        type=BOOL,
+    ),
+    Column("detections", "frame.detections", "detections in the image", items=DETECTION),
+    Column("odometry", f"{CONTEXT}.odometry", "pose in odometry at `time`", POSE, (3,)),
+    *camera_columns(f"{CONTEXT}.view", " at `time`", "camera", "head"),
+    Column(
+        "blind", f"{CONTEXT}.view.blind", "whether the camera turned too fast at `time`", type=BOOL
+    ),
+    Column(
+        "fov",
+        (f"{CONTEXT}.view.horizontal_fov", f"{CONTEXT}.view.vertical_fov"),
+        "horizontal and vertical field of view",
+        "rad",
+        (2,),
+    ),
+    Column(
+        "yaw_sigma", f"{CONTEXT}.view.yaw_sigma", "standard deviation of the camera's yaw", "rad"
+    ),
+    Column("step_count", f"{CONTEXT}.step_count", "completed steps at `time`", type=INT),
+    Column("pose", f"{BELIEF}.pose", "believed pose at `time`", POSE, (3,)),
+    Column(
+        "pose_covariance",
+        f"{BELIEF}.pose_covariance",
+        "covariance of `pose`",
+        POSE_COVARIANCE,
+        (3, 3),
+    ),
+    Column("lost", f"{BELIEF}.lost", "whether localization reports being lost", type=BOOL),
+    Column(
+        "filter_faults",
+        f"{BELIEF}.filter_faults",
+        "re-initializations of the pose filter so far",
+        type=INT,
+    ),
+    Column(
+        "seen_beacons",
+        f"{BELIEF}.seen_beacons",
+        "names of the beacons in the frame",
+        shape=(VARYING,),
+        type=TEXT,
+    ),
+    Column("tracks", f"{BELIEF}.tracks", "believed obstacles", items=TRACK),
+    Column("target", f"{TASK}.target", "destination in W", "m", (2,)),
+    Column("target_heading", f"{TASK}.heading", "heading to arrive with", "rad"),
+    Column(
+        "is_goal", f"{TASK}.is_goal", "whether the target is the goal, not a via point", type=BOOL
+    ),
+    Column("via_points", f"{TASK}.index", "number of via points passed so far", type=INT),
+    Column(
+        "aligning",
+        f"{TASK}.aligning",
+        "whether the robot is at the goal and turns to its heading",
+        type=BOOL,
+    ),
+    Column("done", f"{TASK}.done", "whether the mission is finished", type=BOOL),
+    Column("planned", "planned", "whether the motion was decided in this frame", type=BOOL),
+    Column(
+        "first_plan", "frame.decision.fresh", "whether no earlier motion was in force", type=BOOL
+    ),
+    Column("velocity", f"{MOTION}.velocity", "decided velocity vx, vy, wz in R", VELOCITY, (3,)),
+    Column("direction", f"{MOTION}.direction", "direction of motion in W", "rad"),
+    Column("speed", f"{MOTION}.speed", "speed along `direction`", "m/s"),
+    Column("situation", f"{MOTION}.situation", "outcome of velocity modification", type=TEXT),
+    Column(
+        "virtual_obstacles",
+        f"{MOTION}.virtual_obstacles",
+        "virtual obstacles in the field",
+        items=VIRTUAL_OBSTACLE,
+    ),
+    Column("gaze", (f"{GAZE}.pan", f"{GAZE}.tilt"), "decided pan and tilt", "rad", (2,)),
+    Column(
+        "stabilized",
+        f"{GAZE}.stabilized",
+        "whether the gaze keeps its direction in W while the body turns",
+        type=BOOL,
+    ),
+    Column(
+        "body_direction",
+        f"{GAZE}.body_direction",
+        "direction in W that the body turns to for a fixed camera",
+        "rad",
+        optional=True,
+    ),
+    Column(
+        "psi",
+        (f"{GAZE}.psi_lm", f"{GAZE}.psi_sf", f"{GAZE}.psi_ob", f"{GAZE}.psi_way"),
+        "partial evaluations of local map, self, obstacle and way",
+        "1",
+        (4,),
+    ),
+    Column(
+        "gaze_map",
+        "gaze_map",
+        "gaze map GM in 255 shades of its maximum, from below and from the right",
+        "1",
+        ("tilts", "pans"),
+        SHADE,
+        optional=True,
+    ),
+    Column(
+        "local_map",
+        "local_map",
+        "confidence in 255 shades, from minimum y and minimum x",
+        "1",
+        ("rows", "columns"),
+        SHADE,
+        optional=True,
+    ),
+    Column(
+        "map_hash",
+        "map_hash",
+        "hash of the whole local map, recorded with it",
+        type=BYTES,
+        optional=True,
+    ),
+    Column(
+        "map_origin",
+        f"{BELIEF}.local_map.origin",
+        "corner of minimum x and y of the local map in W",
+        "m",
+        (2,),
+    ),
+    Column("map_cell", f"{BELIEF}.local_map.cell", "side of a cell of the local map", "m"),
+    Column("particles", "particles", "particles of lost movers", items=PARTICLE),
+    Column(
+        "field_points",
+        "field.points",
+        "points in W at which the direction field is sampled",
+        "m",
+        (VARYING, 2),
+    ),
+    Column(
+        "field_directions", "field.directions", "unit vectors at `field_points`", "1", (VARYING, 2)
+    ),
+    Column("field_path", "field.path", "path along the field in W", "m", (VARYING, 2)),
+)
