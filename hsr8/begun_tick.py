@@ -19,17 +19,19 @@ class BegunTick:
     Attributes:
         seconds: states with hashes at its start.
         sensed: sensor readings.
-        targets: setpoints of the walking engine.
+        targets: setpoints of the walking engine; None if its plan diverged.
         walking_time: wall time of the walking engine [s].
         situation: that the robot decides in; None without a decision.
+        diverged: reason why the plan diverged; empty if it did not.
         motion, gaze: decisions that replace those of the robot.
     """
 
     seconds: list[Second]
     sensed: SensorFrame
-    targets: JointTargets
+    targets: JointTargets | None
     walking_time: float
     situation: Situation | None
+    diverged: str = ""
     motion: MotionDecision | None = None
     gaze: GazeDecision | None = None
 

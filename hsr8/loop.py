@@ -37,6 +37,7 @@ from hsr8.world.camera.rendered import RenderedCamera
 from hsr8.world.field.generator import draw_world
 from hsr8.world.model.index import ModelIndex
 from hsr8.world.truth.truth import Truth
+from walking.engine import PlanDiverged
 from walking.parameters import CONTROL_PERIOD
 from walking.phase import Phase
 from walking.targets import JointTargets
@@ -292,13 +293,17 @@ class Simulation:
         number, robot = self.tick, self._robot
         seconds = [self._mark()] if number % TICKS_PER_SECOND == 0 else []
         sensed = self._sense(number)
+        targets, diverged = None, ""
         started = perf_counter()
-        targets = robot.walk(sensed)
+        try:
+            targets = robot.walk(sensed)
+        except PlanDiverged as error:
+            diverged = f"{error}, at tick {number} (t = {self._body.time:.3f} s)"
         walking_time = perf_counter() - started
-        situation = robot.perceive(sensed)
+        situation = None if diverged else robot.perceive(sensed)
         if number % self._record_ticks == 0:
             self.truth = self._body.truth()
-        return BegunTick(seconds, sensed, targets, walking_time, situation)
+        return BegunTick(seconds, sensed, targets, walking_time, situation, diverged)
 
     def _complete(self, begun: BegunTick) -> Tick:
         number, seconds, targets = self.tick, begun.seconds, begun.targets
@@ -307,7 +312,10 @@ class Simulation:
         walker, setpoint = self._robot.walking, self._not_sent
         record, events = self._record(number)
         reason = self._reason(number)
-        if not reason:
+        if targets is None:
+            reason = "diverged"
+            events.append(Event(self._body.time, reason, begun.diverged))
+        elif not reason:
             targets = self._servo_faults.apply_fault(targets, number)
             setpoint = self._body.setpoints(targets).copy()
             reason, diverged = self._apply(targets)

@@ -38,6 +38,11 @@ from walking.state import WalkingState
 from walking.targets import JointTargets
 
 SAME_HEIGHT = 1e-9  # rounding error of swing heights [m]
+DIVERGED = 1e6  # distance of the pendulum from the support foot per length of the leg [1]
+
+
+class PlanDiverged(Exception):
+    """The planned motion diverged: the pendulum left the feet, and no walk can follow it."""
 
 
 class WalkingEngine:
@@ -144,6 +149,10 @@ class WalkingEngine:
 
         Returns:
             setpoints of all joints.
+
+        Raises:
+            PlanDiverged: the planned centre of mass is far from the feet, since the sensors
+                contradict the plan for long.
         """
         tilt = self._sense(sensors)
         error = self._estimation.dcm_error
@@ -159,6 +168,7 @@ class WalkingEngine:
         region = polygon.region(self._parameters.pattern.sole_margin)
         ramps = placement.decide(wanted, steering.velocity, error, region, moving=steering.moving)
         self._capture.advance(ramps, placement.landing, region)
+        self._require_bounded()
         zmp = pendulum.zmp
         load = self._right_load(region, zmp)
         polygon.update(gait.support_feet)
@@ -305,6 +315,14 @@ class WalkingEngine:
             force = self._estimation.load(gait.swing)
             if self._touch.update(gait.swing_phase, force) and gait.swing_phase < 1.0:
                 gait.touchdown()
+
+    def _require_bounded(self) -> None:
+        pendulum, foot = self._pendulum, self._gait.footholds[self._gait.support]
+        distance = max(abs(pendulum.x - foot.x), abs(pendulum.y - foot.y))
+        if not distance < DIVERGED * self._robot.legs[0].length:
+            raise PlanDiverged(
+                f"the planned walk diverged: the centre of mass is {distance:.3g} m from the feet"
+            )
 
     def _right_load(self, region: SupportRegion, zmp: Point) -> float:
         """Return the planned load fraction of the right foot [1]."""

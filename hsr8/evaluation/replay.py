@@ -80,10 +80,12 @@ def replay_physics(run: Run) -> Replayed:
     layout = draw_layout(scenario, run.seed)
     body = build_body(scenario, run.seed, layout, build_model(scenario, layout))
     setpoints = run.ticks["setpoint"]
-    if len(setpoints) and np.isnan(setpoints[-1]).all():
-        setpoints = setpoints[:-1]  # those of the last tick are not sent
+    sent = not (len(setpoints) and np.isnan(setpoints[-1]).all())
+    if not sent:
+        setpoints = setpoints[:-1]
     due = run.seconds["tick"].tolist()
-    diverged = run.manifest.get("exit_reason") == "diverged"
+    # A plan that diverges sends no setpoints.
+    diverged = sent and run.manifest.get("exit_reason") == "diverged"
     if diverged and due:
         due[-1] += 1  # the hash follows the tick that diverged, which is not counted
     ticks = 0

@@ -29,6 +29,7 @@ SLIP = 0.0003  # per axis [m]
 YAW_SLIP = 0.0006  # about the vertical [rad]
 LANDED = 0.0005  # the swing foot becomes the stance foot when lower than it by this [m]
 LIFTED = 0.001  # a foot higher than the other one by this carries no load [m]
+TILTED = 0.001  # a foot in contact that tilts more than the other one by this carries no load [rad]
 BOTH = 2
 # Fractions of the weight on the left and the right foot: left, right, double support.
 LOAD_FRACTIONS = np.array([[1.0, 0.0], [0.0, 1.0], [0.5, 0.5]])
@@ -175,17 +176,32 @@ class KinematicBody:
         pose = data.qpos[root : root + 7]
         pose[:] = ORIGIN
         mujoco.mj_kinematics(self.model, data)
-        self._set_base(pose)
-        if self._other_sole[3] < -self._landed:
+        if self._lands(*self._set_base(pose)):
             self._stance = 1 - self._stance
             slip = self._slip_rng.standard_normal(3) * self._slip
             self._anchor = self._other_sole[:3] + slip
             self._set_base(pose)
         self._support = BOTH if self._other_sole[3] < self._lifted else self._stance
 
-    def _set_base(self, pose: Array) -> None:
+    def _lands(self, tilt: float, height: float) -> bool:
+        """Return whether the other foot becomes the stance foot.
+
+        A foot whose ankle is at the limit of a joint is not parallel to the floor. If the other
+        foot is in contact, too, it carries the robot: the trunk does not tip over the tilted one.
+
+        Args:
+            tilt: of the planted sole against that of the other one, see `base_pose` [rad].
+            height: of the other sole above the planted one, see `base_pose` [m].
+        """
+        if tilt > TILTED:
+            return height < self._lifted
+        lower = float(self._other_sole[3])
+        return lower < -(self._lifted if tilt < -TILTED else self._landed)
+
+    def _set_base(self, pose: Array) -> tuple[float, float]:
+        """Set the base over the planted foot; return how the soles lie, see `base_pose`."""
         data = self.data
-        base_pose(
+        return base_pose(
             data.xpos,
             data.xquat,
             self._feet,

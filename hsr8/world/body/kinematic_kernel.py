@@ -3,7 +3,7 @@
 A pose is x, y, z and the quaternion w-x-y-z of the attitude (7,) [m].
 """
 
-from math import atan2, cos, sin, sqrt
+from math import asin, atan2, cos, sin, sqrt
 
 import numpy as np
 from numpy.typing import NDArray
@@ -57,7 +57,7 @@ def base_pose(
     anchor: Array,
     pose: Array,
     other: Array,
-) -> None:
+) -> tuple[float, float]:
     """Set the base pose with which the planted foot lies flat on the floor at its anchor.
 
     Args:
@@ -69,6 +69,10 @@ def base_pose(
         anchor: x, y and yaw of the planted foot in W (3,) [m, m, rad].
         pose: set to the pose of the base in W (7,).
         other: set to x, y, yaw and height of the other sole in W (4,) [m, m, rad, m].
+
+    Returns:
+        tilt of the planted sole against the base, minus that of the other sole [rad]; height of
+        the other sole above the planted one if the other one lay flat [m].
     """
     sole_positions = [(0.0, 0.0, 0.0), (0.0, 0.0, 0.0)]
     sole_attitudes = [(1.0, 0.0, 0.0, 0.0), (1.0, 0.0, 0.0, 0.0)]
@@ -89,6 +93,16 @@ def base_pose(
     x_axis = _rotate(_product(base, sole_attitudes[1 - stance]), (1.0, 0.0, 0.0))
     other[0], other[1] = pose[0] + offset[0], pose[1] + offset[1]
     other[2], other[3] = atan2(x_axis[1], x_axis[0]), pose[2] + offset[2]
+    w, x, y, z = sole_attitudes[1 - stance]
+    (ax, ay, az), (bx, by, bz) = sole_positions[stance], sole_positions[1 - stance]
+    apart = _rotate((w, -x, -y, -z), (bx - ax, by - ay, bz - az))
+    return _tilt(sole_attitudes[stance]) - _tilt(sole_attitudes[1 - stance]), apart[2]
+
+
+@njit(cache=True)
+def _tilt(q: Quaternion) -> float:
+    """Return the angle between the vertical axes of a frame and its parent [rad]."""
+    return 2.0 * asin(min(1.0, sqrt(q[1] * q[1] + q[2] * q[2])))
 
 
 @compiled

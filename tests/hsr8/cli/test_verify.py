@@ -202,6 +202,21 @@ def test_a_diverged_run_diverges_again_at_the_same_tick(tmp_path, monkeypatch, r
     assert entry(["verify", str(run.path)]) == 1
 
 
+def test_a_planned_walk_that_diverges_ends_the_run_with_its_time(tmp_path, capsys):
+    """The robot believes that it leans: it steps aside faster and faster."""
+    leaning = ["--set", "sensors.roll_bias=0.3", "--seed", "0", "--duration", "4", "--no-log"]
+    assert entry([*RUN[:-2], *leaning, "--quiet", "--out", str(tmp_path)]) == 3
+    shown = capsys.readouterr()
+    assert "the planned walk diverged" in shown.err
+    assert "Traceback" not in shown.err
+    run = open_run(tmp_path)
+    assert (run.manifest["exit_reason"], run.events["kind"][-1]) == ("diverged", "diverged")
+    assert run.events["time"][-1] == pytest.approx(run.ticks["time"][-1])
+    assert np.isnan(run.ticks["setpoint"][-1]).all()
+    assert entry(["verify", str(run.path), "--json"]) == 0
+    assert stages(capsys)["physics"]["count"] == len(run.ticks) - 1
+
+
 def test_physics_that_diverges_only_in_the_replay_is_different(run, monkeypatch, capsys):
     def diverging(self, targets):
         raise SimulationDiverged("the physics diverged")

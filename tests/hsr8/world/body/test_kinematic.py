@@ -35,6 +35,18 @@ def test_joints_follow_their_targets_and_the_stance_foot_stays(world, silent):
         assert abs(body.data.site("hsr8/l_foot").xpos[2]) < 1e-9
 
 
+def test_the_trunk_stays_upright_over_the_foot_in_contact_that_lies_flat(world, silent):
+    """The foot that lifts next cannot keep its sole on the floor: its ankle is at a joint limit."""
+    body = body_in(world, silent)
+    position = body.sense().joint_position.copy()
+    for ankle in (5, 11, 5):
+        for change in (*(20 * [0.002]), *(20 * [-0.002])):
+            position[ankle] += change
+            body.apply(JointTargets(position.copy(), position.copy()))
+            _, x, y, _ = body.truth().qpos[3:7]
+            assert 2.0 * np.hypot(x, y) < 0.003
+
+
 def test_a_robot_falls_when_its_joints_tip_it_over(world, silent):
     body = body_in(world, silent)
     position = body.sense().joint_position.copy()
