@@ -99,7 +99,7 @@ def base_pose(
     return _tilt(sole_attitudes[stance]) - _tilt(sole_attitudes[1 - stance]), apart[2]
 
 
-@njit(cache=True)
+@compiled
 def _tilt(q: Quaternion) -> float:
     """Return the angle between the vertical axes of a frame and its parent [rad]."""
     return 2.0 * asin(min(1.0, sqrt(q[1] * q[1] + q[2] * q[2])))
