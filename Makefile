@@ -39,12 +39,11 @@ types: setup  ## mypy, strict
 layers: setup  ## import rules
 	@.venv/bin/lint-imports --no-logo
 
-fix: setup  ## ruff fixes and formatting; regenerate docs/scenarios.md, docs/data.md and hsr8/kernels.txt
+fix: setup  ## ruff fixes and formatting; regenerate docs/scenarios.md and docs/data.md
 	@$(PY) -m ruff check --fix $(SOURCES)
 	@$(PY) -m ruff format $(SOURCES)
 	@$(PY) scripts/write_scenario_reference.py
 	@$(PY) scripts/write_data_reference.py
-	@$(PY) scripts/write_kernel_list.py
 
 lock:  ## resolve the dependencies into requirements.lock (needs the network)
 	@bash scripts/lock.sh $(ARGS)

@@ -78,8 +78,8 @@ if ! gl_draws && ! { apt_install libegl1 libgl1 && gl_draws; }; then
 fi
 
 "$venv/bin/python" -c '
-from hsr8.cli.kernel_progress import compile_announced
-compile_announced(quiet=False)'
+from hsr8.cli.first_compilation import compile_all
+compile_all(quiet=False)'
 
 echo "$fingerprint" >"$stamp"
 say "ready after $((SECONDS - started)) s"

@@ -42,7 +42,11 @@ class Finding:
 
 def main(options: Doctor) -> int:
     """Report the findings; 0 where a full run can be made, else 2."""
-    findings = [*examine(), *damaged_code(), *([_kernels(options)] if options.compile else [])]
+    findings = [
+        *examine(),
+        *damaged_code(),
+        *([_compiled_code(options)] if options.compile else []),
+    ]
     if options.json:
         print(atomic.dumps({"findings": [asdict(finding) for finding in findings]}))
     else:
@@ -120,16 +124,16 @@ def damaged_code() -> list[Finding]:
     return [Finding("compiled code", "note", text)]
 
 
-def _kernels(options: Doctor) -> Finding:
-    """Compile the kernels that are not on disk."""
-    from hsr8.cli.kernel_progress import compile_announced  # noqa: PLC0415  loads Numba
+def _compiled_code(options: Doctor) -> Finding:
+    """Compile the functions that are not on disk."""
+    from hsr8.cli.first_compilation import compile_all  # noqa: PLC0415  loads MuJoCo
 
     started = perf_counter()
-    compiled = compile_announced(quiet=options.json)
+    compiled = compile_all(quiet=options.json)
     text = "all compiled before"
     if compiled:
-        text = f"{compiled} compiled in {perf_counter() - started:.0f} s"
-    return Finding("kernels", "ok", text)
+        text = f"compiled in {perf_counter() - started:.0f} s"
+    return Finding("compiled code", "ok", text)
 
 
 def _models() -> Finding:

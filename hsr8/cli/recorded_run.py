@@ -8,7 +8,7 @@ from types import FrameType
 
 from hsr8.cli import report
 from hsr8.cli.crash import crash_report
-from hsr8.cli.kernel_progress import compile_announced
+from hsr8.cli.first_compilation import two_processes
 from hsr8.cli.options import Run
 from hsr8.cli.output_file import writing
 from hsr8.cli.progress import Progress
@@ -18,7 +18,6 @@ from hsr8.evaluation.recording import Recording, Result, renderer_of
 from hsr8.evaluation.verdict import exit_code
 from hsr8.export.bag import require_rosbags, write_bag
 from hsr8.gl import require_gl
-from hsr8.kernel_compilation import CompilationWatch
 from hsr8.loop import Simulation
 from hsr8.recorder.files import atomic
 from hsr8.recorder.log_level import LogLevel
@@ -50,7 +49,7 @@ def start(options: Run, scenario: Scenario, log: LogLevel | None, command: Seque
         require_rosbags()
     if options.video:
         require_gl()
-    with CompilationWatch(lambda: compile_announced(quiet=options.quiet)):
+    with two_processes(scenario.camera.source, quiet=options.quiet):
         return _start(options, scenario, log, command)
 
 

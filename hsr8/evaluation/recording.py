@@ -8,11 +8,11 @@ from tempfile import TemporaryDirectory
 from time import perf_counter
 from typing import TYPE_CHECKING, Any
 
+from hsr8.compilation_watch import CompilationWatch
 from hsr8.errors import RecordingFailed
 from hsr8.evaluation import metrics
 from hsr8.evaluation.verdict import Criterion, evaluate_criteria
 from hsr8.gl import require_gl
-from hsr8.kernel_compilation import CompilationWatch
 from hsr8.loop import Simulation
 from hsr8.plugin_file import digests
 from hsr8.record import Tick

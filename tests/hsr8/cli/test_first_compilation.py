@@ -1,0 +1,59 @@
+from types import SimpleNamespace
+
+import pytest
+
+import hsr8
+from hsr8.cli import first_compilation
+from hsr8.cli.first_compilation import TEXT, compile_all, two_processes
+from hsr8.cli.main import entry
+from hsr8.compilation_watch import CompilationWatch
+from hsr8.gl import BACKENDS
+
+
+def compile_in(watch, package):
+    function = SimpleNamespace(__module__=f"{package}.module")
+    watch.on_start(SimpleNamespace(data={"dispatcher": SimpleNamespace(py_func=function)}))
+    watch.on_end(None)
+
+
+@pytest.fixture
+def helper(tmp_path, monkeypatch):
+    """Let the second process leave a line instead of a run."""
+    lines = tmp_path / "lines"
+    code = f"import time; time.sleep(0.3); print({{source!r}}, file=open({str(lines)!r}, 'a'))"
+    monkeypatch.setattr(first_compilation, "CODE", code)
+    return lines
+
+
+def test_the_second_process_is_awaited_before_the_first_look(helper, capsys):
+    with two_processes("rendered", quiet=False) as watch:
+        for _ in range(2):
+            compile_in(watch, "walking")
+        compile_in(watch, "vision")
+        assert helper.read_text() == "rendered\n"
+    assert capsys.readouterr().err == f"{TEXT}\n"
+
+
+def test_a_change_of_vision_alone_needs_no_second_process(helper, capsys):
+    with two_processes("rendered", quiet=True) as watch:
+        compile_in(watch, "vision")
+    assert not helper.exists()
+    assert capsys.readouterr().err == ""
+
+
+@pytest.mark.timeout(600)
+def test_a_run_compiles_nothing_afterwards(capsys):
+    compile_all(quiet=True)
+    with CompilationWatch() as watch:
+        hsr8.run("quick", settings={"duration": 2.0}, log=False)
+    assert watch.count == 0
+
+
+@pytest.mark.parametrize(("compiled", "text"), [(12, "compiled in"), (0, "all compiled before")])
+def test_doctor_compiles_on_request(monkeypatch, capsys, compiled, text):
+    monkeypatch.setattr("hsr8.cli.doctor.probe", lambda backend: BACKENDS[0])
+    monkeypatch.setattr(first_compilation, "compile_all", lambda quiet: compiled)
+    assert entry(["doctor"]) == 0
+    assert "compiled code" not in capsys.readouterr().out
+    assert entry(["doctor", "--compile"]) == 0
+    assert text in capsys.readouterr().out
