@@ -53,7 +53,7 @@ def field_of_view(scenario: Scenario, camera: PinholeCamera) -> tuple[float, flo
 def camera_sight(scenario: Scenario) -> Sight:
     """Return what the robot's camera must show of an obstacle in `scenario`."""
     humanoid = load_robot(scenario.robot.model)
-    body = humanoid.model
+    body = humanoid.model.with_own_buffers()
     height = humanoid.height + float(body.frame_pose(body.tree.camera, body.ready)[1][2])
     return Sight(scenario.vision.obstacle_height, ground_shadow(humanoid.arms, height))
 

@@ -60,7 +60,7 @@ class WalkingEngine:
     def __init__(
         self, robot: RobotModel, parameters: WalkingParameters, odometry: LegOdometry | None = None
     ) -> None:
-        self._robot = robot
+        self._robot = robot = robot.with_own_buffers()
         self._parameters = parameters
         pattern = parameters.pattern
         self._lipm = lipm = Lipm(pattern.lipm_height)

@@ -64,7 +64,7 @@ class BodyObserver:
     def __init__(
         self, robot: RobotModel, parameters: WalkingParameters, odometry: LegOdometry
     ) -> None:
-        self._robot = robot
+        self._robot = robot = robot.with_own_buffers()
         self._odometry = odometry
         self._omega = omega = Lipm(parameters.pattern.lipm_height).omega
         self._estimation = Estimation(robot, omega, parameters.estimator, odometry)

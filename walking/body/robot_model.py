@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from copy import copy
 from math import sqrt
 
 import numpy as np
@@ -53,12 +54,10 @@ class RobotModel:
         self.tree = tree
         self.names = tree.names
         self._model = _dynamic_model(tree)
-        self._data = self._model.createData()
         ids = [self._model.getJointId(name) for name in tree.names]
         self._q_index = np.array([self._model.joints[i].idx_q for i in ids])
         self._v_index = np.array([self._model.joints[i].idx_v for i in ids])
-        self._q = pin.neutral(self._model)
-        self.motion = self._q, np.zeros(self._model.nv), np.zeros(self._model.nv)
+        self._make_buffers()
         self.indices = self._q_index, self._v_index
         self.mass = float(tree.masses.sum())
         self.chains = np.array(
@@ -82,6 +81,20 @@ class RobotModel:
         self.stiffness = tree.stiffness.copy()
         self.damping: Array = tree.servo_damping + tree.joint_damping
         self.stiffening = self._stiffen()
+
+    def with_own_buffers(self) -> RobotModel:
+        """Return the same robot with separate buffers for its kinematics and dynamics.
+
+        Several engines of one robot then run in turn or in threads without affecting each other.
+        """
+        robot = copy(self)
+        robot._make_buffers()
+        return robot
+
+    def _make_buffers(self) -> None:
+        self._data = self._model.createData()
+        self._q = pin.neutral(self._model)
+        self.motion = self._q, np.zeros(self._model.nv), np.zeros(self._model.nv)
 
     def stand(self, height: float, half_stance: float) -> float:
         """Set the ready posture: level feet below the centre of mass, legs bent.

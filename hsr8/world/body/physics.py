@@ -104,7 +104,8 @@ class PhysicsBody:
         self._ready_height = float(self.data.qpos[self._index.root_qpos + 2])
         self._surroundings.move(self.data, 0.0)
         # `apply` counts and raises warnings; MuJoCo must not write its log file.
-        mujoco.set_mju_user_warning(lambda _message: None)
+        if mujoco.get_mju_user_warning() is None:
+            mujoco.set_mju_user_warning(lambda _message: None)
         mujoco.mj_forward(model, self.data)
 
     @property

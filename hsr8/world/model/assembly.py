@@ -113,11 +113,14 @@ def assemble(
 @contextmanager
 def _unwarned() -> Iterator[None]:
     """Context without MuJoCo's warning that the names of the robot have no prefix."""
+    handler = mujoco.get_mju_user_warning()
     mujoco.set_mju_user_warning(lambda _message: None)
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore")
-        yield
-    mujoco.set_mju_user_warning(None)
+    try:
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore")
+            yield
+    finally:
+        mujoco.set_mju_user_warning(handler)
 
 
 def _attach(spec: mujoco.MjSpec, robot: LoadedRobot, quality: Quality) -> None:
