@@ -31,14 +31,17 @@ def main(options: Verify) -> int:
     if not any(stage.count for stage in stages):
         raise UsageError(f"{run.path}: nothing to recompute: the run ended in its first second")
     equal = all(stage.equal for stage in stages)
+    changes = [] if equal else _changes(run)
     if options.json:
         rows = [asdict(stage) | {"equal": stage.equal} for stage in stages]
-        print(atomic.dumps({"run": str(run.path), "equal": equal, "stages": rows}))
+        changed = {name: {"then": then, "now": now} for name, then, now in changes}
+        result = {"run": str(run.path), "equal": equal, "changed": changed, "stages": rows}
+        print(atomic.dumps(result))
     else:
+        for name, then, now in changes:
+            print(f"{'changed':<12}{name} was {then}, is {now}: {_effect(name)}")
         for stage in stages:
             print(f"{stage.stage:<12}{_verdict(stage)}")
-        for name, then, now in [] if equal else _changes(run):
-            print(f"            {name} was {then}, is {now}")
     return 0 if equal else DIFFERENT
 
 
@@ -48,6 +51,11 @@ def _changes(run: Run) -> list[tuple[str, str, str]]:
     robot = digest(run.scenario().robot.model)
     changed = [(name, str(recorded.get(name)), now) for name, now in robot.items()]
     return other_versions(run.manifest) + [c for c in changed if c[1] != c[2]]
+
+
+def _effect(name: str) -> str:
+    """Return the effect of a changed library, robot file or arithmetic on a comparison."""
+    return "the last bits differ" if name == "arithmetic" else "results may differ"
 
 
 def _verdict(stage: "Replayed") -> str:

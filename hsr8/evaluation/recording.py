@@ -8,6 +8,7 @@ from tempfile import TemporaryDirectory
 from time import perf_counter
 from typing import TYPE_CHECKING, Any
 
+from hsr8 import arithmetic
 from hsr8.compilation_watch import CompilationWatch
 from hsr8.errors import RecordingFailed
 from hsr8.evaluation import metrics
@@ -43,12 +44,14 @@ class Result:
         criteria: the scenario's criteria, evaluated.
         folder: run folder, None if nothing was written.
         diverged: message of the divergence; empty if the physics did not diverge.
+        arithmetic: that of NumPy: ``x86-64-v3``, the same on all processors, or ``native``.
     """
 
     metrics: dict[str, Any]
     criteria: tuple[Criterion, ...]
     folder: Path | None = None
     diverged: str = ""
+    arithmetic: str = arithmetic.IN_FORCE
 
     @property
     def exit_reason(self) -> str:

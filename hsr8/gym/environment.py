@@ -9,6 +9,7 @@ import gymnasium
 import numpy as np
 from numpy.typing import NDArray
 
+from hsr8 import arithmetic
 from hsr8.errors import UsageError
 from hsr8.gym.action import SIZES, ActionMap, Part, check_action
 from hsr8.gym.episode import FAILURES, Episode
@@ -201,10 +202,11 @@ class Environment(gymnasium.Env[Observation, NDArray[Any]]):
         return self._observer.observe(situation.belief, situation.task, situation.image)
 
     def _info(self, episode: Episode) -> dict[str, Any]:
-        """Return seed, time [s] and ground truth; the robot does not know the latter."""
+        """Return seed, arithmetic, time [s] and ground truth, which the robot does not know."""
         truth = episode.truth
         return {
             "seed": episode.simulation.seed,
+            "arithmetic": arithmetic.IN_FORCE,
             "time": episode.simulation.time,
             "motion_due": episode.situation.motion_due,
             "truth": {

@@ -1,10 +1,12 @@
 import json
 import os
+import re
 import subprocess
 import sys
 
 import pytest
 
+from hsr8 import arithmetic
 from hsr8.arithmetic import BEYOND, LEVEL_3, NATIVE, PORTABLE, choose_arithmetic
 
 VARIABLES = ("OPENBLAS_CORETYPE", "NPY_DISABLE_CPU_FEATURES")
@@ -34,8 +36,6 @@ def test_features_beyond_level_3_are_not_used(processor, monkeypatch, beyond):
     assert choose_arithmetic(file) == PORTABLE
     assert os.environ["OPENBLAS_CORETYPE"] == "Haswell"
     assert os.environ.get("NPY_DISABLE_CPU_FEATURES", "").split() == beyond
-    monkeypatch.setitem(sys.modules, "numpy", sys)  # a child process inherits the choice
-    assert choose_arithmetic(file) == PORTABLE
 
 
 @pytest.mark.parametrize("features", [set(), OLD])
@@ -52,12 +52,6 @@ def test_the_environment_of_the_user_wins(processor, monkeypatch, variable):
     assert os.environ[variable] == "mine"
 
 
-def test_after_an_import_of_numpy_it_is_native(processor, monkeypatch):
-    monkeypatch.setitem(sys.modules, "numpy", sys)
-    assert choose_arithmetic(processor(NEW)) == NATIVE
-    assert not set(VARIABLES) & set(os.environ)
-
-
 PROBE = """
 import ctypes, json
 import hsr8.arithmetic
@@ -72,13 +66,59 @@ print(json.dumps([hsr8.arithmetic.IN_FORCE, blas.scipy_openblas_get_corename64_(
 """
 
 
-def test_numpy_and_openblas_follow_the_choice():
+def probe(code, **variables):
+    """Return what a new process prints, and its warnings."""
     clean = {name: value for name, value in os.environ.items() if name not in VARIABLES}
-    probe = subprocess.run(
-        [sys.executable, "-c", PROBE], env=clean, capture_output=True, text=True, check=True
+    done = subprocess.run(
+        [sys.executable, "-c", code],
+        env=clean | variables,
+        capture_output=True,
+        text=True,
+        check=True,
     )
-    in_force, core, used = json.loads(probe.stdout)
-    if in_force == NATIVE:
-        pytest.skip("not a processor of level 3")
-    assert core == "Haswell"
-    assert not [name for name in used if "V4" in name or "AVX512" in name]
+    return json.loads(done.stdout), done.stderr
+
+
+needs_level_3 = pytest.mark.skipif(
+    not arithmetic._features(arithmetic._PROCESSOR) >= LEVEL_3, reason="processor below level 3"
+)
+
+
+def is_portable(core, used):
+    return core == "Haswell" and not [name for name in used if "V4" in name or "AVX512" in name]
+
+
+@needs_level_3
+def test_numpy_and_openblas_follow_the_choice():
+    (in_force, core, used), text = probe(PROBE)
+    assert in_force == PORTABLE
+    assert is_portable(core, used)
+    assert not text
+
+
+@needs_level_3
+@pytest.mark.parametrize("first", ["numpy", "gymnasium"])
+def test_after_an_import_of_numpy_the_arithmetic_is_that_in_use(first):
+    """Where it differs, one warning at the import of the user shows the remedy, which works."""
+    code = f"import {first}{PROBE}"
+    (in_force, core, used), text = probe(code)
+    assert (in_force == PORTABLE) == is_portable(core, used)
+    assert text.count("NumPy was imported before hsr8") == (in_force == NATIVE)
+    remedy = re.findall(r"(\w+)='([^']*)'", text)
+    (in_force, core, used), text = probe(code, **dict(remedy))
+    assert in_force == PORTABLE or not remedy
+    assert not text or not remedy
+
+
+@needs_level_3
+def test_children_of_a_process_with_an_earlier_numpy_are_portable():
+    child = "import hsr8.arithmetic as a, json; print(json.dumps(a.IN_FORCE))"
+    call = f"subprocess.run([sys.executable, '-c', {child!r}], check=True)"
+    assert probe(f"import numpy, sys, subprocess, hsr8; {call}")[0] == PORTABLE
+
+
+@needs_level_3
+def test_a_choice_of_the_user_is_not_warned_of():
+    (in_force, *_), text = probe(f"import numpy{PROBE}", OPENBLAS_CORETYPE="Nehalem")
+    assert in_force == NATIVE
+    assert not text

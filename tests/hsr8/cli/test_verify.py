@@ -58,6 +58,21 @@ def test_the_first_frame_and_column_that_differ_are_named(run, rewrite, capsys):
     assert ": pose[0] [m, m, rad] of frame 20 (1.260 s)" in capsys.readouterr().out
 
 
+def test_another_arithmetic_is_named_before_the_stages(run, rewrite, capsys):
+    rewrite(run, "frames", "pose", 20, flipped)
+    file = run / "manifest.json"
+    manifest = json.loads(file.read_text())
+    now = manifest["libraries"]["arithmetic"]
+    manifest["libraries"]["arithmetic"] = "another"
+    file.write_text(json.dumps(manifest))
+    assert entry(["verify", str(run)]) == 1
+    _, first, *_ = capsys.readouterr().out.splitlines()
+    assert first == f"changed     arithmetic was another, is {now}: the last bits differ"
+    assert entry(["verify", str(run), "--json"]) == 1
+    changed = json.loads(capsys.readouterr().out)["changed"]
+    assert changed == {"arithmetic": {"then": "another", "now": now}}
+
+
 @pytest.mark.parametrize(
     ("column", "stage"),
     [
