@@ -2,6 +2,7 @@
 
 import shlex
 from collections.abc import Mapping, Sequence
+from contextlib import ExitStack
 from pathlib import Path
 from typing import Any, SupportsIndex
 
@@ -12,7 +13,7 @@ from hsr8.loop import Simulation
 from hsr8.plugin_walker import CustomWalker
 from hsr8.recorder.log_level import LogLevel
 from hsr8.recorder.run.manifest import CALL, Manifest
-from hsr8.recorder.run.run_folder import SCENARIO, RunFolder
+from hsr8.recorder.run.run_folder import SCENARIO, new_run_folder
 from hsr8.scenario.loader import as_words, load_scenario
 from hsr8.scenario.schema import Scenario
 
@@ -54,19 +55,23 @@ def run(
     if isinstance(scenario, Scenario) and settings:
         raise TypeError("settings: need the name or file of a scenario, got a loaded scenario")
     loaded = loaded if seed is None else loaded.with_seed(seed)
-    simulation = Simulation(loaded, loaded.seed, planner=planner, gaze=gaze, walker=walker)
-    recording = Recording(simulation)
-    if out is not None:
-        renderer = renderer_of(loaded)
-        path = RunFolder.create(Path(out), loaded.name, loaded.seed)
-        source = path / SCENARIO if isinstance(scenario, Scenario) else scenario
-        words = ["hsr8", "run", str(source), "--seed", str(loaded.seed)]
-        words += ["--set", *as_words(settings)] if settings else []
-        plugins = {"planner": planner, "gaze": gaze, "walker": walker}
-        command = _call(plugins) or tuple(map(shlex.quote, words))
-        manifest = Manifest.now(loaded.name, loaded.seed, command, renderer)
-        recording.into(path, manifest, log=level)
-    result = recording.run()
+    with ExitStack() as stack:
+        path = None
+        if out is not None:
+            renderer = renderer_of(loaded)
+            new = new_run_folder(Path(out), loaded.name, loaded.seed)
+            path = stack.enter_context(new)  # before any compilation
+        simulation = Simulation(loaded, loaded.seed, planner=planner, gaze=gaze, walker=walker)
+        recording = Recording(simulation)
+        if path is not None:
+            source = path / SCENARIO if isinstance(scenario, Scenario) else scenario
+            words = ["hsr8", "run", str(source), "--seed", str(loaded.seed)]
+            words += ["--set", *as_words(settings)] if settings else []
+            plugins = {"planner": planner, "gaze": gaze, "walker": walker}
+            command = _call(plugins) or tuple(map(shlex.quote, words))
+            manifest = Manifest.now(loaded.name, loaded.seed, command, renderer)
+            recording.into(path, manifest, log=level)
+        result = recording.run()
     if result.exit_reason == "interrupted":
         raise KeyboardInterrupt  # also ends a loop over runs
     return result

@@ -14,9 +14,9 @@ import argparse
 import json
 from collections.abc import Iterable
 
+from hsr8.files import atomic
 from hsr8.gl import require_gl
 from hsr8.loop import Simulation
-from hsr8.recorder.files import atomic
 from hsr8.scenario.loader import load_scenario
 from hsr8.scenario.schema import Scenario
 

@@ -15,7 +15,7 @@ from pathlib import Path
 from hsr8.errors import Hsr8Error
 from hsr8.evaluation.bench.entry import ALL, FILE, Entry, read_entry
 from hsr8.evaluation.bench.page import entries_table
-from hsr8.recorder.files import atomic
+from hsr8.files import atomic
 
 from study_page import RESULTS
 

@@ -1,5 +1,6 @@
 """Files of colour tables: NumPy archives of the labels and the names of their classes."""
 
+import zipfile
 from pathlib import Path
 
 import numpy as np
@@ -8,6 +9,7 @@ from vision.color import COLOR_CLASSES, ColorTable
 from vision.errors import VisionError
 
 SUFFIX = ".npz"
+MAX_SIZE = 1_000_000  # of a table, unpacked; it has 34 kB [byte]
 
 
 def save_table(table: ColorTable, path: Path) -> None:
@@ -28,7 +30,13 @@ def load_table(path: Path) -> ColorTable:
     Raises:
         VisionError: the file cannot be read, or is not a colour table of the present classes.
     """
+    if path.exists() and not path.is_file():
+        raise VisionError(f"{path}: not a regular file; expected a colour table")
     try:
+        with zipfile.ZipFile(path) as parts:
+            size = sum(part.file_size for part in parts.infolist())
+        if size > MAX_SIZE:
+            raise ValueError(size)
         with np.load(path, allow_pickle=False) as archive:
             labels, names = archive["labels"], archive["names"].tolist()
     except OSError as error:

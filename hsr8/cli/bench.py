@@ -23,7 +23,7 @@ from hsr8.evaluation.bench.suite import SHIPPED, changed_settings, read_suite, s
 from hsr8.evaluation.sweep.folder import REPORT
 from hsr8.evaluation.sweep.seeds import parse_seeds
 from hsr8.evaluation.sweep.summary import summarize
-from hsr8.recorder.files import atomic
+from hsr8.files import atomic
 
 DEFAULT = "default"  # name of an entry without settings
 

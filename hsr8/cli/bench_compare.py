@@ -6,7 +6,7 @@ from hsr8.cli.options import BenchCompare
 from hsr8.evaluation.bench.comparison import compare_entries
 from hsr8.evaluation.bench.entry import read_entry
 from hsr8.evaluation.bench.page import comparison_page
-from hsr8.recorder.files import atomic
+from hsr8.files import atomic
 
 
 def main(options: BenchCompare) -> int:

@@ -10,8 +10,8 @@ from hsr8.cli import tables
 from hsr8.cli.command_line import command_words, option_tables, run_options, settings
 from hsr8.cli.options import Check
 from hsr8.cli.output_file import require_file_name, writing
+from hsr8.files import atomic
 from hsr8.plugin_file import require_plugins
-from hsr8.recorder.files import atomic
 from hsr8.render.plan_view import PlanView
 from hsr8.render.png import write_png
 from hsr8.robot_builder import field_of_view, head_camera

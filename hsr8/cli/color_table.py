@@ -12,7 +12,7 @@ from hsr8.cli import options as cli
 from hsr8.cli import tables
 from hsr8.cli.output_file import require_file_name, writing
 from hsr8.errors import UsageError
-from hsr8.recorder.files import atomic
+from hsr8.files import atomic
 from vision.color import COLOR_CLASSES, ColorTable, Labels
 from vision.color_file import SUFFIX, save_table
 from vision.color_learning import IGNORED, learn
@@ -46,8 +46,8 @@ def main(options: cli.ColorTable) -> int:
         table = learn(pairs)
     except VisionError as error:
         raise UsageError(str(error)) from None
-    with writing("--out", options.out):
-        save_table(table, options.out)
+    with writing("--out", options.out), atomic.draft(options.out) as file:
+        save_table(table, file)
     rows = list(_recall(table, pairs))
     if options.json:
         print(atomic.dumps({"color_table": str(options.out), "classes": rows}))

@@ -5,7 +5,7 @@ import shlex
 from hsr8.cli.options import Compare
 from hsr8.evaluation.comparison import compare, open_side
 from hsr8.evaluation.comparison_page import page, to_json
-from hsr8.recorder.files import atomic
+from hsr8.files import atomic
 
 
 def main(options: Compare) -> int:

@@ -8,8 +8,8 @@ from contextlib import contextmanager
 from pathlib import Path
 
 from hsr8.errors import Hsr8Error, UsageError
+from hsr8.files import atomic
 from hsr8.plugin_file import line_of
-from hsr8.recorder.files import atomic
 
 FILE = "crash.txt"
 OUTPUT_ERRORS = (errno.EPIPE, errno.ENOSPC)

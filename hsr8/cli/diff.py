@@ -10,7 +10,7 @@ from rich.table import Table
 from hsr8.cli.options import Diff
 from hsr8.evaluation import run_difference
 from hsr8.evaluation.run_difference import RunDifference
-from hsr8.recorder.files import atomic
+from hsr8.files import atomic
 from hsr8.recorder.rows import TABLES
 from hsr8.recorder.run.run_reader import Run, open_run
 

@@ -12,8 +12,8 @@ from time import perf_counter
 from compilation import store
 from hsr8.cli.options import Doctor
 from hsr8.errors import Hsr8Error
+from hsr8.files import atomic
 from hsr8.gl import APT_LINE, BACKENDS, REQUESTED, VULKAN_LINE, is_software
-from hsr8.recorder.files import atomic
 from hsr8.recorder.run.manifest import versions
 from hsr8.render import viewer
 from hsr8.robots.models import models_dir

@@ -8,7 +8,7 @@ from hsr8.cli import report, tables
 from hsr8.cli.options import Info
 from hsr8.errors import UsageError
 from hsr8.evaluation.verdict import Criterion, evaluate_criteria, exit_code
-from hsr8.recorder.files import atomic
+from hsr8.files import atomic
 from hsr8.recorder.run.manifest import RUNNING, other_versions
 from hsr8.recorder.run.run_reader import Run, open_run
 

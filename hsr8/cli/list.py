@@ -4,7 +4,7 @@ from rich.console import Console
 
 from hsr8.cli import tables
 from hsr8.cli.options import List
-from hsr8.recorder.files import atomic
+from hsr8.files import atomic
 from hsr8.scenario.crowd import n_placed
 from hsr8.scenario.loader import built_in_names, load_scenario
 from hsr8.scenario.schema import Scenario

@@ -1,15 +1,17 @@
 """Output files and image sizes that options name."""
 
+import os
 import re
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from pathlib import Path
 
 from hsr8.errors import UsageError
+from hsr8.files.atomic import require_replaceable
 
 
 def require_file_name(option: str, file: Path, suffixes: Sequence[str]) -> None:
-    """Check suffix and folder of an output file before anything is drawn.
+    """Check an output file before anything is computed.
 
     Args:
         option: option that names the file.
@@ -17,13 +19,24 @@ def require_file_name(option: str, file: Path, suffixes: Sequence[str]) -> None:
         suffixes: valid suffixes.
 
     Raises:
-        UsageError: the suffix is not valid or the folder does not exist.
+        UsageError: the suffix is not valid, or the file cannot be written.
     """
     if file.suffix.lower() not in suffixes:
         raise UsageError(f"{option} {file}: wrong suffix; expected {', '.join(suffixes)}")
-    if file.is_dir() or not file.parent.is_dir():
-        reason = "it is a folder" if file.is_dir() else f"no folder {file.parent}"
-        raise UsageError(f"{option} {file}: cannot be written: {reason}")
+    with writing(option, file):
+        require_replaceable(file)
+
+
+def require_new(option: str, path: Path) -> None:
+    """Check a new output file or folder before anything is computed.
+
+    Raises:
+        UsageError: it exists, or cannot be written.
+    """
+    if os.path.lexists(path):
+        raise UsageError(f"{option} {path}: exists; expected a new name")
+    with writing(option, path):
+        require_replaceable(path)
 
 
 @contextmanager

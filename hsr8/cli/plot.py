@@ -5,7 +5,7 @@ import sys
 from hsr8.cli.options import Plot
 from hsr8.cli.output_file import require_file_name, writing
 from hsr8.errors import UsageError
-from hsr8.recorder.files import atomic
+from hsr8.files import atomic
 from hsr8.recorder.run.run_reader import open_run
 
 

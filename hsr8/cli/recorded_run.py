@@ -4,6 +4,7 @@ import signal
 import sys
 from collections.abc import Iterator, Sequence
 from contextlib import ExitStack, contextmanager
+from pathlib import Path
 from types import FrameType
 
 from hsr8.cli import report
@@ -13,16 +14,18 @@ from hsr8.cli.options import Run
 from hsr8.cli.output_file import writing
 from hsr8.cli.progress import Progress
 from hsr8.cli.termination import like_ctrl_c, on_signals
-from hsr8.cli.video_process import video_process
+from hsr8.cli.video_process import VideoProcess
+from hsr8.errors import Hsr8Error, UsageError
 from hsr8.evaluation.recording import Recording, Result, renderer_of
 from hsr8.evaluation.verdict import exit_code
 from hsr8.export.bag import require_rosbags, write_bag
+from hsr8.files import atomic
+from hsr8.files.atomic import draft
 from hsr8.gl import require_gl
 from hsr8.loop import Simulation
-from hsr8.recorder.files import atomic
 from hsr8.recorder.log_level import LogLevel
 from hsr8.recorder.run.manifest import Manifest
-from hsr8.recorder.run.run_folder import RunFolder
+from hsr8.recorder.run.run_folder import new_run_folder
 from hsr8.recorder.run.run_reader import open_run
 from hsr8.render.live_view import LiveView, live_view
 from hsr8.scenario.schema import Scenario
@@ -55,35 +58,79 @@ def start(options: Run, scenario: Scenario, log: LogLevel | None, command: Seque
 
 def _start(options: Run, scenario: Scenario, log: LogLevel | None, command: Sequence[str]) -> int:
     manifest = Manifest.now(scenario.name, scenario.seed, command, renderer_of(scenario))
-    simulation = Simulation(scenario, scenario.seed)
-    recording = Recording(simulation)
+    new = new_run_folder(options.out, scenario.name, scenario.seed)  # before any compilation
+    with new as path, _view(options) as view, ExitStack() as after:
+        simulation = Simulation(scenario, scenario.seed)
+        recording = Recording(simulation)
 
-    def interrupt(number: int, frame: FrameType | None) -> None:
-        """End the run after the current tick; a second signal ends it at once."""
-        signal.signal(number, signal.default_int_handler)
-        simulation.interrupt()
+        def interrupt(number: int, frame: FrameType | None) -> None:
+            """End the run after the current tick; a second signal ends it at once."""
+            signal.signal(number, signal.default_int_handler)
+            simulation.interrupt()
 
-    with ExitStack() as after, _view(options) as view:
-        path = RunFolder.create(options.out, scenario.name, scenario.seed)
         with crash_report(path), on_signals(SIGNALS, interrupt):
             recording.into(path, manifest, log=log, live=view.address if view else "")
-            if options.video:
-                silent = options.quiet or options.json
-                after.enter_context(video_process(path, quiet=silent))
+            outputs = Outputs(options, path, after)
             if options.quiet:
                 result = recording.run()
             else:
                 with Progress(scenario.duration) as progress:
                     result = recording.run(progress.show)
-            if options.bag:
-                with writing("--bag", path / BAG):
-                    write_bag(open_run(path), path / BAG)
-        code = _report(options, result, manifest)
+        if options.json:
+            outputs.complete()
+        _report(options, result, manifest, outputs.failures)
+        outputs.complete()
         if view is not None and result.exit_reason != "interrupted":
             end = "Ctrl-C" if view.page else "closing the window"
             print(f"{end} ends the viewer", file=sys.stderr)
             view.wait()
-    return code
+    for failure in outputs.failures:
+        print(f"hsr8: {failure}", file=sys.stderr)
+    return max(exit_code(result.exit_reason, result.criteria), outputs.exit_code)
+
+
+class Outputs:
+    """Bag and video of a run; their failures are reported after its results.
+
+    Args:
+        options: as given.
+        path: run folder, which has a manifest.
+        after: contexts that end after the run; the video is drawn from now on.
+
+    Attributes:
+        failures: message of every output that is missing.
+        exit_code: of the command; 0 without a failure.
+    """
+
+    def __init__(self, options: Run, path: Path, after: ExitStack) -> None:
+        self._path = path
+        self._bag = options.bag
+        self._video: VideoProcess | None = None
+        if options.video:
+            silent = options.quiet or options.json
+            self._video = after.enter_context(VideoProcess(path, quiet=silent))
+        self.failures: list[str] = []
+        self.exit_code = 0
+
+    def complete(self) -> None:
+        """Write the bag and wait for the video, once."""
+        bag, self._bag = self._bag, False
+        video, self._video = self._video, None
+        try:
+            if bag:
+                target = self._path / BAG
+                with crash_report(self._path), writing("--bag", target), draft(target) as folder:
+                    write_bag(open_run(self._path), folder)
+        except Hsr8Error as error:
+            self._note(str(error), error.exit_code)
+        if video is not None and (code := video.wait()):
+            self._note(
+                f"--video: no video, hsr8 render ended with code {code}", UsageError.exit_code
+            )
+
+    def _note(self, failure: str, code: int) -> None:
+        self.failures.append(failure)
+        self.exit_code = max(self.exit_code, code)
 
 
 @contextmanager
@@ -98,14 +145,14 @@ def _view(options: Run) -> Iterator[LiveView | None]:
         yield view
 
 
-def _report(options: Run, result: Result, manifest: Manifest) -> int:
-    """Print the result; return the exit code."""
+def _report(options: Run, result: Result, manifest: Manifest, failures: Sequence[str]) -> None:
+    """Print the results; with --json, also the failed outputs."""
     assert result.folder is not None
     if result.diverged:
         print(f"hsr8: {result.diverged}", file=sys.stderr)
     if options.json:
         verdicts = {"criteria_met": result.criteria_met, "definitions": report.VERDICTS}
-        print(atomic.dumps(result.metrics | verdicts))
+        print(atomic.dumps(result.metrics | verdicts | {"failed_outputs": list(failures)}))
     elif not options.quiet:
         report.show(
             f"{manifest.scenario}, seed {manifest.seed}",
@@ -114,4 +161,3 @@ def _report(options: Run, result: Result, manifest: Manifest) -> int:
             path=result.folder,
             command=manifest.command,
         )
-    return exit_code(result.exit_reason, result.criteria)

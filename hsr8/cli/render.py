@@ -11,8 +11,8 @@ from hsr8.cli.options import Render
 from hsr8.cli.output_file import parse_size, require_file_name, writing
 from hsr8.cli.termination import on_signals
 from hsr8.errors import UsageError
+from hsr8.files import atomic
 from hsr8.gl import is_software, require_gl
-from hsr8.recorder.files import atomic
 from hsr8.recorder.run import run_folder
 from hsr8.recorder.run.run_reader import open_run
 from hsr8.render.growing_video import follow_run

@@ -8,7 +8,7 @@ from hsr8.cli.options import Replay
 from hsr8.cli.output_file import parse_size, require_file_name, writing
 from hsr8.cli.termination import like_ctrl_c
 from hsr8.errors import UsageError
-from hsr8.recorder.files import atomic
+from hsr8.files import atomic
 from hsr8.recorder.run.manifest import versions
 from hsr8.recorder.run.run_reader import Run, open_run
 from hsr8.render import viewer
@@ -30,7 +30,7 @@ def main(options: Replay) -> int:
         print("drawing in the viewer, which takes some ten seconds", file=sys.stderr, flush=True)
         image = viewer.screenshot(log, time, size)
         with writing("--screenshot", options.screenshot):
-            options.screenshot.write_bytes(image)
+            atomic.write_bytes(options.screenshot, image)
         if options.json:
             print(atomic.dumps({"screenshot": str(options.screenshot), "time_s": time}))
         else:

@@ -11,9 +11,9 @@ from rich.console import Console
 
 from hsr8.cli import tables
 from hsr8.cli.options import RobotCalibrate
-from hsr8.cli.output_file import require_file_name, writing
+from hsr8.cli.output_file import require_file_name, require_new, writing
 from hsr8.errors import UsageError
-from hsr8.recorder.files import atomic
+from hsr8.files import atomic
 from hsr8.robots.description import Calibration, read_description
 from hsr8.robots.description_file import moved, with_calibration
 from hsr8.robots.loaded import build_robot
@@ -84,8 +84,7 @@ def _target(options: RobotCalibrate, source: Path) -> Path:
     """
     if options.out is not None:
         require_file_name("--out", options.out, (".toml",))
-        if options.out.exists():
-            raise UsageError(f"--out {options.out}: exists; expected a new file")
+        require_new("--out", options.out)
         return options.out.absolute()
     if not (os.access(source, os.W_OK) and os.access(source.parent, os.W_OK)):
         raise UsageError(f"{source}: cannot be written; expected --out FILE with a new file")

@@ -7,9 +7,9 @@ from rich.console import Console
 
 from hsr8.cli import tables
 from hsr8.cli.options import RobotInspect
-from hsr8.cli.output_file import require_file_name, writing
+from hsr8.cli.output_file import require_file_name, require_new, writing
 from hsr8.errors import ModelError, UsageError
-from hsr8.recorder.files import atomic
+from hsr8.files import atomic
 from hsr8.render.png import write_png
 from hsr8.render.portrait import portrait
 from hsr8.robots.description_file import description_text
@@ -70,8 +70,7 @@ def _require_outputs(options: RobotInspect) -> None:
     """
     if options.write is not None:
         require_file_name("--write", options.write, (".toml",))
-        if options.write.exists():
-            raise UsageError(f"--write {options.write}: exists; expected a new file")
+        require_new("--write", options.write)
     if options.image is not None:
         require_file_name("--image", options.image, (".png",))
 

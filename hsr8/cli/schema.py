@@ -2,7 +2,7 @@
 
 from hsr8.cli.options import Schema
 from hsr8.cli.output_file import writing
-from hsr8.recorder.files import atomic
+from hsr8.files import atomic
 from hsr8.scenario.reference import json_schema
 
 DIALECT = "https://json-schema.org/draft/2020-12/schema"

@@ -24,7 +24,7 @@ from hsr8.evaluation.sweep.folder import REPORT
 from hsr8.evaluation.sweep.report import headline, report_of_values
 from hsr8.evaluation.sweep.seeds import parse_seeds, parse_shard, parse_values
 from hsr8.evaluation.sweep.summary import Summary, summarize
-from hsr8.recorder.files import atomic
+from hsr8.files import atomic
 from hsr8.scenario.loader import load_scenario
 from hsr8.scenario.schema import Scenario
 

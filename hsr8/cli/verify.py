@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING
 
 from hsr8.cli.options import Verify
 from hsr8.errors import UsageError
-from hsr8.recorder.files import atomic
+from hsr8.files import atomic
 from hsr8.recorder.run.manifest import other_versions
 from hsr8.recorder.run.run_reader import Run, open_run
 from hsr8.robots.locate import digest

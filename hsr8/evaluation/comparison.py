@@ -20,9 +20,8 @@ from hsr8.evaluation.sweep.definition import (
 from hsr8.evaluation.sweep.folder import DEFINITION, SweepFolder
 from hsr8.evaluation.sweep.job import CRASHED, REFUSED, RunResult
 from hsr8.evaluation.sweep.table import flatten
-from hsr8.recorder.run import run_folder
 from hsr8.recorder.run.manifest import CALL
-from hsr8.recorder.run.run_reader import open_run
+from hsr8.recorder.run.run_reader import open_run, run_folders
 from hsr8.suggestion import suggestion
 
 METRICS = (
@@ -105,7 +104,7 @@ def open_side(path: Path) -> Side:
         runs = {r["seed"]: flatten(r) for r in folder.results() if r["outcome"] != REFUSED}
         return Side(path, folder.definition, runs)
     parts = sorted(file.parent.name for file in path.glob(f"*/{DEFINITION}"))
-    if parts or not any(path.glob(f"**/{run_folder.MANIFEST}")):
+    if parts or not path.is_dir() or not run_folders(path):
         hint = f"; expected one of its parts: {', '.join(parts)}" if parts else ""
         if not path.is_absolute() and (Path("sweeps") / path).is_dir():
             hint = f"; did you mean {Path('sweeps') / path}?"

@@ -13,11 +13,11 @@ from hsr8.compilation_watch import CompilationWatch
 from hsr8.errors import RecordingFailed
 from hsr8.evaluation import metrics
 from hsr8.evaluation.verdict import Criterion, evaluate_criteria
+from hsr8.files.writing import FAILED
 from hsr8.gl import require_gl
 from hsr8.loop import Simulation
 from hsr8.plugin_file import digests
 from hsr8.record import Tick
-from hsr8.recorder.files.writing import FAILED
 from hsr8.recorder.log_level import RATES, LogLevel, LogRates
 from hsr8.recorder.recorder import PERIOD, Recorder
 from hsr8.recorder.run import run_folder
@@ -154,6 +154,7 @@ class Recording:
         selection = Selection(metrics.COLUMNS)
         with ExitStack() as stack:
             folder = path or Path(stack.enter_context(TemporaryDirectory(prefix="hsr8-")))
+            compiling = stack.enter_context(CompilationWatch())
             recorder = Recorder(
                 folder,
                 simulation.humanoid.model.names,
@@ -162,12 +163,11 @@ class Recording:
                 listeners=[selection] if self._log is None else [selection, self._log.add],
                 period=self._period,
             )
-            compiling = stack.enter_context(CompilationWatch())
             with suppress(KeyboardInterrupt), ExitStack() as open_:
                 open_.callback(self._note, recorder)
                 open_.callback(self._close_log)
+                open_.enter_context(recorder)  # first, to close its files if the camera fails
                 open_.enter_context(simulation)
-                open_.enter_context(recorder)
                 for tick in simulation:
                     recorder.append(tick)
                     if on_tick is not None:

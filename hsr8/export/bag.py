@@ -20,7 +20,7 @@ from hsr8.export.transforms import (
     moving_transforms,
     yaw_quaternions,
 )
-from hsr8.export.urdf import urdf_of
+from hsr8.export.urdf import MESHES, urdf_of
 from hsr8.recorder.palette import of_label
 from hsr8.recorder.run.run_reader import Run
 from hsr8.recorder.table import Table
@@ -91,7 +91,7 @@ def write_bag(run: Run, folder: Path) -> int:
         ]
         for k in order.tolist():
             writer.write(*lines[k])
-    urdf.write(folder / "robot.urdf")
+    urdf.write(folder / "robot.urdf", folder / MESHES)
     return len(lines)
 
 

@@ -19,7 +19,7 @@ import pyarrow.parquet as pq
 from numpy.typing import NDArray
 
 from hsr8.errors import UsageError
-from hsr8.recorder.files import atomic
+from hsr8.files import atomic
 from hsr8.recorder.run.run_reader import Run
 from hsr8.recorder.table import Table
 

@@ -11,7 +11,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from hsr8.export.links import Link, links_of, model_of
-from hsr8.recorder.files import atomic
 from hsr8.robots.loaded import LoadedRobot
 from hsr8.robots.shown import VISUAL_GROUPS, visual_model
 
@@ -19,6 +18,7 @@ Array = NDArray[np.float64]
 Element = ElementTree.Element
 
 _GEOM = mujoco.mjtGeom
+MESHES = "meshes"  # folder of the mesh files
 UNKNOWN = 1e6  # maximum torque and speed of a joint whose model lacks them [N m, rad/s]
 SPHERE_SEGMENTS = (24, 12)  # of the mesh of a sphere, around and from pole to pole
 _TRIANGLE = np.dtype([("normal", "<f4", 3), ("corners", "<f4", (3, 3)), ("attribute", "<u2")])
@@ -29,34 +29,34 @@ class Urdf:
     """Robot description.
 
     Attributes:
-        text: XML; mesh files have names relative to it.
+        text: XML; it names the mesh files by folder and name.
         meshes: contents of the mesh files, binary STL, by name.
     """
 
     text: str
     meshes: Mapping[str, bytes]
 
-    def write(self, file: Path) -> None:
-        """Write the description and its mesh files.
+    def write(self, file: Path, folder: Path) -> None:
+        """Write a new description, and its mesh files, if any, into a new folder.
 
         Raises:
             OSError: a file cannot be written.
         """
+        if self.meshes:
+            folder.mkdir()
         for name, content in self.meshes.items():
-            mesh = file.parent / name
-            mesh.parent.mkdir(exist_ok=True)
-            atomic.write_bytes(mesh, content)
-        atomic.write_text(file, self.text)
+            (folder / name).write_bytes(content)
+        file.write_text(self.text, encoding="utf-8")
 
 
-def urdf_of(robot: LoadedRobot, folder: str = "meshes") -> Urdf:
+def urdf_of(robot: LoadedRobot, folder: str = MESHES) -> Urdf:
     """Return the URDF of a robot.
 
     The base has no parent; the frames of camera, IMU and soles are links without mass.
 
     Args:
         robot: its joints, masses and shapes.
-        folder: of the mesh files, relative to the description.
+        folder: of the mesh files, next to the description.
 
     Raises:
         UsageError: a joint has a type that URDF lacks.
@@ -176,20 +176,20 @@ class _Writer:
                 shapes += [(at, Element("sphere", radius=radius)) for at in (end, -end)]
             return shapes
         if kind == _GEOM.mjGEOM_ELLIPSOID:
-            name = f"{self.folder}/sphere.stl"
+            name = "sphere.stl"
             if name not in self.meshes:
                 self.meshes[name] = _stl(*_sphere())
-            return [(here, Element("mesh", filename=name, scale=_text(size)))]
+            return [(here, Element("mesh", filename=f"{self.folder}/{name}", scale=_text(size)))]
         if kind == _GEOM.mjGEOM_MESH:
             mesh = model.mesh(int(model.geom_dataid[geom]))
-            name = f"{self.folder}/{mesh.name.replace('/', '_')}_{tag}.stl"
+            name = f"{mesh.name.replace('/', '_')}_{tag}.stl"
             if name not in self.meshes:
                 vertex, face = int(mesh.vertadr[0]), int(mesh.faceadr[0])
                 self.meshes[name] = _stl(
                     model.mesh_vert[vertex : vertex + int(mesh.vertnum[0])],
                     model.mesh_face[face : face + int(mesh.facenum[0])],
                 )
-            return [(here, Element("mesh", filename=name))]
+            return [(here, Element("mesh", filename=f"{self.folder}/{name}"))]
         return []
 
 

@@ -149,7 +149,8 @@ class Environment(gymnasium.Env[Observation, NDArray[Any]]):
         """
         episode = self._episode
         if episode is None or episode.exit_reason:
-            raise RuntimeError("step: the run has ended; expected reset()")
+            reason = "the run has ended" if episode else "no run has begun"
+            raise RuntimeError(f"step: {reason}; expected reset()")
         values = check_action(action, self._box)
         if "gaze" in self._decides:
             episode.simulation.look(*self._actions.gaze(values))

@@ -29,6 +29,7 @@ class OutsideView:
         self._movers = len(simulation.layout.movers)
         self._fps, self._size = fps, robot.stature / DEFAULT_STATURE
         self._qpos: list[np.ndarray] = []
+        self._drawn: Truth | None = None
         self._renderer = SceneRenderer(
             robot,
             simulation.layout,
@@ -40,8 +41,10 @@ class OutsideView:
         )
 
     def draw(self, truth: Truth) -> Image:
-        """Return an image (height, width, 3)."""
-        self._qpos = [*self._qpos[1 - HISTORY :], truth.qpos]
+        """Return an image (height, width, 3), the same for the same truth."""
+        if truth is not self._drawn:
+            self._qpos = [*self._qpos[1 - HISTORY :], truth.qpos]
+            self._drawn = truth
         obstacles = truth.obstacle_positions
         self._renderer.set_state(truth.qpos, obstacles[len(obstacles) - self._movers :])
         follow = FollowCamera(np.array(self._qpos), self._fps, 1.0, self._size)

@@ -8,9 +8,9 @@ from functools import partial
 from pathlib import Path
 from typing import Any, Self
 
+from hsr8.files.writing import writing
 from hsr8.frame_record import FrameRecord
 from hsr8.record import Tick
-from hsr8.recorder.files.writing import writing
 from hsr8.recorder.log_level import LogRates
 from hsr8.recorder.recorded import FrameSampler, RecordedImage, image_row, objects_of
 from hsr8.recorder.rows import TABLES

@@ -3,6 +3,8 @@
 from pathlib import Path
 
 from hsr8.body_builder import build_model
+from hsr8.files import atomic
+from hsr8.files.writing import writing
 from hsr8.recorder.log.rerun_log import RerunLog
 from hsr8.recorder.log_level import LogLevel
 from hsr8.recorder.rows import TABLES
@@ -24,7 +26,10 @@ def write_log(run: Run) -> Path:
     tables = {name: table for name in TABLES if len(table := getattr(run, name))}
     world = build_model(scenario, layout), robot, layout
     level = LogLevel(run.manifest.get("log") or LogLevel.STANDARD)
-    log = RerunLog(file, world, scenario, level=level)
-    log.add(tables)
-    log.close(str(run.manifest.get("exit_reason")))
+    with writing(run.path), atomic.draft(file) as draft:
+        log = RerunLog(draft, world, scenario, level=level, name=run.path.name)
+        try:
+            log.add(tables)
+        finally:
+            log.close(str(run.manifest.get("exit_reason")))
     return file

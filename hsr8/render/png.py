@@ -6,6 +6,8 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
+from hsr8.files import atomic
+
 
 def write_png(path: Path, image: NDArray[np.uint8]) -> None:
     """Write `image` (height, width, 3), RGB, as PNG, whatever the suffix of `path`.
@@ -14,4 +16,4 @@ def write_png(path: Path, image: NDArray[np.uint8]) -> None:
         OSError: the file cannot be written.
     """
     _, data = cv2.imencode(".png", cv2.cvtColor(image, cv2.COLOR_RGB2BGR))
-    path.write_bytes(data.tobytes())
+    atomic.write_bytes(path, data.tobytes())

@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from hsr8.errors import UsageError
+from hsr8.files.atomic import draft
 from hsr8.recorder.run.run_reader import Run
 from hsr8.render.png import write_png
 from hsr8.render.run_images import RunImages
@@ -112,7 +113,7 @@ def draw_video(
     count, thumbnail = len(times), None
     with _images(run, times, speed, options) as images:
         draw = images.camera(options.camera)
-        with VideoWriter(out, options.size, options.fps) as video:
+        with draft(out) as file, VideoWriter(file, options.size, options.fps) as video:
             for index in order(images):
                 video.add(draw(index))
                 progress(index + 1, count)

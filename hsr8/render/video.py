@@ -1,6 +1,5 @@
 """Videos for web pages: H.264 with exact timing, and WebP animations that repeat endlessly."""
 
-import os
 from concurrent.futures import Future, ThreadPoolExecutor
 from fractions import Fraction
 from pathlib import Path
@@ -27,10 +26,10 @@ FORMATS: dict[str, tuple[str, dict[str, str], dict[str, str]]] = {
 
 
 class VideoWriter:
-    """Writer of a video, used by ``with``; an error inside leaves no file.
+    """Writer of a video, used by ``with``; the file is complete at the end.
 
     Args:
-        path: of the file, which appears when it is complete; its suffix is one of `FORMATS`.
+        path: of the file; its suffix is one of `FORMATS`.
         size: width and height, both even [pixel].
         fps: frames per second.
     """
@@ -38,10 +37,7 @@ class VideoWriter:
     def __init__(self, path: Path, size: tuple[int, int], fps: int) -> None:
         kind = path.suffix.lower()
         codec, options, container_options = FORMATS[kind]
-        self._path, self._draft = path, path.with_name(f"{path.name}.{os.getpid()}.part")
-        self._container = av.open(
-            str(self._draft), "w", format=kind.removeprefix("."), options=container_options
-        )
+        self._container = av.open(str(path), "w", options=container_options)
         self._stream = self._container.add_stream(codec, rate=fps, options=options)
         self._stream.width, self._stream.height = size
         self._stream.pix_fmt = "yuv420p"
@@ -56,17 +52,12 @@ class VideoWriter:
 
     def __exit__(self, kind: type[BaseException] | None, *_: object) -> None:
         try:
-            try:
-                if kind is None:
-                    self._wait()
-                    self._container.mux(self._stream.encode(None))
-            finally:
-                self._worker.shutdown()
-                self._container.close()
             if kind is None:
-                self._draft.replace(self._path)
+                self._wait()
+                self._container.mux(self._stream.encode(None))
         finally:
-            self._draft.unlink(missing_ok=True)
+            self._worker.shutdown()
+            self._container.close()
 
     def add(self, image: Image) -> None:
         """Append one frame (height, width, 3)."""

@@ -14,6 +14,7 @@ from matplotlib.figure import Figure, FigureBase
 from matplotlib.patches import Patch
 
 from hsr8.errors import UsageError
+from hsr8.files.atomic import draft
 from hsr8.render import walk_panels as panels
 from hsr8.render.walking_table import WalkingTable
 
@@ -117,8 +118,8 @@ def save(figure: Figure, out: Path) -> None:
         OSError: it cannot be written.
     """
     undated = {".svg": {"Date": None}, ".pdf": {"CreationDate": None}}
-    with rc_context(STYLE):
-        figure.savefig(out, metadata=undated.get(out.suffix.lower()))
+    with rc_context(STYLE), draft(out) as file:
+        figure.savefig(file, metadata=undated.get(out.suffix.lower()))
 
 
 def _draw_over_time(axes: list[Axes], rows: list[Panel], table: WalkingTable) -> None:

@@ -1,5 +1,6 @@
 """Fixtures that stand in for the loop: a small world and records of any moment in it."""
 
+import ctypes
 import zlib
 from math import cos, sin
 from types import SimpleNamespace
@@ -290,3 +291,17 @@ def tables_of():
         }
 
     return tables
+
+
+@pytest.fixture
+def bound_by_file_modes():
+    """Root, too, may read only what the mode of a file allows."""
+    libc = ctypes.CDLL(None)
+    header = (ctypes.c_uint32 * 2)(0x20080522, 0)  # version 3, this thread
+    held = (ctypes.c_uint32 * 6)()  # effective, permitted and inheritable, twice
+    assert libc.capget(header, held) == 0
+    lowered = (ctypes.c_uint32 * 6)(*held)
+    lowered[0] &= ~(1 << 1 | 1 << 2)  # CAP_DAC_OVERRIDE, CAP_DAC_READ_SEARCH
+    assert libc.capset(header, lowered) == 0
+    yield
+    assert libc.capset(header, held) == 0

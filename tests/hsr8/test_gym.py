@@ -259,7 +259,7 @@ def test_an_unknown_id_is_refused():
 
 def test_actions_outside_of_the_space_are_refused():
     env = Environment("quick", decides=("gaze",), settings=FAST)
-    with pytest.raises(RuntimeError, match=r"step: the run has ended; expected reset"):
+    with pytest.raises(RuntimeError, match=r"step: no run has begun; expected reset"):
         env.step(np.zeros(2))
     env.reset(seed=1)
     for action in ([1.5, 0.0], [0.0, np.nan], [0.0], "left"):

@@ -12,8 +12,10 @@ from hsr8.errors import UsageError
 from hsr8.evaluation.bench.mistakes import mistakes
 from hsr8.evaluation.bench.score import Score, score
 from hsr8.evaluation.sweep.definition import Differences
+from hsr8.evaluation.sweep.folder import DEFINITION
 from hsr8.evaluation.sweep.job import RunResult
-from hsr8.recorder.files import atomic
+from hsr8.files import atomic
+from hsr8.files.regular import read_text
 from hsr8.scenario.section import Section
 
 FILE = "bench.json"  # in the folder of an entry
@@ -134,8 +136,14 @@ def read_entry(path: Path) -> Entry:
         UsageError: there is no entry.
     """
     file = path / FILE if path.is_dir() else path
+    families = sorted(part.parent.name for part in path.glob(f"*/{DEFINITION}"))
+    if families and not file.exists():
+        raise UsageError(
+            f"{path}: the benchmark is not finished, got results of {', '.join(families)}; "
+            "continue it with the same `hsr8 bench` command"
+        )
     try:
-        return Entry.from_json(json.loads(file.read_text(encoding="utf-8")))
+        return Entry.from_json(json.loads(read_text(file)))
     except OSError as error:
         text = f"cannot be read: {error.strerror}"
     except ValidationError as error:

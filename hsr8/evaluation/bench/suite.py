@@ -15,6 +15,7 @@ from hsr8.evaluation.bench.mistakes import checked_name, mistakes
 from hsr8.evaluation.sweep.definition import Differences, table_differences
 from hsr8.evaluation.sweep.seeds import parse_seeds
 from hsr8.evaluation.sweep.table import flatten
+from hsr8.files.regular import read_text
 from hsr8.scenario.loader import load_scenario, tables
 from hsr8.scenario.schema import Scenario
 from hsr8.scenario.section import Section
@@ -95,7 +96,7 @@ def read_suite(file: Path) -> Suite:
         UsageError: the file is not a suite.
     """
     try:
-        data = tomllib.loads(file.read_text(encoding="utf-8"))
+        data = tomllib.loads(read_text(file))
         suite = Suite.model_validate_json(json.dumps(data, default=str))
     except OSError as error:
         raise UsageError(f"--suite {file}: cannot be read: {error.strerror}") from error

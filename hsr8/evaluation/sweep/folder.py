@@ -13,17 +13,18 @@ import fcntl
 import json
 import os
 from collections.abc import Iterator
-from contextlib import ExitStack, contextmanager
+from contextlib import contextmanager
 from pathlib import Path
 from typing import Self, TextIO
 
 from hsr8.errors import Hsr8Error, UsageError
 from hsr8.evaluation.sweep.definition import Definition, scenario_differences, version_differences
-from hsr8.evaluation.sweep.job import CRASHED, OUTCOMES, REFUSED, RunResult
+from hsr8.evaluation.sweep.job import CRASHED, OUTCOMES, REFUSED, RUNS, RunResult
 from hsr8.evaluation.sweep.summary import NUMBERS
 from hsr8.evaluation.sweep.table import write_table
-from hsr8.recorder.files import atomic
-from hsr8.recorder.files.json_lines import read_lines
+from hsr8.files import atomic
+from hsr8.files.json_lines import open_to_append, read_lines
+from hsr8.files.regular import read_text
 from hsr8.recorder.run.run_folder import SCENARIO
 
 DEFINITION = "sweep.json"
@@ -55,8 +56,8 @@ class SweepFolder:
         """
         file = path / DEFINITION
         try:
-            value = json.loads(file.read_text(encoding="utf-8"))
-            scenario = (path / SCENARIO).read_text(encoding="utf-8")
+            value = json.loads(read_text(file))
+            scenario = read_text(path / SCENARIO)
             return cls(path, Definition.from_json(value, scenario))
         except FileNotFoundError as error:
             raise UsageError(f"{path}: not a sweep, {error.filename} is missing") from None
@@ -68,8 +69,11 @@ class SweepFolder:
         """Return the sweep at `path`; create it if it does not exist.
 
         Raises:
-            UsageError: the folder holds other runs, or cannot be written.
+            UsageError: the folder holds other runs, cannot be written, or leads out of itself.
         """
+        for part in (path / RUNS, path / RUNS / definition.name):
+            if part.is_symlink():
+                raise UsageError(f"{part}: a link, got {os.readlink(part)}; expected a folder")
         try:
             path.mkdir(parents=True, exist_ok=True)
             with _locked(path):
@@ -115,16 +119,11 @@ class SweepFolder:
         name = RESULTS if shard is None else f"shard-{shard[0]}-of-{shard[1]}.jsonl"
         path = self.path / name
         try:
-            with ExitStack() as undo:
-                file = undo.enter_context(path.open("a+", encoding="utf-8"))
-                fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
-                file.truncate(path.read_bytes().rfind(b"\n") + 1)  # a kill may cut the last line
-                undo.pop_all()
+            self._file = open_to_append(path)
         except BlockingIOError:
             raise UsageError(f"{path}: another sweep writes this file; wait or stop it") from None
         except OSError as error:
             raise UsageError(f"{path}: cannot write: {error.strerror}") from error
-        self._file = file
 
     def results(self) -> list[RunResult]:
         """Return the last result of every seed over all files, by seed; crashes count least.

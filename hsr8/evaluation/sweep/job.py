@@ -10,7 +10,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, Literal
 
-from hsr8.recorder.files import atomic
+from hsr8.files import atomic
 from hsr8.recorder.run import run_folder
 
 RunResult = dict[str, Any]

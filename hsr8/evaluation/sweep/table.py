@@ -6,7 +6,7 @@ from pathlib import Path
 from typing import Any
 
 from hsr8.evaluation.sweep.job import RunResult
-from hsr8.recorder.files import atomic
+from hsr8.files import atomic
 
 
 def flatten(result: RunResult, prefix: str = "") -> RunResult:

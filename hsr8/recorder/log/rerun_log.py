@@ -8,8 +8,8 @@ import numpy as np
 import rerun as rr
 from numpy.typing import NDArray
 
+from hsr8.files.writing import failure
 from hsr8.recorder import palette
-from hsr8.recorder.files.writing import failure
 from hsr8.recorder.log.belief_layer import BeliefLayer
 from hsr8.recorder.log.blueprint import RobotView, blueprint
 from hsr8.recorder.log.camera_layer import CameraLayer
@@ -53,6 +53,7 @@ class RerunLog:
         scenario: of the run.
         level: level of detail.
         live: address of a viewer that shows the log during the run; empty for none.
+        name: of the recording; that of the folder by default.
 
     Raises:
         RecordingFailed: here and in every method, the file cannot be written.
@@ -66,6 +67,7 @@ class RerunLog:
         *,
         level: LogLevel = LogLevel.STANDARD,
         live: str = "",
+        name: str = "",
     ) -> None:
         model, robot, layout = world
         rates = RATES[level]
@@ -73,7 +75,7 @@ class RerunLog:
         self._trail_throttle, self._path_throttle = Throttle(TRAIL_PERIOD), Throttle(1.0)
         # Without this call Rerun keeps the threads of streams that are no longer used.
         rr.init(APPLICATION, init_logging=False)
-        self._stream = BlockStream(path.parent.name)
+        self._stream = BlockStream(name or path.parent.name)
         self._stream.set_log_time_enabled(False)
         sinks = [rr.FileSink(str(path), write_footer=scenario.duration <= MAX_INDEXED)]
         sinks += [rr.GrpcSink(live)] if live else []

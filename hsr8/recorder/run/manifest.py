@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import Any
 
 from hsr8 import arithmetic
-from hsr8.recorder.files import atomic
+from hsr8.files import atomic
 from hsr8.version import VERSION
 
 LIBRARIES = (

@@ -13,13 +13,14 @@ Tables are written once a second, so the folder of a killed run is complete up t
 """
 
 import secrets
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
+from contextlib import contextmanager, suppress
 from pathlib import Path
 from typing import Any
 
 from hsr8.errors import UsageError
-from hsr8.recorder.files import atomic
-from hsr8.recorder.files.writing import NO_ROOM, failure, writing
+from hsr8.files import atomic
+from hsr8.files.writing import NO_ROOM, failure, writing
 from hsr8.recorder.run.manifest import Manifest
 
 SCENARIO = "scenario.toml"
@@ -77,6 +78,20 @@ class RunFolder:
         """Write the exit reason and the number of rows of each table into the manifest."""
         with writing(self.path):
             self._manifest.ended(exit_reason, rows).write(self.path / MANIFEST)
+
+
+@contextmanager
+def new_run_folder(out: Path, scenario: str, seed: int) -> Iterator[Path]:
+    """Create a folder as `RunFolder.create` does; remove it if nothing is written into it."""
+    parent = out / scenario
+    missing = [folder for folder in (parent, *parent.parents) if not folder.exists()]
+    path = RunFolder.create(out, scenario, seed)
+    try:
+        yield path
+    finally:
+        with suppress(OSError):  # of a folder that is not empty
+            for folder in (path, *missing):
+                folder.rmdir()
 
 
 def write_metrics(path: Path, metrics: Mapping[str, Any]) -> None:

@@ -1,6 +1,8 @@
 """Reading of run folders, also of runs that were killed."""
 
 import json
+import os
+from contextlib import suppress
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
@@ -8,7 +10,8 @@ from typing import Any, TypeVar
 
 from hsr8.errors import ScenarioError, UsageError
 from hsr8.file_format import check_number
-from hsr8.recorder.files.writing import FAILED
+from hsr8.files.regular import read_text
+from hsr8.files.writing import FAILED
 from hsr8.recorder.rows import TABLES
 from hsr8.recorder.run import run_folder
 from hsr8.recorder.run.manifest import FORMAT, RUNNING
@@ -67,7 +70,7 @@ class Run:
             UsageError: it cannot be read.
         """
         try:
-            return self.scenario_file.read_text(encoding="utf-8")
+            return read_text(self.scenario_file)
         except OSError as error:
             raise UsageError(f"cannot read {self.scenario_file}: {error.strerror}") from error
         except UnicodeDecodeError as error:
@@ -94,12 +97,12 @@ class Run:
     def log_file(self) -> Path | None:
         """Rerun log; None after ``--no-log``."""
         file = self.path / run_folder.LOG
-        return file if file.exists() else None
+        return file if file.is_file() else None
 
     def metrics(self) -> dict[str, Any]:
         """Return the results; empty if the run did not get there."""
         file = self.path / run_folder.METRICS
-        return _json(file) if file.exists() else {}
+        return _json(file) if os.path.lexists(file) else {}
 
     @cached_property
     def ticks(self) -> Table:
@@ -162,21 +165,18 @@ class Run:
 
 
 def open_run(path: str | Path) -> Run:
-    """Return the run at `path`, or the newest run below it.
+    """Return the run at `path`, or the newest one in this folder, see `run_folders`.
 
     Raises:
         UsageError: there is no run, or its manifest cannot be read.
     """
     path = Path(path)
     try:
-        if (path / run_folder.MANIFEST).is_file():
-            return _run(path)
         if not path.exists():
             raise UsageError(f"{path}: no such run folder{_alternatives(path)}")
-        if path.is_file():
+        if not path.is_dir():
             raise UsageError(f"{path}: a file; expected the run folder, here {path.parent}")
-        files = [file for file in path.glob(f"**/{run_folder.MANIFEST}") if file.is_file()]
-        runs = sorted(files, key=lambda file: file.stat().st_mtime_ns)
+        runs = run_folders(path)
     except OSError as error:
         raise UsageError(f"cannot read the run folder {path}: {error.strerror}") from error
     if not runs:
@@ -184,7 +184,34 @@ def open_run(path: str | Path) -> Run:
             f"{path}: no run in this folder; a run folder has a {run_folder.MANIFEST}, and "
             "`hsr8 run SCENARIO` makes one"
         )
-    return _run(runs[-1].parent)
+    return _run(runs[-1])
+
+
+def run_folders(path: Path) -> list[Path]:
+    """Return `path` if it is a run folder, else the run folders below it, the newest last.
+
+    Only the two levels that ``hsr8 run --out`` makes are searched: scenario and run.
+
+    Raises:
+        OSError: `path` cannot be read.
+    """
+    if (path / run_folder.MANIFEST).is_file():
+        return [path]
+    times = {}
+    for folder in _subfolders(path):
+        with suppress(OSError):  # such as a folder of another user
+            for candidate in (folder, *_subfolders(folder)):
+                manifest = candidate / run_folder.MANIFEST
+                if manifest.is_file():
+                    times[candidate] = manifest.stat().st_mtime_ns
+    return sorted(times, key=times.__getitem__)
+
+
+def _subfolders(path: Path) -> list[Path]:
+    """Return the folders in a folder, without drafts, whose names begin with a dot."""
+    with os.scandir(path) as entries:
+        names = [e.name for e in entries if e.is_dir() and not e.name.startswith(".")]
+    return [path / name for name in sorted(names)]
 
 
 def _run(path: Path) -> Run:
@@ -212,7 +239,7 @@ def _alternatives(path: Path) -> str:
 
 def _json(path: Path) -> dict[str, Any]:
     try:
-        value = json.loads(path.read_bytes().decode("utf-8"))
+        value = json.loads(read_text(path))
     except OSError as error:
         raise UsageError(f"cannot read {path}: {error.strerror}") from error
     except (ValueError, RecursionError) as error:

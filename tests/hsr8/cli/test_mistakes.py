@@ -78,7 +78,7 @@ LINES = [
     ("robot inspect text.png", "robot 'text.png': not the file of a robot, got the suffix '.png'"),
     ("robot calibrate hsr8 --out a.json", "--out a.json: wrong suffix; expected .toml"),
     ("robot calibrate hsr8 --out none/a.toml", "--out none/a.toml: cannot be written"),
-    ("robot calibrate hsr8 --out yard.toml", "--out yard.toml: exists; expected a new file"),
+    ("robot calibrate hsr8 --out yard.toml", "--out yard.toml: exists; expected a new name"),
     ("robot calibrate text.xml", "text.xml: got a model"),
     ("robot inspect", "FILE"),
     ("robot inspect nothing", "unknown robot 'nothing'"),

@@ -83,5 +83,5 @@ def test_a_description_that_cannot_be_written_needs_another_file(file, monkeypat
 def test_nothing_is_overwritten(file, tmp_path, capsys):
     (tmp_path / "old.toml").write_text("mine")
     assert entry(["robot", "calibrate", "mine.toml", "--out", "old.toml"]) == 2
-    assert "--out old.toml: exists; expected a new file" in capsys.readouterr().err
+    assert "--out old.toml: exists; expected a new name" in capsys.readouterr().err
     assert (tmp_path / "old.toml").read_text() == "mine"

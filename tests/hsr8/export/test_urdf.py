@@ -66,9 +66,9 @@ def test_urdf_agrees_with_pinocchio(name):
 
 def test_mesh_files_are_closed_and_have_the_size_of_the_geom(tmp_path):
     urdf = urdf_of(load_robot("hsr8"))
-    urdf.write(tmp_path / "robot.urdf")
+    urdf.write(tmp_path / "robot.urdf", tmp_path / "meshes")
     names = {m.get("filename") for m in ElementTree.fromstring(urdf.text).iter("mesh")}
-    assert names == set(urdf.meshes)
+    assert names == {f"meshes/{name}" for name in urdf.meshes}
     for name in names:
         content = (tmp_path / name).read_bytes()
         corners = np.frombuffer(

@@ -36,7 +36,7 @@ def rendered_afterwards(run, tmp_path):
 def test_a_video_of_a_run_equals_one_of_its_records(tmp_path, scenario, duration, capsys):
     words = ["run", scenario, *FAST, "--duration", duration, "--video"]
     assert entry([*words, "--out", str(tmp_path / "runs")]) <= 1
-    run = open_run(tmp_path)
+    run = open_run(tmp_path / "runs")
     assert str(run.path / "video.mp4") in capsys.readouterr().out
     during, after = frames(run.path / "video.mp4"), rendered_afterwards(run, tmp_path)
     assert np.array_equal(during, after)
@@ -61,7 +61,7 @@ def test_an_interrupted_run_leaves_the_video_of_its_records(tmp_path):
 def test_a_killed_run_leaves_the_video_of_its_records(tmp_path):
     """The second process gets a SIGTERM when the first one ends."""
     entry(["run", "paper", *FAST, "--quiet", "--duration", "6", "--out", str(tmp_path / "runs")])
-    folder = open_run(tmp_path).path
+    folder = open_run(tmp_path / "runs").path
     manifest, scenario = folder / "manifest.json", folder / "scenario.toml"
     manifest.write_text(manifest.read_text().replace('"completed"', '"running"'))
     assert open_run(folder).running
@@ -69,7 +69,7 @@ def test_a_killed_run_leaves_the_video_of_its_records(tmp_path):
     options = ["--follow", "--camera", "head", *SMALL]
     command = [sys.executable, "-m", "hsr8", "render", str(folder), *options]
     process = subprocess.Popen(command)
-    while not [*folder.glob("video.mp4.*.part")]:
+    while not [*folder.glob(".*.part/video.mp4")]:
         assert process.poll() is None
         clock.sleep(0.1)
     process.terminate()
@@ -81,7 +81,7 @@ def test_a_killed_run_leaves_the_video_of_its_records(tmp_path):
 def test_a_run_without_records_has_no_video(tmp_path, capsys):
     words = ["run", "quick", *FAST, "--quiet", "--duration", "1", "--out", str(tmp_path / "runs")]
     entry(words)
-    run = open_run(tmp_path)
+    run = open_run(tmp_path / "runs")
     shutil.copytree(run.path, tmp_path / "copy")
     (tmp_path / "copy" / "records.arrows").unlink()
     manifest = tmp_path / "copy" / "manifest.json"

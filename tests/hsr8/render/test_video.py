@@ -3,6 +3,7 @@ import cv2
 import numpy as np
 import pytest
 
+from hsr8.files.atomic import draft
 from hsr8.render.video import VideoWriter
 
 
@@ -39,7 +40,7 @@ def test_a_webp_repeats_endlessly(tmp_path):
 
 
 def _fail_within(path):
-    with VideoWriter(path, (64, 48), 25) as video:
+    with draft(path) as file, VideoWriter(file, (64, 48), 25) as video:
         for _ in range(3):
             video.add(np.zeros((48, 64, 3), np.uint8))
         raise KeyboardInterrupt
@@ -54,7 +55,11 @@ def test_a_failure_leaves_no_file(tmp_path):
 def test_an_old_video_survives_a_frame_that_cannot_be_encoded(tmp_path):
     file = tmp_path / "v.mp4"
     file.write_text("old")
-    with pytest.raises(cv2.error, match="channels"), VideoWriter(file, (64, 48), 25) as video:
+    with (
+        pytest.raises(cv2.error, match="channels"),
+        draft(file) as new,
+        VideoWriter(new, (64, 48), 25) as video,
+    ):
         video.add(np.zeros((48, 64), np.uint8))
     assert file.read_text() == "old"
     assert list(tmp_path.iterdir()) == [file]

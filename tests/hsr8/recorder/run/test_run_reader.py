@@ -1,4 +1,3 @@
-import ctypes
 import shutil
 
 import pytest
@@ -25,20 +24,6 @@ def recorded(tmp_path_factory):
     words = ["run", "quick", "--body", "kinematic", "--camera", "analytic", "--duration", "1"]
     entry([*words, "--no-log", "--quiet", "--out", str(out)])
     return open_run(out).path
-
-
-@pytest.fixture
-def bound_by_file_modes():
-    """Root, too, may read only what the mode of a file allows."""
-    libc = ctypes.CDLL(None)
-    header = (ctypes.c_uint32 * 2)(0x20080522, 0)  # version 3, this thread
-    held = (ctypes.c_uint32 * 6)()  # effective, permitted and inheritable, twice
-    assert libc.capget(header, held) == 0
-    lowered = (ctypes.c_uint32 * 6)(*held)
-    lowered[0] &= ~(1 << 1 | 1 << 2)  # CAP_DAC_OVERRIDE, CAP_DAC_READ_SEARCH
-    assert libc.capset(header, lowered) == 0
-    yield
-    assert libc.capset(header, held) == 0
 
 
 def output(command, run, capsys):

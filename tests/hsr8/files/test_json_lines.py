@@ -3,7 +3,7 @@ import json
 import pytest
 
 from hsr8.errors import UsageError
-from hsr8.recorder.files.json_lines import read_lines
+from hsr8.files.json_lines import read_lines
 
 
 def test_a_cut_line_is_left_out(tmp_path):

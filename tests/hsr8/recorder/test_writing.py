@@ -64,7 +64,7 @@ def test_a_run_whose_results_cannot_be_written_fails(tmp_path, capfd, monkeypatc
     def refuse(path, value):
         raise OSError(28, "No space left on device")
 
-    monkeypatch.setattr("hsr8.recorder.files.atomic.write_json", refuse)
+    monkeypatch.setattr("hsr8.files.atomic.write_json", refuse)
     assert _run(tmp_path, "--no-log") == 3
     assert "No space left" in capfd.readouterr().err
     assert open_run(tmp_path).manifest["exit_reason"] == "failed"

@@ -1,1 +1,0 @@
-"""Layers below the records of a run: atomic, growing, binary and JSON files."""
