@@ -8,6 +8,8 @@ from hsr8.errors import UsageError
 from hsr8.files import atomic
 from hsr8.recorder.run.run_reader import open_run
 
+SUFFIXES = (".png", ".svg", ".pdf")
+
 
 def main(options: Plot) -> int:
     """Draw the plot and print its path.
@@ -16,10 +18,10 @@ def main(options: Plot) -> int:
         UsageError: there is no such run or no record of its walking, or an option is invalid.
     """
     run = open_run(options.run)
-    from hsr8.render.walking_table import walking_of  # noqa: PLC0415  loads the robot
-
-    table = walking_of(run)
-    end = float(table.time[-1]) if len(table) else 0.0
+    out = options.out or run.path / f"{options.what}.png"
+    require_file_name("--out", out, SUFFIXES)
+    time = run.records["time"]
+    end = float(time[-1]) if len(time) else 0.0
     start = options.start
     stop = end if options.stop is None else min(options.stop, end)
     if not 0.0 <= start < stop:
@@ -28,10 +30,10 @@ def main(options: Plot) -> int:
             f"the run ended at {end:g} s"
         )
     print(f"plotting    {run.path}", file=sys.stderr, flush=True)
-    from hsr8.render.walk_figure import SUFFIXES, draw, save  # noqa: PLC0415  takes seconds
+    from hsr8.render.walk_figure import draw, save  # noqa: PLC0415  takes seconds
+    from hsr8.render.walking_table import walking_of  # noqa: PLC0415  loads the robot
 
-    out = options.out or run.path / f"{options.what}.png"
-    require_file_name("--out", out, SUFFIXES)
+    table = walking_of(run)
     title = f"{run.manifest.get('scenario', run.path.name)}, seed {run.seed}"
     if (start, stop) != (0.0, end):
         title += f", {start:g} to {stop:g} s"

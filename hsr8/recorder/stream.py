@@ -144,7 +144,7 @@ def _checksums(file: Path) -> list[str]:
 
 def _verified(path: Path, lines: Sequence[str], *, whole: bool) -> bytearray:
     """Return the batches of a file that match their checksums and the bounds of their sizes."""
-    content, count, unpacked = bytearray(), 0, 0
+    content, count, unpacked, checksums = bytearray(), 0, 0, path.parent / CHECKSUMS
     with path.open("rb") as file:
         for line in lines:
             name, *numbers = line.split(" ")
@@ -153,10 +153,10 @@ def _verified(path: Path, lines: Sequence[str], *, whole: bool) -> bytearray:
             try:
                 last, end, checksum = int(numbers[0]), int(numbers[1]), int(numbers[2], 16)
             except (ValueError, IndexError) as error:
-                raise UsageError(f"{path.parent / CHECKSUMS}: damaged line {line!r}") from error
+                raise UsageError(f"{checksums}: damaged line {line.strip()!r}") from error
             size, rows = end - len(content), last - count
             if not (0 <= size <= MAX_PART and 0 <= rows <= MAX_ROWS):
-                raise UsageError(f"{path.parent / CHECKSUMS}: out of range in line {line!r}")
+                raise UsageError(f"{checksums}: out of range in line {line.strip()!r}")
             part = file.read(size)
             if len(part) < size:
                 break

@@ -91,8 +91,10 @@ class SceneRenderer:
             view: camera of the model or a free one.
             arrows: tail and tip of each in W (3,) [m].
         """
-        self._renderer.update_scene(self.data, camera=view, scene_option=self._option)
-        scene = self._renderer.scene
+        scene, camera = self._renderer.scene, self._camera(view)
+        # An infinite plane is centred below the camera of the scene, else that of the last image.
+        mujoco.mjv_updateCamera(self.model, self.data, camera, scene)
+        self._renderer.update_scene(self.data, camera=camera, scene_option=self._option)
         for geom in scene.geoms[: scene.ngeom]:
             if geom.type == mujoco.mjtGeom.mjGEOM_PLANE:
                 geom.category = mujoco.mjtCatBit.mjCAT_DECOR  # casts no shadow, which takes time
@@ -122,6 +124,14 @@ class SceneRenderer:
                 f"camera: unknown name {name!r}{suggestion(name, choices)}; "
                 f"expected one of {', '.join(choices)}"
             )
+
+    def _camera(self, view: str | mujoco.MjvCamera) -> mujoco.MjvCamera:
+        if not isinstance(view, str):
+            return view
+        camera = mujoco.MjvCamera()
+        camera.type = mujoco.mjtCamera.mjCAMERA_FIXED
+        camera.fixedcamid = self.model.camera(view).id
+        return camera
 
     def close(self) -> None:
         """Free the OpenGL context."""

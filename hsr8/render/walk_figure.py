@@ -19,7 +19,6 @@ from hsr8.render import walk_panels as panels
 from hsr8.render.walking_table import WalkingTable
 
 What = Literal["walking", "zmp", "footsteps", "velocity", "torques", "tilt"]
-SUFFIXES = (".png", ".svg", ".pdf")
 WIDTH = 11.0  # of a figure [inch]
 STYLE: dict[Any, Any] = {
     "font.size": 9.0,

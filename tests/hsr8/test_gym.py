@@ -268,6 +268,17 @@ def test_actions_outside_of_the_space_are_refused():
     env.close()
 
 
+@pytest.mark.gl
+def test_an_image_from_outside_is_the_same_until_the_next_step(make):
+    env = make(settings=RENDERED, render_mode="rgb_array")
+    env.reset(seed=1)
+    for _ in range(5):
+        env.step(env.action_space.high)
+    image = env.render()
+    for _ in range(3):
+        assert np.array_equal(env.render(), image)
+
+
 def test_a_run_that_is_too_short_is_refused(make):
     env = make(settings=[*FAST, "duration=0.1", "camera.latency_ms=200"])
     with pytest.raises(UsageError, match="duration: the run ends before the first decision"):

@@ -124,7 +124,7 @@ LINES = [
     ("verify RUN", "RUN"),
     ("replay RUN", "scenario.toml"),
     ("plot RUN --what speed", "walking"),
-    ("plot RUN", "scenario.toml"),
+    ("plot RUN", "nothing to plot from 0 s to 0 s"),
     ("export", "export: nothing to export; expected --bag"),
     ("export --bag bag", "--bag: got 0 runs; expected one"),
     ("export --lerobot dataset", "--lerobot: got 0 runs; expected at least one"),

@@ -29,6 +29,13 @@ def test_an_entry_is_read_from_its_folder_or_its_file(make_entry, tmp_path):
     assert read_entry(tmp_path) == read_entry(tmp_path / "bench.json") == make_entry()
 
 
+def test_an_unfinished_entry_is_refused_with_the_next_step(tmp_path):
+    (tmp_path / "course").mkdir()
+    (tmp_path / "course" / "sweep.json").write_text("{}")
+    with pytest.raises(UsageError, match=r"not finished, got results of course; continue it with"):
+        read_entry(tmp_path)
+
+
 def test_all_is_the_score_of_all_families(make_entry):
     scores = make_entry(course=("success", "timeout"), crowd=("collision",)).scores()
     assert list(scores) == ["course", "crowd", "all"]

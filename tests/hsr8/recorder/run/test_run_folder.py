@@ -46,6 +46,15 @@ def test_the_newest_run_below_a_folder_is_meant(tmp_path):
     assert open_run(tmp_path / "quick").seed == 2
 
 
+def test_runs_are_looked_for_at_the_two_levels_of_scenario_and_run_only(tmp_path):
+    path = RunFolder.create(tmp_path / "runs", "quick", 1)
+    RunFolder(path, Manifest.now("quick", 1, (), "analytic"), "")
+    for folder in (path, path.parent, tmp_path / "runs"):
+        assert open_run(folder).path == path
+    with pytest.raises(UsageError, match="no run in this folder"):
+        open_run(tmp_path)
+
+
 def test_a_missing_run_is_a_usage_error_with_alternatives(tmp_path):
     path = RunFolder.create(tmp_path, "quick", 1)
     with pytest.raises(UsageError, match="no run in this folder"):
