@@ -1,6 +1,6 @@
 """Output: a draft that replaces its target when it is complete.
 
-After a crash a target is either the old or the new one, and several processes may write the same
+After a crash a target is either the old or the new one, and several processes may write one
 target. A link in place of the target is replaced, never followed.
 """
 

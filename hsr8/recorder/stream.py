@@ -2,7 +2,7 @@
 
 The file `CHECKSUMS` has a line for each batch: table, rows and bytes of its file up to the end of
 the batch, and the CRC-32 of the bytes of the batch. Only bytes that match their checksum, and
-whose unpacked size is bounded, are passed to Arrow, which allocates as much memory as a file says.
+whose unpacked size is bounded, are passed to Arrow, which allocates the memory that a file states.
 A file that is cut off at any byte loses its last batch only.
 """
 

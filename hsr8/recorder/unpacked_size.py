@@ -72,13 +72,13 @@ def _buffers(metadata: memoryview, batch: int) -> np.ndarray:
     return numbers.reshape(count, 2)
 
 
-def _follow(metadata: memoryview, place: int) -> int:
-    """Return the place that the offset at `place` refers to."""
-    return place + int(struct.unpack_from("<I", metadata, place)[0])
+def _follow(metadata: memoryview, index: int) -> int:
+    """Return the index that the offset at `index` refers to."""
+    return index + int(struct.unpack_from("<I", metadata, index)[0])
 
 
 def _field(metadata: memoryview, table: int, number: int) -> int | None:
-    """Return the place of a field of a table, None if it is absent."""
+    """Return the index of a field of a table, None if it is absent."""
     vtable = table - struct.unpack_from("<i", metadata, table)[0]
     (size,) = struct.unpack_from("<H", metadata, vtable)
     entry = 4 + 2 * number
