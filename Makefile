@@ -12,10 +12,10 @@ export PYTHONDONTWRITEBYTECODE :=
 XDIST ?= -n 2 --dist loadfile
 
 .DEFAULT_GOAL := help
-.PHONY: help setup run test test-all lint types layers fix lock build clean
+.PHONY: help setup run test test-all interpreters lint types layers fix lock build clean
 
 help:  ## list of targets
-	@awk 'BEGIN {FS = ":.*## "} /^[a-z-]+:.*## / {printf "  make %-9s %s\n", $$1, $$2}' $(MAKEFILE_LIST)
+	@awk 'BEGIN {FS = ":.*## "} /^[a-z-]+:.*## / {printf "  make %-13s %s\n", $$1, $$2}' $(MAKEFILE_LIST)
 
 setup:  ## virtual environment, locked packages, OpenGL for machines without a display
 	@bash scripts/setup.sh
@@ -28,6 +28,9 @@ test: setup  ## fast test suite: make test ARGS="-k gait"
 
 test-all: setup  ## all tests, including the slow studies
 	@$(PY) -m pytest $(XDIST) -m "slow or not slow" --timeout 3600 $(ARGS)
+
+interpreters: setup  ## system tests, runs and exports with every further supported Python found here
+	@$(PY) scripts/check_interpreters.py
 
 lint: setup  ## ruff: style and formatting
 	@$(PY) -m ruff check $(SOURCES)
@@ -51,6 +54,6 @@ lock:  ## resolve the dependencies into requirements.lock (needs the network)
 build: setup  ## build the wheel and test it in a separate environment
 	@bash scripts/smoke_wheel.sh
 
-clean:  ## remove caches and build products; runs/ and .venv stay
+clean:  ## remove caches and build products; runs/ and .venv* stay
 	@rm -rf build dist .pytest_cache .mypy_cache .ruff_cache .hypothesis .import_linter_cache MUJOCO_LOG.TXT
 	@find $(SOURCES) models -name __pycache__ -type d -prune -exec rm -rf {} +
