@@ -11,6 +11,7 @@ import numpy as np
 
 from hsr8.errors import UsageError
 from hsr8.evaluation.paired import PairedDifference, compare_successes, compare_values
+from hsr8.evaluation.registry import METRICS, Shown, shown_in
 from hsr8.evaluation.sweep.definition import (
     Definition,
     Differences,
@@ -24,20 +25,6 @@ from hsr8.recorder.run.manifest import CALL
 from hsr8.recorder.run.run_reader import open_run, run_folders
 from hsr8.suggestion import suggestion
 
-METRICS = (
-    "success",
-    "collisions",
-    "falls",
-    "min_clearance_m",
-    "time_to_goal_s",
-    "arrival_error_deg",
-    "path_length_m",
-    "localization_rmse_m",
-    "heading_rmse_deg",
-    "nees_mean",
-    "head_travel_radps",
-)
-ON_ARRIVAL = ("time_to_goal_s", "arrival_error_deg", "path_length_m")  # where both succeeded
 SAME_WORLD = ("world.", "mission.")  # sections that must agree for seeds to pair
 APPEARANCE = ("world.brightness", "world.beacons", "world.beacon_displacement")  # except these keys
 
@@ -143,7 +130,7 @@ def compare(a: Side, b: Side, metrics: Sequence[str] = ()) -> Comparison:
     Args:
         a: reference.
         b: side compared with it.
-        metrics: names of metrics; `METRICS` by default.
+        metrics: names of metrics; by default those that the registry compares.
 
     Raises:
         UsageError: no seed is common, the worlds of a seed differ, or a metric is unknown.
@@ -161,7 +148,8 @@ def compare(a: Side, b: Side, metrics: Sequence[str] = ()) -> Comparison:
         raise UsageError(f"no common seed: A has {_range(a.runs)}, B has {_range(b.runs)}")
     for metric in metrics:
         _require_metric(metric, [side.runs[seed] for side in (a, b) for seed in seeds])
-    differences = paired_differences(metrics or METRICS, a.runs, b.runs, seeds)
+    names = metrics or [metric.name for metric in shown_in(Shown.COMPARED)]
+    differences = paired_differences(names, a.runs, b.runs, seeds)
     versions = version_differences(a.definition, b.definition)
     if not (a.definition.code and b.definition.code):  # unknown for a run folder
         versions.pop("code", None)
@@ -199,7 +187,7 @@ def _difference(
     metric: str, a: Mapping[Any, RunResult], b: Mapping[Any, RunResult], seeds: Sequence[Seed]
 ) -> MetricDifference | None:
     """Return None if no seed has the metric on both sides."""
-    if metric in ON_ARRIVAL:
+    if metric in METRICS and METRICS[metric].successes:
         seeds = [s for s in seeds if a[s].get("success") and b[s].get("success")]
     pairs = {s: (_value(a[s], metric), _value(b[s], metric)) for s in seeds}
     pairs = {s: pair for s, pair in pairs.items() if None not in pair}

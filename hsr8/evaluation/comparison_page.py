@@ -5,6 +5,7 @@ from dataclasses import asdict
 from typing import Any
 
 from hsr8.evaluation.comparison import Comparison, MetricDifference, Seed
+from hsr8.evaluation.markdown import table
 
 MAX_LISTED = 20  # seeds listed by number
 
@@ -19,21 +20,21 @@ def page(comparison: Comparison, command: str) -> str:
     lines += [f"- {len(seeds)} common seeds, {seeds[0]} to {seeds[-1]} ({', '.join(more)})", ""]
     changed = {**comparison.settings, **comparison.versions}
     if changed:
-        lines += ["| differs | A | B |", "|---|---|---|"]
-        lines += [f"| `{key}` | {x} | {y} |" for key, (x, y) in changed.items()]
+        rows = [(f"`{key}`", x, y) for key, (x, y) in changed.items()]
+        lines += table(("differs", "A", "B"), rows)
     else:
-        lines += ["Scenario and versions are equal."]
-    return "\n".join([*lines, "", *difference_table(comparison.metrics), ""])
+        lines += ["Scenario and versions are equal.", ""]
+    return "\n".join([*lines, *difference_table(comparison.metrics)])
 
 
 def difference_table(metrics: Sequence[MetricDifference]) -> list[str]:
     """Return the lines of a table of differences, and the seeds of only one side."""
-    lines = ["| metric | n | A | B | B - A | 95 % interval | p | test |", "|---" * 8 + "|"]
-    lines += [_row(metric) for metric in metrics]
+    head = ("metric", "n", "A", "B", "B - A", "95 % interval", "p", "test")
+    lines = table(head, map(_row, metrics))
     for metric in metrics:
         for name, only in (("A", metric.only_a), ("B", metric.only_b)):
             if only:
-                lines += ["", f"`{metric.metric}` in {name} only: {_seeds(only)}"]
+                lines += [f"`{metric.metric}` in {name} only: {_seeds(only)}", ""]
     return lines
 
 
@@ -50,7 +51,7 @@ def to_json(comparison: Comparison) -> dict[str, Any]:
     }
 
 
-def _row(metric: MetricDifference) -> str:
+def _row(metric: MetricDifference) -> list[str]:
     if metric.test == "McNemar":
         test = f"McNemar, exact; {len(metric.only_a)} in A only, {len(metric.only_b)} in B only"
         cells = [
@@ -67,8 +68,7 @@ def _row(metric: MetricDifference) -> str:
             f"{metric.difference:+.3g}",
             f"{metric.low:+.3g} to {metric.high:+.3g}",
         ]
-    row = [f"`{metric.metric}`", str(metric.n), *cells, f"{metric.p_value:.2g}", test]
-    return "| " + " | ".join(row) + " |"
+    return [f"`{metric.metric}`", str(metric.n), *cells, f"{metric.p_value:.2g}", test]
 
 
 def _seeds(seeds: Sequence[Seed]) -> str:

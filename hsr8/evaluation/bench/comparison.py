@@ -7,12 +7,9 @@ from hsr8.errors import UsageError
 from hsr8.evaluation.bench.entry import ALL, Entry
 from hsr8.evaluation.bench.score import scored
 from hsr8.evaluation.comparison import MetricDifference, paired_differences
+from hsr8.evaluation.registry import Shown, shown_in
 from hsr8.evaluation.sweep.job import REFUSED, RunResult
 
-METRICS = (
-    *("success", "collision", "timeout", "fall", "spl", "optimal_time_ratio"),
-    *("time_to_goal_s", "min_clearance_m", "head_travel_radps"),
-)
 SAME = {"suite": "suite", "suite_version": "version", "suite_hash": "hash"}
 """Attributes of an entry that must agree, by their name in messages."""
 
@@ -72,7 +69,8 @@ def compare_entries(a: Entry, b: Entry) -> EntryComparison:
         own = [world for world in worlds if world.rpartition(" ")[0] == family]
         for difference in paired_differences(("success",), one, other, own):
             families[family] = difference
-    return EntryComparison(a, b, worlds, families, paired_differences(METRICS, one, other, worlds))
+    metrics = [metric.name for metric in shown_in(Shown.BENCH_COMPARED)]
+    return EntryComparison(a, b, worlds, families, paired_differences(metrics, one, other, worlds))
 
 
 def require_same_suite(a: Entry, b: Entry) -> None:

@@ -13,12 +13,16 @@ from hsr8.evaluation.bench.entry import ALL, Entry
 from hsr8.evaluation.bench.score import Score
 from hsr8.evaluation.bench.suite import is_condition
 from hsr8.evaluation.comparison_page import difference_table
+from hsr8.evaluation.markdown import table
 from hsr8.evaluation.proportion import Proportion
+from hsr8.evaluation.registry import METRICS
 
-SCORES = (
-    *("collisions [%]", "timeouts [%]", "falls [%]", "SPL", "T*/T", "min clearance [m]"),
-    *("head travel [rad/s]", "time [s]"),
-)
+MEDIANS = {"min_clearance_m": 3, "head_travel_radps": 2, "time_to_goal_s": 1}
+"""Digits of the medians of a score."""
+SCORES = [
+    METRICS[name].head
+    for name in ("collision", "timeout", "fall", "spl", "optimal_time_ratio", *MEDIANS)
+]
 SHOWN = ("hsr8", "code", "mujoco", "numpy", "scipy", "pin", "processor", "arithmetic")
 
 
@@ -31,7 +35,7 @@ def entry_page(entry: Entry) -> str:
         (name, str(part.runs), *_success(part.success), *_cells(part))
         for name, part in entry.scores().items()
     ]
-    return "\n".join([*lines, *_table(head, rows), ""])
+    return "\n".join([*lines, *table(head, rows)])
 
 
 def entries_table(entries: Sequence[Entry]) -> list[str]:
@@ -60,9 +64,8 @@ def entries_table(entries: Sequence[Entry]) -> list[str]:
         counts = [f"{scores[f].success.count} of {scores[f].runs}" for f in families]
         whole = scores[ALL]
         rows.append((_name(entry), *_success(whole.success), pair, *counts, *_cells(whole)))
-    lines = [f"{_suite(first)}, {first.seeds} seeds. {_versions(first)}.", "", *_table(head, rows)]
-    lines += ["", *_table(("entry", "command"), [(e.name, f"`{e.command}`") for e in entries])]
-    return lines
+    lines = [f"{_suite(first)}, {first.seeds} seeds. {_versions(first)}.", "", *table(head, rows)]
+    return lines + table(("entry", "command"), [(e.name, f"`{e.command}`") for e in entries])
 
 
 def comparison_page(comparison: EntryComparison, command: str) -> str:
@@ -72,17 +75,17 @@ def comparison_page(comparison: EntryComparison, command: str) -> str:
     lines += [f"- {_suite(a)}, {len(comparison.worlds)} common worlds"]
     lines += [f"- {side}: {entry.name}, `{entry.command}`" for side, entry in (("A", a), ("B", b))]
     changed = [(f"`{key}`", *pair) for key, pair in differing(a, b).items()]
-    lines += ["", *(_table(("differs", "A", "B"), changed) if changed else _equal()), ""]
+    lines += ["", *(table(("differs", "A", "B"), changed) if changed else _equal())]
     rows = [
         (f, str(d.n), f"{100 * d.a:.1f} %", f"{100 * d.b:.1f} %", d.points())
         for f, d in comparison.families.items()
     ]
-    lines += _table(("success in", "n", "A", "B", "B - A [points], p (McNemar)"), rows)
-    return "\n".join([*lines, "", *difference_table(comparison.metrics), ""])
+    lines += table(("success in", "n", "A", "B", "B - A [points], p (McNemar)"), rows)
+    return "\n".join([*lines, *difference_table(comparison.metrics)])
 
 
 def _equal() -> list[str]:
-    return ["Settings and versions are equal."]
+    return ["Settings and versions are equal.", ""]
 
 
 def _suite(entry: Entry) -> str:
@@ -98,7 +101,7 @@ def _settings(entry: Entry) -> list[str]:
     if not entry.settings:
         return ["All settings are those of the standard.", ""]
     rows = [(f"`{key}`", old, new) for key, (old, new) in entry.settings.items()]
-    return [*_table(("setting", "standard", "entry"), rows), ""]
+    return table(("setting", "standard", "entry"), rows)
 
 
 def _name(entry: Entry) -> str:
@@ -117,13 +120,6 @@ def _cells(part: Score) -> list[str]:
     ratios = ["" if v is None else f"{v:.3f}" for v in (part.spl, part.optimal_time_ratio)]
     medians = [
         f"{part.quantities[key].median:.{digits}f}" if key in part.quantities else ""
-        for key, digits in (("min_clearance_m", 3), ("head_travel_radps", 2), ("time_to_goal_s", 1))
+        for key, digits in MEDIANS.items()
     ]
     return [*rates, *ratios, *medians]
-
-
-def _table(head: Sequence[str], rows: Sequence[Sequence[str]]) -> list[str]:
-    lines = [
-        "| " + " | ".join(c.replace("|", "\\|") for c in cells) + " |" for cells in (head, *rows)
-    ]
-    return [lines[0], "|---" * len(head) + "|", *lines[1:]]

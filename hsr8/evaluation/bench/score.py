@@ -6,11 +6,10 @@ from typing import Any
 
 from hsr8.evaluation.efficiency import optimal_time_ratio, spl
 from hsr8.evaluation.proportion import Proportion
+from hsr8.evaluation.registry import Shown, shown_in
 from hsr8.evaluation.sums import mean
 from hsr8.evaluation.sweep.job import CRASHED, REFUSED, RunResult
-from hsr8.evaluation.sweep.summary import Distribution, measured
-
-QUANTITIES = ("min_clearance_m", "head_travel_radps", "time_to_goal_s")
+from hsr8.evaluation.sweep.summary import Distribution, distributions, measured
 
 
 @dataclass(frozen=True, slots=True)
@@ -25,7 +24,7 @@ class Score:
         timeout, fall: of the runs that did not crash.
         spl: success weighted by path length, mean of all runs [1]; None without runs.
         optimal_time_ratio: success times certified over actual time, mean of all runs [1].
-        quantities: distribution of `QUANTITIES`; times are those of the successes.
+        quantities: distribution of the metrics of a score; times are those of the successes.
     """
 
     runs: int
@@ -51,7 +50,6 @@ def score(results: Sequence[RunResult]) -> Score:
     def proportion(of: Sequence[RunResult], test: Callable[[RunResult], Any]) -> Proportion:
         return Proportion.counted(sum(bool(test(r)) for r in of), len(of))
 
-    successes = [r for r in runs if r["success"]]
     return Score(
         runs=len(runs),
         refused=len(results) - len(runs),
@@ -61,11 +59,7 @@ def score(results: Sequence[RunResult]) -> Score:
         fall=proportion(complete, lambda r: r["fall"]),
         spl=mean(measured(runs, "spl")),
         optimal_time_ratio=mean(measured(runs, "optimal_time_ratio")),
-        quantities={
-            key: Distribution.of(values)
-            for key in QUANTITIES
-            if (values := measured(successes if key == "time_to_goal_s" else complete, key))
-        },
+        quantities=distributions(shown_in(Shown.BENCH), complete),
     )
 
 

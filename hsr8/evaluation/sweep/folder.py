@@ -20,7 +20,7 @@ from typing import Self, TextIO
 from hsr8.errors import Hsr8Error, UsageError
 from hsr8.evaluation.sweep.definition import Definition, scenario_differences, version_differences
 from hsr8.evaluation.sweep.job import CRASHED, OUTCOMES, REFUSED, RUNS, RunResult
-from hsr8.evaluation.sweep.summary import NUMBERS
+from hsr8.evaluation.sweep.summary import COUNTS, QUANTITIES
 from hsr8.evaluation.sweep.table import write_table
 from hsr8.files import atomic
 from hsr8.files.json_lines import open_to_append, read_lines
@@ -31,6 +31,7 @@ DEFINITION = "sweep.json"
 RESULTS = "runs.jsonl"
 TABLE = "runs.parquet"
 REPORT = "report.md"
+NUMBERS = (*(m.name for m in (*COUNTS, *QUANTITIES)), "attempts", "via_points_missed")
 MAX_SHOWN = 12  # differences named in an error message
 
 

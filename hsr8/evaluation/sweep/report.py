@@ -3,14 +3,16 @@
 from collections.abc import Mapping, Sequence
 from typing import Any
 
+from hsr8.evaluation.markdown import table
+from hsr8.evaluation.registry import METRICS
 from hsr8.evaluation.sweep.definition import Definition
 from hsr8.evaluation.sweep.job import REFUSED, RunResult
 from hsr8.evaluation.sweep.summary import COUNTS, QUANTITIES, Summary, summarize, worst_first
 
 MAX_LISTED = 20  # runs listed with their command line
 MAX_TABLE = 200  # runs in the table of the page
-COLUMNS = ("outcome", "success", *COUNTS, *QUANTITIES, "exit_reason")
-MEDIANS = ("min_clearance_m", "time_to_goal_s", "localization_rmse_m")
+COLUMNS = ("outcome", "success", *(m.name for m in (*COUNTS, *QUANTITIES)), "exit_reason")
+MEDIANS = [METRICS[k] for k in ("min_clearance_m", "time_to_goal_s", "localization_rmse_m")]
 
 
 def report(definition: Definition, results: Sequence[RunResult], command: str) -> str:
@@ -18,12 +20,12 @@ def report(definition: Definition, results: Sequence[RunResult], command: str) -
     summary = summarize(results)
     lines = [f"# `{definition.name}`: {_seeds(results)}", "", f"    {command}", ""]
     lines += [f"{definition.made_with()}.", ""]
-    lines += _table(("result", "(95 % interval)"), headline(summary))
+    lines += table(("result", "(95 % interval)"), headline(summary))
     quantities = [
-        (QUANTITIES[key], str(d.n), *map(_number, (d.mean, d.median, d.p10, d.p90, d.min, d.max)))
+        (METRICS[key].head, str(d.n), *map(_number, (d.mean, d.median, d.p10, d.p90, d.min, d.max)))
         for key, d in summary.quantities.items()
     ]
-    lines += _table(("per run", "n", "mean", "median", "10 %", "90 %", "min", "max"), quantities)
+    lines += table(("per run", "n", "mean", "median", "10 %", "90 %", "min", "max"), quantities)
     lines += _worst(definition, results)
     refused = [r for r in results if r["outcome"] == REFUSED]
     if refused:
@@ -32,7 +34,7 @@ def report(definition: Definition, results: Sequence[RunResult], command: str) -
         lines += [*_and_more(refused), ""]
     if 0 < len(results) <= MAX_TABLE:
         rows = [(str(r["seed"]), *(_cell(r.get(key)) for key in COLUMNS)) for r in results]
-        lines += ["## Runs", "", *_table(("seed", *COLUMNS), rows)]
+        lines += ["## Runs", "", *table(("seed", *COLUMNS), rows)]
     return "\n".join(lines)
 
 
@@ -48,6 +50,7 @@ def report_of_values(
         made_with: versions.
     """
     head = ("value", "runs", "success", "95 %", "without fall", "falls", "collisions per run")
+    heads = (*head, "per metre", *(f"{metric.head}, median" for metric in MEDIANS))
     rows = [
         (
             f"`{value}`",
@@ -58,15 +61,12 @@ def report_of_values(
             str(s.counts["falls"]),
             _number(s.collisions_per_run),
             _number(s.collisions_per_m),
-            *(_number(s.quantities[k].median) if k in s.quantities else "" for k in MEDIANS),
+            *(_number(d.median) if (d := s.quantities.get(m.name)) else "" for m in MEDIANS),
         )
         for value, s in summaries.items()
     ]
     lines = [f"# Over `{keys}`", "", f"    {command}", "", f"{made_with}.", ""]
-    return "\n".join(
-        lines
-        + _table((*head, "per metre", *(f"{QUANTITIES[key]}, median" for key in MEDIANS)), rows)
-    )
+    return "\n".join([*lines, *table(heads, rows)])
 
 
 def headline(summary: Summary) -> list[tuple[str, str]]:
@@ -77,7 +77,7 @@ def headline(summary: Summary) -> list[tuple[str, str]]:
         ("criteria met", str(summary.criteria_met)),
         ("without collision", str(summary.without_collision)),
         ("without fall", str(summary.without_fall)),
-        *((label, str(summary.counts[key])) for key, label in COUNTS.items()),
+        *((m.label, str(summary.counts[m.name])) for m in COUNTS),
         ("collisions per run, per metre", ", ".join(rates)),
     ]
     if summary.arrived.n:
@@ -135,11 +135,6 @@ def _worst(definition: Definition, results: Sequence[RunResult]) -> list[str]:
 def _and_more(results: Sequence[RunResult]) -> list[str]:
     more = len(results) - MAX_LISTED
     return [f"- and {more} more"] if more > 0 else []
-
-
-def _table(head: Sequence[str], rows: Sequence[Sequence[str]]) -> list[str]:
-    lines = ["| " + " | ".join(cells) + " |" for cells in (head, *rows)]
-    return [lines[0], "|---" * len(head) + "|", *lines[1:], ""]
 
 
 def _cell(value: Any) -> str:

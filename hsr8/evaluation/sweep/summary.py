@@ -9,35 +9,13 @@ from typing import Any
 import numpy as np
 
 from hsr8.evaluation.proportion import Proportion
+from hsr8.evaluation.registry import Metric, Shown, shown_in
 from hsr8.evaluation.sweep.job import CRASHED, REFUSED, RunResult
 
 MAX_ARRIVAL_ERROR = 15.0  # heading error of an arrival [deg]
 
-COUNTS = {
-    "falls": "falls",
-    "collisions": "collisions",
-    "collisions_moving": "with moving obstacles",
-    "collisions_static": "with static obstacles",
-    "collisions_at_fault": "at the robot's fault",
-}
-QUANTITIES = {
-    "min_clearance_m": "min clearance [m]",
-    "time_to_goal_s": "time to goal, successes [s]",
-    "arrival_error_deg": "arrival error, successes [deg]",
-    "path_length_m": "path length, successes [m]",
-    "localization_rmse_m": "position RMSE [m]",
-    "heading_rmse_deg": "heading RMSE [deg]",
-    "nees_mean": "NEES / 3",
-    "obstacle_speed_rmse_mps": "obstacle speed RMSE [m/s]",
-    "lost_fraction": "fraction of frames lost",
-    "time_standing_s": "time standing [s]",
-    "max_tilt_deg": "max tilt [deg]",
-    "saccades_per_s": "saccades [1/s]",
-    "head_travel_radps": "head travel [rad/s]",
-    "real_time_factor": "real-time factor",
-}
-OF_SUCCESSES = ("time_to_goal_s", "arrival_error_deg", "path_length_m")
-NUMBERS = (*COUNTS, *QUANTITIES, "attempts", "via_points_missed")
+COUNTS = shown_in(Shown.COUNT)
+QUANTITIES = shown_in(Shown.SWEEP)
 
 
 @dataclass(frozen=True, slots=True)
@@ -110,7 +88,7 @@ def summarize(results: Sequence[RunResult]) -> Summary:
     def proportion(runs: Sequence[RunResult], test: Callable[[RunResult], bool]) -> Proportion:
         return Proportion.counted(sum(map(test, runs)), len(runs))
 
-    counts = {key: sum(int(r.get(key) or 0) for r in complete) for key in COUNTS}
+    counts = {m.name: sum(int(r.get(m.name) or 0) for r in complete) for m in COUNTS}
     return Summary(
         runs=len(counted),
         refused=len(results) - len(counted),
@@ -130,12 +108,25 @@ def summarize(results: Sequence[RunResult]) -> Summary:
         exit_reasons=dict(
             Counter(str(r.get("exit_reason", r["outcome"])) for r in counted).most_common()
         ),
-        quantities={
-            key: Distribution.of(values)
-            for key in QUANTITIES
-            if (values := measured(successes if key in OF_SUCCESSES else complete, key))
-        },
+        quantities=distributions(QUANTITIES, complete),
     )
+
+
+def distributions(
+    metrics: Sequence[Metric], complete: Sequence[RunResult]
+) -> dict[str, Distribution]:
+    """Return the distribution of every metric by name, without those that no run has.
+
+    Args:
+        metrics: metrics, some of them of the successes only.
+        complete: results of the runs that did not crash.
+    """
+    successes = [r for r in complete if r.get("success")]
+    return {
+        metric.name: Distribution.of(values)
+        for metric in metrics
+        if (values := measured(successes if metric.successes else complete, metric.name))
+    }
 
 
 def worst_first(results: Sequence[RunResult]) -> list[RunResult]:
