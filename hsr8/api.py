@@ -8,11 +8,11 @@ from typing import Any, SupportsIndex
 
 from hsr8.decisions import GazeController, MotionPlanner
 from hsr8.errors import UsageError
-from hsr8.evaluation.recording import Recording, Result, renderer_of
+from hsr8.evaluation.recording import Result, record, renderer_of, started_folder
 from hsr8.loop import Simulation
 from hsr8.plugin_walker import CustomWalker
 from hsr8.recorder.log_level import LogLevel
-from hsr8.recorder.run.manifest import CALL, Manifest
+from hsr8.recorder.run.manifest import CALL
 from hsr8.recorder.run.run_folder import SCENARIO, new_run_folder
 from hsr8.scenario.loader import as_words, load_scenario
 from hsr8.scenario.schema import Scenario
@@ -56,22 +56,20 @@ def run(
         raise TypeError("settings: need the name or file of a scenario, got a loaded scenario")
     loaded = loaded if seed is None else loaded.with_seed(seed)
     with ExitStack() as stack:
-        path = None
+        folder = None
         if out is not None:
             renderer = renderer_of(loaded)
             new = new_run_folder(Path(out), loaded.name, loaded.seed)
             path = stack.enter_context(new)  # before any compilation
         simulation = Simulation(loaded, loaded.seed, planner=planner, gaze=gaze, walker=walker)
-        recording = Recording(simulation)
-        if path is not None:
+        if out is not None:
             source = path / SCENARIO if isinstance(scenario, Scenario) else scenario
             words = ["hsr8", "run", str(source), "--seed", str(loaded.seed)]
             words += ["--set", *as_words(settings)] if settings else []
             plugins = {"planner": planner, "gaze": gaze, "walker": walker}
             command = _call(plugins) or tuple(map(shlex.quote, words))
-            manifest = Manifest.now(loaded.name, loaded.seed, command, renderer)
-            recording.into(path, manifest, log=level)
-        result = recording.run()
+            folder = started_folder(path, loaded, command, renderer, level)
+        result = record(simulation, folder, log=level)
     if result.exit_reason == "interrupted":
         raise KeyboardInterrupt  # also ends a loop over runs
     return result

@@ -15,7 +15,8 @@ from pathlib import Path
 
 from hsr8.evaluation.sweep.definition import Definition
 from hsr8.recorder.rows import TABLES
-from hsr8.recorder.run.run_reader import Run, open_run
+from hsr8.recorder.run.run import Run
+from hsr8.recorder.run.run_reader import open_run
 from hsr8.scenario.loader import dump, load_scenario
 from walking.parameters import CONTROL_PERIOD
 

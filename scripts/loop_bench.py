@@ -13,13 +13,13 @@ import tempfile
 from contextlib import closing
 from pathlib import Path
 
-from hsr8.evaluation.recording import Recording
+from hsr8.evaluation.recording import record, started_folder
 from hsr8.gl import require_gl
 from hsr8.loop import Simulation
 from hsr8.record import Tick
 from hsr8.recorder.log.rerun_log import RerunLog
+from hsr8.recorder.log_level import LogLevel
 from hsr8.recorder.recorder import Recorder
-from hsr8.recorder.run.manifest import Manifest
 from hsr8.recorder.run.run_folder import RunFolder
 from hsr8.robots.normal_form import HEAD_CAMERA
 from hsr8.scenario.schema import Scenario
@@ -93,13 +93,12 @@ class Bench:
         floor = Floor(simulation)
         with tempfile.TemporaryDirectory() as out, Stopwatch() as watch:
             path = RunFolder.create(Path(out), scenario.name, seed)
-            manifest = Manifest.now(scenario.name, seed, ("bench",), require_gl())
-            recording = Recording(simulation)
-            recording.into(path, manifest)
+            log = LogLevel.STANDARD
+            folder = started_folder(path, simulation.scenario, ("bench",), require_gl(), log)
             self.watch = watch
             self._watch(simulation)
             with closing(floor):
-                result = recording.run(floor.on_tick)
+                result = record(simulation, folder, log=log, on_tick=floor.on_tick)
         self.simulated = result.metrics["sim_time_s"]
         self.floor = watch.total(*FLOOR) + watch.beside(*FLOOR)
         stages = [stage for stage in watch.times if stage not in FLOOR]

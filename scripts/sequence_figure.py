@@ -5,7 +5,8 @@ from itertools import pairwise
 from math import atan2, cos, hypot, sin
 from pathlib import Path
 
-from hsr8.recorder.run.run_reader import Run, open_run
+from hsr8.recorder.run.run import Run
+from hsr8.recorder.run.run_reader import open_run
 from hsr8.render.motion import Motion as TrueMotion
 from hsr8.render.motion import motion_of, rows_at
 from hsr8.render.shown_frame import ShownFrame, shown_frames

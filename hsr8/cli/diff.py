@@ -12,7 +12,7 @@ from hsr8.evaluation import run_difference
 from hsr8.evaluation.run_difference import RunDifference
 from hsr8.files import atomic
 from hsr8.recorder.rows import TABLES
-from hsr8.recorder.run.run_reader import Run, open_run
+from hsr8.recorder.run.run_reader import StoredRun, open_run
 
 DIFFERENT = 1
 MAX_VALUE_LENGTH = 24  # in the table [characters]
@@ -45,7 +45,9 @@ def main(options: Diff) -> int:
     return DIFFERENT if motion else 0
 
 
-def _show(a: Run, b: Run, motion: list[RunDifference], about: list[RunDifference]) -> None:
+def _show(
+    a: StoredRun, b: StoredRun, motion: list[RunDifference], about: list[RunDifference]
+) -> None:
     console = Console(highlight=False, soft_wrap=True)
     console.print(f"A           {a.path}\nB           {b.path}", markup=False)
     if motion:

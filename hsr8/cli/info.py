@@ -10,7 +10,7 @@ from hsr8.errors import UsageError
 from hsr8.evaluation.verdict import Criterion, evaluate_criteria, exit_code
 from hsr8.files import atomic
 from hsr8.recorder.run.manifest import RUNNING, other_versions
-from hsr8.recorder.run.run_reader import Run, open_run
+from hsr8.recorder.run.run_reader import StoredRun, open_run
 
 MAX_EVENTS = 30  # in the table; --json has all of them
 
@@ -71,7 +71,7 @@ def main(options: Info) -> int:
     return 0
 
 
-def _criteria(run: Run) -> tuple[Criterion, ...]:
+def _criteria(run: StoredRun) -> tuple[Criterion, ...]:
     """Return the criteria, where there are results and this version can read the scenario."""
     results = run.metrics()
     try:

@@ -16,7 +16,7 @@ from hsr8.cli.progress import Progress
 from hsr8.cli.termination import like_ctrl_c, on_signals
 from hsr8.cli.video_process import VideoProcess
 from hsr8.errors import Hsr8Error, UsageError
-from hsr8.evaluation.recording import Recording, Result, renderer_of
+from hsr8.evaluation.recording import Result, record, renderer_of, started_folder
 from hsr8.evaluation.verdict import exit_code
 from hsr8.export.bag import require_rosbags, write_bag
 from hsr8.files import atomic
@@ -24,7 +24,6 @@ from hsr8.files.atomic import draft
 from hsr8.gl import require_gl
 from hsr8.loop import Simulation
 from hsr8.recorder.log_level import LogLevel
-from hsr8.recorder.run.manifest import Manifest
 from hsr8.recorder.run.run_folder import new_run_folder
 from hsr8.recorder.run.run_reader import open_run
 from hsr8.render.live_view import LiveView, live_view
@@ -57,11 +56,10 @@ def start(options: Run, scenario: Scenario, log: LogLevel | None, command: Seque
 
 
 def _start(options: Run, scenario: Scenario, log: LogLevel | None, command: Sequence[str]) -> int:
-    manifest = Manifest.now(scenario.name, scenario.seed, command, renderer_of(scenario))
+    renderer = renderer_of(scenario)
     new = new_run_folder(options.out, scenario.name, scenario.seed)  # before any compilation
     with new as path, _view(options) as view, ExitStack() as after:
         simulation = Simulation(scenario, scenario.seed)
-        recording = Recording(simulation)
 
         def interrupt(number: int, frame: FrameType | None) -> None:
             """End the run after the current tick; a second signal ends it at once."""
@@ -69,16 +67,17 @@ def _start(options: Run, scenario: Scenario, log: LogLevel | None, command: Sequ
             simulation.interrupt()
 
         with crash_report(path), on_signals(SIGNALS, interrupt):
-            recording.into(path, manifest, log=log, live=view.address if view else "")
+            folder = started_folder(path, scenario, command, renderer, log)
             outputs = Outputs(options, path, after)
-            if options.quiet:
-                result = recording.run()
-            else:
-                with Progress(scenario.duration) as progress:
-                    result = recording.run(progress.show)
+            with ExitStack() as shown:
+                on_tick = None
+                if not options.quiet:
+                    on_tick = shown.enter_context(Progress(scenario.duration)).show
+                address = view.address if view else ""
+                result = record(simulation, folder, log=log, live=address, on_tick=on_tick)
         if options.json:
             outputs.complete()
-        _report(options, result, manifest, outputs.failures)
+        _report(options, result, outputs.failures)
         outputs.complete()
         if view is not None and result.exit_reason != "interrupted":
             end = "Ctrl-C" if view.page else "closing the window"
@@ -145,9 +144,10 @@ def _view(options: Run) -> Iterator[LiveView | None]:
         yield view
 
 
-def _report(options: Run, result: Result, manifest: Manifest, failures: Sequence[str]) -> None:
+def _report(options: Run, result: Result, failures: Sequence[str]) -> None:
     """Print the results; with --json, also the failed outputs."""
     assert result.folder is not None
+    manifest = result.run.manifest
     if result.diverged:
         print(f"hsr8: {result.diverged}", file=sys.stderr)
     if options.json:
@@ -155,9 +155,9 @@ def _report(options: Run, result: Result, manifest: Manifest, failures: Sequence
         print(atomic.dumps(result.metrics | verdicts | {"failed_outputs": list(failures)}))
     elif not options.quiet:
         report.show(
-            f"{manifest.scenario}, seed {manifest.seed}",
+            f"{manifest['scenario']}, seed {manifest['seed']}",
             results=result.metrics,
             criteria=result.criteria,
             path=result.folder,
-            command=manifest.command,
+            command=manifest["command"],
         )

@@ -10,7 +10,7 @@ from hsr8.cli.termination import like_ctrl_c
 from hsr8.errors import UsageError
 from hsr8.files import atomic
 from hsr8.recorder.run.manifest import versions
-from hsr8.recorder.run.run_reader import Run, open_run
+from hsr8.recorder.run.run_reader import StoredRun, open_run
 from hsr8.render import viewer
 from hsr8.render.live_view import live_view
 
@@ -58,7 +58,7 @@ def main(options: Replay) -> int:
     return 0
 
 
-def _made(run: Run) -> Path:
+def _made(run: StoredRun) -> Path:
     """Write the log of a run that has none."""
     run.scenario()  # reports a scenario that cannot be read
     print("writing the log", file=sys.stderr, flush=True)
@@ -67,7 +67,7 @@ def _made(run: Run) -> Path:
     return write_log(run)
 
 
-def _time(options: Replay, run: Run) -> float:
+def _time(options: Replay, run: StoredRun) -> float:
     """Return the simulated time of the screenshot [s]: by default the middle of the run."""
     time = run.records["time"]
     if options.time is None:

@@ -7,7 +7,7 @@ from hsr8.cli.options import Verify
 from hsr8.errors import UsageError
 from hsr8.files import atomic
 from hsr8.recorder.run.manifest import other_versions
-from hsr8.recorder.run.run_reader import Run, open_run
+from hsr8.recorder.run.run_reader import StoredRun, open_run
 from hsr8.robots.locate import digest
 
 if TYPE_CHECKING:
@@ -45,7 +45,7 @@ def main(options: Verify) -> int:
     return 0 if equal else DIFFERENT
 
 
-def _changes(run: Run) -> list[tuple[str, str, str]]:
+def _changes(run: StoredRun) -> list[tuple[str, str, str]]:
     """Return name, then and now of every library that differs, and of the robot's files."""
     recorded = run.manifest.get("libraries", {})
     robot = digest(run.scenario().robot.model)

@@ -1,12 +1,11 @@
-"""A simulation whose results are measured and which writes a run folder."""
+"""Simulations that are recorded and measured, in memory or in a run folder."""
 
-from collections.abc import Callable, Iterator
-from contextlib import ExitStack, contextmanager, suppress
-from dataclasses import dataclass, replace
+from collections.abc import Callable, Sequence
+from contextlib import ExitStack, suppress
+from dataclasses import asdict, dataclass, replace
 from pathlib import Path
-from tempfile import TemporaryDirectory
 from time import perf_counter
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from hsr8 import arithmetic
 from hsr8.compilation_watch import CompilationWatch
@@ -18,19 +17,18 @@ from hsr8.gl import require_gl
 from hsr8.loop import Simulation
 from hsr8.plugin_file import digests
 from hsr8.record import Tick
-from hsr8.recorder.log_level import RATES, LogLevel, LogRates
-from hsr8.recorder.recorder import PERIOD, Recorder
+from hsr8.recorder.log_level import RATES, LogLevel
+from hsr8.recorder.memory import Memory
+from hsr8.recorder.recorder import PERIOD, Recorder, Sink
 from hsr8.recorder.run import run_folder
-from hsr8.recorder.run.manifest import Manifest
+from hsr8.recorder.run.manifest import CALL, Manifest
+from hsr8.recorder.run.run import MemoryRun, Run
 from hsr8.recorder.run.run_folder import RunFolder
-from hsr8.recorder.selection import Selection
+from hsr8.recorder.run.run_reader import open_run
 from hsr8.robots.locate import digest
 from hsr8.scenario.loader import dump
 from hsr8.scenario.schema import Scenario
 from hsr8.scenario.track_file import track_digests
-
-if TYPE_CHECKING:
-    from hsr8.recorder.log.rerun_log import RerunLog
 
 LIVE_PERIOD = PERIOD // 2  # ticks of a batch while a viewer is connected
 
@@ -40,18 +38,23 @@ class Result:
     """Results of a run.
 
     Attributes:
+        run: the run with its tables, in memory or in a folder.
         metrics: every result by name, as in ``metrics.json``.
         criteria: the scenario's criteria, evaluated.
-        folder: run folder, None if nothing was written.
         diverged: message of the divergence; empty if the physics did not diverge.
         arithmetic: that of NumPy: ``x86-64-v3``, the same on all processors, or ``native``.
     """
 
+    run: Run
     metrics: dict[str, Any]
     criteria: tuple[Criterion, ...]
-    folder: Path | None = None
     diverged: str = ""
     arithmetic: str = arithmetic.IN_FORCE
+
+    @property
+    def folder(self) -> Path | None:
+        """Run folder, None if nothing was written."""
+        return self.run.path
 
     @property
     def exit_reason(self) -> str:
@@ -74,125 +77,113 @@ def renderer_of(scenario: Scenario) -> str:
     return require_gl() if scenario.camera.source == "rendered" else scenario.camera.source
 
 
-class Recording:
-    """A simulation that is recorded and measured.
-
-    Without a folder, the tables of the run are temporary.
+def started_folder(
+    path: Path, scenario: Scenario, command: Sequence[str], renderer: str, log: LogLevel | None
+) -> RunFolder:
+    """Write manifest and scenario of a run into its folder.
 
     Args:
-        simulation: not yet started.
+        path: new folder.
+        scenario: scenario with the seed of the run.
+        command: words of the command line that repeats the run.
+        renderer: name of the renderer of the head camera.
+        log: level of detail of the Rerun log; None for no log.
+
+    Raises:
+        RecordingFailed: the folder cannot be written.
     """
+    manifest = _manifest(scenario, command, renderer, log)
+    return RunFolder(path, manifest, dump(scenario))
 
-    def __init__(self, simulation: Simulation) -> None:
-        self._started = perf_counter()
-        self._simulation = simulation
-        self._log: RerunLog | None = None
-        self._period = PERIOD
-        self._folder: RunFolder | None = None
-        self._images: LogRates | None = None
 
-    def into(
-        self,
-        path: Path,
-        manifest: Manifest,
-        *,
-        log: LogLevel | None = LogLevel.STANDARD,
-        live: str = "",
-    ) -> None:
-        """Record into a folder.
+def _manifest(
+    scenario: Scenario, command: Sequence[str], renderer: str, log: LogLevel | None = None
+) -> Manifest:
+    manifest = Manifest.now(scenario.name, scenario.seed, command, renderer)
+    libraries = manifest.libraries | digests(scenario.plugin) | digest(scenario.robot.model)
+    libraries |= track_digests(scenario.world.mover)
+    return replace(manifest, libraries=libraries, log=log or "")
 
-        Args:
-            path: new run folder.
-            manifest: of the run.
-            log: level of detail of the Rerun log; None for no log.
-            live: address of a viewer that shows the log during the run; empty for none.
 
-        Raises:
-            RecordingFailed: the folder cannot be written.
-        """
-        simulation, scenario = self._simulation, self._simulation.scenario
-        libraries = manifest.libraries | digests(scenario.plugin) | digest(scenario.robot.model)
-        libraries |= track_digests(scenario.world.mover)
-        manifest = replace(manifest, libraries=libraries, log=log or "")
-        self._folder = RunFolder(path, manifest, dump(scenario))
-        self._images = None if log is None else RATES[log]
-        with self._failure_noted():
-            if log is not None:
-                # Imported late: runs without a log start a third of a second earlier.
-                from hsr8.recorder.log.rerun_log import RerunLog  # noqa: PLC0415
+def record(
+    simulation: Simulation,
+    folder: RunFolder | None = None,
+    *,
+    log: LogLevel | None = None,
+    live: str = "",
+    on_tick: Callable[[Tick], None] | None = None,
+) -> Result:
+    """Run a simulation to the end and measure it.
 
-                world = simulation.model, simulation.humanoid, simulation.layout
-                self._log = RerunLog(path / run_folder.LOG, world, scenario, level=log, live=live)
-                self._period = LIVE_PERIOD if live else PERIOD
+    Args:
+        simulation: simulation that is not yet started.
+        folder: receives tables and results; None keeps them in memory.
+        log: level of detail of the Rerun log in the folder; None for no log.
+        live: address of a viewer that shows the log during the run; empty for none.
+        on_tick: receives every control tick.
 
-    def run(self, on_tick: Callable[[Tick], None] | None = None) -> Result:
-        """Run to the end and write the results.
+    Raises:
+        RecordingFailed: the folder cannot be written.
+    """
+    try:
+        return _record(simulation, folder, log, live, on_tick)
+    except RecordingFailed:
+        if folder is not None:
+            with suppress(RecordingFailed):
+                folder.note(FAILED, {})
+        raise
 
-        Args:
-            on_tick: receives every control tick.
 
-        Raises:
-            RecordingFailed: the records cannot be written.
-        """
-        with self._failure_noted():
-            return self._run(on_tick)
+def _record(
+    simulation: Simulation,
+    folder: RunFolder | None,
+    log: LogLevel | None,
+    live: str,
+    on_tick: Callable[[Tick], None] | None,
+) -> Result:
+    started, diverged, scenario = perf_counter(), "", simulation.scenario
+    memory = Memory() if folder is None else Memory(metrics.COLUMNS)
+    sinks: list[Sink] = [memory] if folder is None else [folder, memory]
+    if folder is not None and log is not None:
+        # Imported late: runs without a log start a third of a second earlier.
+        from hsr8.recorder.log.rerun_log import RerunLog  # noqa: PLC0415
 
-    @contextmanager
-    def _failure_noted(self) -> Iterator[None]:
-        """Note in the manifest, if possible, that the records could not be written."""
-        try:
-            yield
-        except RecordingFailed:
-            if self._folder is not None:
-                with suppress(RecordingFailed):
-                    self._folder.note(FAILED, {})
-            raise
-
-    def _run(self, on_tick: Callable[[Tick], None] | None) -> Result:
-        simulation, diverged = self._simulation, ""
-        path = None if self._folder is None else self._folder.path
-        selection = Selection(metrics.COLUMNS)
-        with ExitStack() as stack:
-            folder = path or Path(stack.enter_context(TemporaryDirectory(prefix="hsr8-")))
-            compiling = stack.enter_context(CompilationWatch())
-            recorder = Recorder(
-                folder,
-                simulation.humanoid.model.names,
-                scale=simulation.layout.scale,
-                images=self._images,
-                listeners=[selection] if self._log is None else [selection, self._log.add],
-                period=self._period,
-            )
-            with suppress(KeyboardInterrupt), ExitStack() as open_:
-                open_.callback(self._note, recorder)
-                open_.callback(self._close_log)
-                open_.enter_context(recorder)  # first, to close its files if the camera fails
-                open_.enter_context(simulation)
-                for tick in simulation:
-                    recorder.append(tick)
-                    if on_tick is not None:
-                        on_tick(tick)
-                    diverged = next((e.text for e in tick.events if e.kind == "diverged"), "")
-            wall_time = perf_counter() - self._started - compiling.seconds
-        outcome = simulation.outcome()
-        results = metrics.metrics(
-            selection.tables(),
-            simulation.layout,
-            simulation.scenario.navigation.mission,
-            certificate=simulation.certificate,
-            exit_reason=outcome.exit_reason,
-            state_hash=outcome.state_hash,
-            wall_time=wall_time,
+        world = simulation.model, simulation.humanoid, simulation.layout
+        file = folder.path / run_folder.LOG
+        sinks.append(RerunLog(file, world, scenario, level=log, live=live))
+    with CompilationWatch() as compiling:
+        recorder = Recorder(
+            simulation.humanoid.model.names,
+            sinks,
+            scale=simulation.layout.scale,
+            images=None if log is None else RATES[log],
+            period=LIVE_PERIOD if live else PERIOD,
         )
-        if path is not None:
-            run_folder.write_metrics(path, results)
-        criteria = evaluate_criteria(simulation.scenario.criteria, results)
-        return Result(results, criteria, path, diverged)
-
-    def _close_log(self) -> None:
-        if self._log is not None:
-            self._log.close(self._simulation.exit_reason or "error")
-
-    def _note(self, recorder: Recorder) -> None:
-        if self._folder is not None:
-            self._folder.note(self._simulation.exit_reason or "error", recorder.rows)
+        with suppress(KeyboardInterrupt), ExitStack() as opened:
+            opened.callback(lambda: recorder.close(simulation.exit_reason or "error"))
+            opened.enter_context(simulation)
+            for tick in simulation:
+                recorder.append(tick)
+                if on_tick is not None:
+                    on_tick(tick)
+                diverged = next((e.text for e in tick.events if e.kind == "diverged"), "")
+        wall_time = perf_counter() - started - compiling.seconds
+    results = metrics.metrics(
+        tables := memory.tables(),
+        simulation.layout,
+        scenario.navigation.mission,
+        certificate=simulation.certificate,
+        exit_reason=simulation.outcome().exit_reason,
+        state_hash=simulation.outcome().state_hash,
+        wall_time=wall_time,
+    )
+    run: Run
+    if folder is not None:
+        folder.write_metrics(results)
+        run = open_run(folder.path)
+    else:
+        rows = {name: len(table) for name, table in tables.items()}
+        manifest = _manifest(scenario, (f"{CALL}...)",), scenario.camera.source)
+        ended = manifest.ended(str(results["exit_reason"]), rows)
+        run = MemoryRun(None, asdict(ended), scenario, tables, results)
+    return Result(run, results, evaluate_criteria(scenario.criteria, results), diverged)

@@ -17,7 +17,7 @@ from hsr8.recorder.columns import attributes
 from hsr8.recorder.frame_row import CONTEXT, DETECTION, FRAME, MEASURED
 from hsr8.recorder.recorded import FrameSampler, RecordedFrame
 from hsr8.recorder.rows import TABLES
-from hsr8.recorder.run.run_reader import Run
+from hsr8.recorder.run.run import Run
 from hsr8.recorder.table import Table
 from hsr8.recorder.table_difference import first_cell
 from hsr8.robot_builder import build_decisions, build_estimator, build_schedule, camera_sight

@@ -7,7 +7,8 @@ from typing import Any
 
 from hsr8.errors import UsageError
 from hsr8.recorder.rows import TABLES
-from hsr8.recorder.run.run_reader import Run
+from hsr8.recorder.run.run import Run
+from hsr8.recorder.run.run_reader import StoredRun
 from hsr8.recorder.table import Table
 from hsr8.recorder.table_difference import Cell, first_cell
 from walking.parameters import CONTROL_PERIOD
@@ -36,7 +37,7 @@ class RunDifference:
     time: float | None = None
 
 
-def settings(a: Run, b: Run) -> Iterator[RunDifference]:
+def settings(a: StoredRun, b: StoredRun) -> Iterator[RunDifference]:
     """Yield every key of the scenario that differs."""
     for key, x, y in _unequal(_flat(_scenario(a)), _flat(_scenario(b))):
         yield RunDifference("settings", key, x, y)
@@ -78,7 +79,7 @@ def _first(name: str, a: Table, b: Table) -> RunDifference | None:
     return RunDifference(name, cell.channel, cell.a, cell.b, tick, time)
 
 
-def _scenario(run: Run) -> Mapping[str, Any]:
+def _scenario(run: StoredRun) -> Mapping[str, Any]:
     try:
         return tomllib.loads(run.scenario_text())
     except (ValueError, RecursionError) as error:

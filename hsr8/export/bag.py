@@ -22,7 +22,7 @@ from hsr8.export.transforms import (
 )
 from hsr8.export.urdf import MESHES, urdf_of
 from hsr8.recorder.palette import of_label
-from hsr8.recorder.run.run_reader import Run
+from hsr8.recorder.run.run import Run
 from hsr8.recorder.table import Table
 from hsr8.robot_builder import head_camera
 from hsr8.robots.loaded import LoadedRobot, load_robot

@@ -18,7 +18,7 @@ from numpy.typing import NDArray
 
 from hsr8.recorder.columns import shape_of
 from hsr8.recorder.rows import TABLES
-from hsr8.recorder.run.run_reader import Run
+from hsr8.recorder.run.run import Run
 from hsr8.recorder.table import Items, Table
 
 COLUMNS = "columns.csv"

@@ -20,7 +20,7 @@ from numpy.typing import NDArray
 
 from hsr8.errors import UsageError
 from hsr8.files import atomic
-from hsr8.recorder.run.run_reader import Run
+from hsr8.recorder.run.run import Run
 from hsr8.recorder.table import Table
 
 Array = NDArray[np.float32]

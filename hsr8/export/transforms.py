@@ -7,7 +7,7 @@ from numpy.typing import NDArray
 from scipy.spatial.transform import Rotation
 
 from hsr8.export.links import CAMERA, Link, about, inverse, links_of, model_of, product, rotated
-from hsr8.recorder.run.run_reader import Run
+from hsr8.recorder.run.run import Run
 from hsr8.robots.loaded import LoadedRobot
 
 Array = NDArray[np.float64]

@@ -7,12 +7,8 @@ from typing import Any
 from hsr8.decisions import Situation
 from hsr8.evaluation import metrics
 from hsr8.loop import Simulation
-from hsr8.record import Tick
-from hsr8.recorder.recorded import FrameSampler, objects_of
-from hsr8.recorder.recorder import PERIOD
-from hsr8.recorder.rows import TABLES
-from hsr8.recorder.selection import Selection
-from hsr8.recorder.table import Table
+from hsr8.recorder.memory import Memory
+from hsr8.recorder.recorder import Recorder
 from hsr8.scenario.schema import Scenario
 from hsr8.world.truth.truth import Truth
 
@@ -42,9 +38,9 @@ class Episode:
         self.simulation = Simulation(scenario, seed)
         self.exit_reason = ""
         self._situation: Situation | None = None
-        self._ticks: list[Tick] = []
-        self._sampler = FrameSampler(self.simulation.layout.scale)
-        self._tables = Selection(metrics.COLUMNS)
+        self._memory = Memory(metrics.COLUMNS)
+        joints, scale = self.simulation.humanoid.model.names, self.simulation.layout.scale
+        self._recorder = Recorder(joints, [self._memory], scale=scale)
         self._open = ExitStack()
         self._open.enter_context(self.simulation)
 
@@ -76,17 +72,15 @@ class Episode:
 
     def complete(self) -> None:
         """Complete the tick with the decisions made."""
-        self._ticks.append(self.simulation.step())
+        self._recorder.append(self.simulation.step())
         self.exit_reason = self.simulation.exit_reason or ""
-        if len(self._ticks) >= PERIOD:
-            self._keep()
 
     def results(self) -> dict[str, Any]:
         """Return the metrics of the run, after its end."""
-        self._keep()
+        self._recorder.close(self.exit_reason)
         simulation = self.simulation
         return metrics.metrics(
-            self._tables.tables(),
+            self._memory.tables(),
             simulation.layout,
             simulation.scenario.navigation.mission,
             certificate=simulation.certificate,
@@ -98,16 +92,3 @@ class Episode:
     def close(self) -> None:
         """Close the simulation."""
         self._open.close()
-
-    def _keep(self) -> None:
-        """Keep the columns of the metrics."""
-        objects = objects_of(self._ticks, self._sampler)
-        joints = self.simulation.humanoid.model.names
-        self._ticks = []
-        self._tables(
-            {
-                name: Table.from_objects(name, TABLES[name], rows, {"joints": joints})
-                for name, rows in objects.items()
-                if rows
-            }
-        )

@@ -6,19 +6,22 @@ whose unpacked size is bounded, are passed to Arrow, which allocates the memory 
 A file that is cut off at any byte loses its last batch only.
 """
 
+import errno
 import io
 import os
 import zlib
 from collections.abc import Mapping, Sequence
+from contextlib import ExitStack
 from pathlib import Path
-from typing import Any, BinaryIO
+from typing import BinaryIO
 
 import pyarrow as pa
 
 from hsr8.errors import UsageError
 from hsr8.files.regular import read_text, require_regular
 from hsr8.files.writing import writing
-from hsr8.recorder.columns import Row, batch_of, schema_of
+from hsr8.recorder.columns import Row, schema_of
+from hsr8.recorder.rows import TABLES
 from hsr8.recorder.table import Table
 from hsr8.recorder.unpacked_size import rows_and_size
 
@@ -31,72 +34,99 @@ MAX_UNPACKED, MAX_RATIO = 256_000_000, 16  # of a table: constant [byte] and per
 READ = pa.ipc.IpcReadOptions(use_threads=False)  # threads take ten times as long for many batches
 
 
-class TableWriter:
-    """Writer of one table; the file is created with the first rows.
+class ArrowFiles:
+    """Sink of a recorder that writes a file per table.
 
     Args:
-        folder: of the run.
-        name: of the table.
-        row: its columns.
-        labels: names of the elements of each named dimension, such as the joints.
+        folder: folder of the run; it exists.
+
+    Attributes:
+        rows: number of rows of each table so far.
+
+    Raises:
+        RecordingFailed: in every method, a file cannot be written.
+    """
+
+    def __init__(self, folder: Path) -> None:
+        self._folder = folder
+        self._writers: dict[str, _TableWriter] = {}
+        self._checksums: BinaryIO | None = None
+
+    @property
+    def rows(self) -> dict[str, int]:
+        """Number of rows of each table so far."""
+        return {**dict.fromkeys(TABLES, 0), **{n: w.count for n, w in self._writers.items()}}
+
+    def add(self, tables: Mapping[str, Table]) -> None:
+        """Append rows."""
+        with writing(self._folder):
+            if not self._folder.exists():  # open files outlive their folder
+                raise FileNotFoundError(errno.ENOENT, "the folder was removed")
+            if self._checksums is None:
+                self._checksums = (self._folder / CHECKSUMS).open("wb")
+            for name, table in tables.items():
+                if name not in self._writers:
+                    file = self._folder / f"{name}{SUFFIX}"
+                    self._writers[name] = _TableWriter(file, table.arrow.schema, self._checksums)
+                self._writers[name].write(table.arrow)
+
+    def close(self) -> None:
+        """End the streams and close the files."""
+        with writing(self._folder), ExitStack() as stack:
+            if self._checksums is not None:
+                stack.callback(self._checksums.close)
+            for writer in self._writers.values():
+                stack.callback(writer.close)
+
+
+class _TableWriter:
+    """Writer of one table.
+
+    Args:
+        path: path of the file, which is created.
+        schema: columns.
         checksums: open file of the checksums.
 
     Attributes:
         count: number of rows.
 
     Raises:
-        RecordingFailed: in every method, the file cannot be written.
+        OSError: in every method, the file cannot be written.
     """
 
-    def __init__(
-        self,
-        folder: Path,
-        name: str,
-        row: Row,
-        labels: Mapping[str, Sequence[str]],
-        checksums: BinaryIO,
-    ) -> None:
-        self._folder = folder
-        self._name = name
-        self._row = row
-        self._labels = labels
+    def __init__(self, path: Path, schema: pa.Schema, checksums: BinaryIO) -> None:
+        self._name = path.stem
         self._checksums = checksums
+        self._file = io.FileIO(path, "w")
         self._sink = io.BytesIO()  # joins the many small pieces that Arrow writes
-        self._file: io.FileIO | None = None
+        self._writer = pa.ipc.new_stream(self._sink, schema, options=WRITE)
         self._size = 0
         self.count = 0
 
-    def write(self, objects: Sequence[Any]) -> Table:
-        """Append recorded objects, at least one, and return their rows as a table."""
-        with writing(self._folder):
-            if self._file is None:
-                self._schema = schema_of(self._row, objects, self._labels)
-                self._file = io.FileIO(self._folder / f"{self._name}{SUFFIX}", "w")
-                self._writer = pa.ipc.new_stream(self._sink, self._schema, options=WRITE)
-            batch = batch_of(self._row, objects, self._schema)
-            self._writer.write_batch(batch)
-            self.count += len(objects)
-            self._write_part(self._file)
-        return Table(self._name, pa.Table.from_batches([batch]))
+    def write(self, rows: pa.Table) -> None:
+        """Append rows."""
+        self._writer.write_table(rows)
+        self.count += len(rows)
+        self._write_part()
 
     def close(self) -> None:
         """End the stream and close the file."""
-        if self._file is None or self._file.closed:
+        if self._file.closed:
             return
-        with writing(self._folder), self._file:
+        with self._file:
             self._writer.close()
-            self._write_part(self._file)
+            self._write_part()
 
-    def _write_part(self, file: io.FileIO) -> None:
+    def _write_part(self) -> None:
         """Write the bytes since the last call and their checksum."""
         part = rest = self._sink.getvalue()
         self._sink.seek(0)
         self._sink.truncate()
         try:
             while rest:  # a disk that is nearly full takes some of the bytes
-                rest = rest[file.write(rest) :]
+                rest = rest[self._file.write(rest) :]
         except OSError:
-            file.close()  # nothing follows a part that is cut off
+            self._file.close()  # nothing follows a part that is cut off
             raise
         self._size += len(part)
         line = f"{self._name} {self.count} {self._size} {zlib.crc32(part):08x}\n"

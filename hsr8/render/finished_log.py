@@ -9,12 +9,12 @@ from hsr8.recorder.log.rerun_log import RerunLog
 from hsr8.recorder.log_level import LogLevel
 from hsr8.recorder.rows import TABLES
 from hsr8.recorder.run import run_folder
-from hsr8.recorder.run.run_reader import Run
+from hsr8.recorder.run.run_reader import StoredRun
 from hsr8.robots.loaded import load_robot
 from hsr8.world.field.generator import draw_layout
 
 
-def write_log(run: Run) -> Path:
+def write_log(run: StoredRun) -> Path:
     """Write the log of a run into its folder and return the file.
 
     Raises:

@@ -9,7 +9,7 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from hsr8.recorder.run.run_reader import Run, open_run
+from hsr8.recorder.run.run_reader import StoredRun, open_run
 from hsr8.render.run_images import RunImages
 from hsr8.render.run_video import (
     Progress,
@@ -32,7 +32,7 @@ class _EndedEarly(Exception):
 
 
 def follow_run(
-    run: Run,
+    run: StoredRun,
     options: VideoOptions,
     out: Path,
     progress: Progress,
@@ -77,7 +77,7 @@ class _GrowingRun:
         self._path = path
         self._stopped = stopped
 
-    def started(self) -> Run:
+    def started(self) -> StoredRun:
         """Return the run as soon as its first batch of records is complete.
 
         Raises:
@@ -88,7 +88,7 @@ class _GrowingRun:
             raise _EndedEarly
         return run
 
-    def ended(self) -> Run:
+    def ended(self) -> StoredRun:
         """Return the run after its end."""
         return self._recorded(inf)[0]
 
@@ -110,7 +110,7 @@ class _GrowingRun:
                 raise _EndedEarly
             images.update(run)
 
-    def _recorded(self, time: float) -> tuple[Run, bool]:
+    def _recorded(self, time: float) -> tuple[StoredRun, bool]:
         """Return the run, and whether it has ended, after waiting for records up to a time [s]."""
         while True:
             stopped = self._stopped()  # before the records are read

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from hsr8.recorder.run.run_reader import Run
+from hsr8.recorder.run.run import Run
 
 Array = NDArray[np.float64]
 

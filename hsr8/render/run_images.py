@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from hsr8.errors import UsageError
-from hsr8.recorder.run.run_reader import Run
+from hsr8.recorder.run.run import Run
 from hsr8.render.camera_overlay import CameraOverlay
 from hsr8.render.dashboard import Dashboard, DashboardFrame
 from hsr8.render.follow import FollowCamera

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 from hsr8.frame_record import FrameRecord
 from hsr8.recorder.frame_row import FRAME
 from hsr8.recorder.recorded import FrameSampler
-from hsr8.recorder.run.run_reader import Run
+from hsr8.recorder.run.run import Run
 from hsr8.recorder.table import Table
 
 Array = NDArray[np.float64]

@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from hsr8.recorder.limit_bits import LIMITS
-from hsr8.recorder.run.run_reader import Run
+from hsr8.recorder.run.run import Run
 from hsr8.recorder.table import Table
 from hsr8.recorder.world_frame import LIGHT, WorldFrame
 from hsr8.robots.loaded import load_robot

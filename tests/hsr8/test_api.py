@@ -6,7 +6,10 @@ import pytest
 
 import hsr8
 from hsr8.errors import RenderingUnavailable, ScenarioError, UsageError
+from hsr8.evaluation.replay import replay
+from hsr8.recorder.rows import TABLES
 from hsr8.recorder.run.run_reader import open_run
+from hsr8.recorder.table_difference import first_cell
 from navigation.decision import GazeDecision, MotionDecision
 from tests.hsr8.recorder.log.reading import Log
 
@@ -29,6 +32,26 @@ def test_nothing_is_written_by_default(tmp_path, monkeypatch):
     assert list(tmp_path.iterdir()) == []
     assert result.folder is None
     assert (result.exit_reason, result.criteria_met) == ("timeout", False)
+
+
+def test_a_run_in_memory_is_that_on_disk(tmp_path, monkeypatch):
+    stored = hsr8.run("quick", seed=3, settings=STAND_INS, out=tmp_path, log=False).run
+    monkeypatch.setattr("tempfile.mkdtemp", lambda *_, **__: pytest.fail("a temporary folder"))
+    kept = hsr8.run("quick", seed=3, settings=STAND_INS).run
+    assert kept.path is None
+    assert kept.scenario() == stored.scenario()
+    assert (kept.seed, kept.ended) == (stored.seed, stored.ended)
+    assert kept.manifest["rows"] == stored.manifest["rows"]
+    assert kept.manifest["libraries"] == stored.manifest["libraries"]
+    assert kept.metrics()["state_hash"] == stored.metrics()["state_hash"]
+    for name, row in TABLES.items():
+        one, other = getattr(kept, name), getattr(stored, name)
+        assert one.arrow.schema.equals(other.arrow.schema, check_metadata=True)
+        assert [*one] == [*other] == [column.name for column in row.columns]
+        assert first_cell(one, other, ignored=("walking_time",)) is None
+        assert len(one) == len(other)
+    assert all(stage.equal for stage in replay(kept))
+    assert kept.unit("records.zmp") == "m"
 
 
 def test_the_folder_holds_the_same_results_and_can_be_repeated(tmp_path):

@@ -14,7 +14,7 @@ Tables are written once a second, so the folder of a killed run is complete up t
 
 import secrets
 from collections.abc import Iterator, Mapping
-from contextlib import contextmanager, suppress
+from contextlib import ExitStack, contextmanager, suppress
 from pathlib import Path
 from typing import Any
 
@@ -22,6 +22,8 @@ from hsr8.errors import UsageError
 from hsr8.files import atomic
 from hsr8.files.writing import NO_ROOM, failure, writing
 from hsr8.recorder.run.manifest import Manifest
+from hsr8.recorder.stream import ArrowFiles
+from hsr8.recorder.table import Table
 
 SCENARIO = "scenario.toml"
 MANIFEST = "manifest.json"
@@ -32,7 +34,7 @@ CRASH = "crash.txt"
 
 
 class RunFolder:
-    """Folder of one run.
+    """Folder of one run, a sink of its recorder.
 
     Args:
         path: new folder, see `create`.
@@ -46,6 +48,7 @@ class RunFolder:
     def __init__(self, path: Path, manifest: Manifest, scenario: str) -> None:
         self.path = path
         self._manifest = manifest
+        self._files = ArrowFiles(path)
         with writing(path):
             manifest.write(path / MANIFEST)
             atomic.write_text(path / SCENARIO, scenario)
@@ -74,10 +77,25 @@ class RunFolder:
                 raise failure(parent, reason) from error
             raise UsageError(f"cannot write the run folder {parent}: {reason}") from error
 
+    def add(self, tables: Mapping[str, Table]) -> None:
+        """Append rows to the tables."""
+        self._files.add(tables)
+
+    def close(self, exit_reason: str) -> None:
+        """Close the files and complete the manifest."""
+        with ExitStack() as stack:
+            stack.callback(self.note, exit_reason, self._files.rows)
+            self._files.close()
+
     def note(self, exit_reason: str, rows: Mapping[str, int]) -> None:
         """Write the exit reason and the number of rows of each table into the manifest."""
         with writing(self.path):
             self._manifest.ended(exit_reason, rows).write(self.path / MANIFEST)
+
+    def write_metrics(self, metrics: Mapping[str, Any]) -> None:
+        """Write the results."""
+        with writing(self.path):
+            atomic.write_json(self.path / METRICS, metrics)
 
 
 @contextmanager
@@ -92,13 +110,3 @@ def new_run_folder(out: Path, scenario: str, seed: int) -> Iterator[Path]:
         with suppress(OSError):  # of a folder that is not empty
             for folder in (path, *missing):
                 folder.rmdir()
-
-
-def write_metrics(path: Path, metrics: Mapping[str, Any]) -> None:
-    """Write the results into the run folder `path`.
-
-    Raises:
-        RecordingFailed: they cannot be written.
-    """
-    with writing(path):
-        atomic.write_json(path / METRICS, metrics)

@@ -4,59 +4,28 @@ import json
 import os
 from contextlib import suppress
 from dataclasses import dataclass
-from functools import cached_property
 from pathlib import Path
-from typing import Any, TypeVar
+from typing import Any
 
 from hsr8.errors import ScenarioError, UsageError
 from hsr8.file_format import check_number
 from hsr8.files.regular import read_text
-from hsr8.files.writing import FAILED
 from hsr8.recorder.rows import TABLES
 from hsr8.recorder.run import run_folder
-from hsr8.recorder.run.manifest import FORMAT, RUNNING
+from hsr8.recorder.run.manifest import FORMAT
+from hsr8.recorder.run.run import Run
 from hsr8.recorder.stream import SUFFIX, read_table
 from hsr8.recorder.table import Table
 from hsr8.scenario.loader import load_scenario
 from hsr8.scenario.schema import Scenario
-from hsr8.suggestion import suggestion
 from hsr8.version import VERSION
-
-T = TypeVar("T")
-
-INCOMPLETE = (RUNNING, FAILED, "interrupted", "error")  # exit reasons of runs without all records
 
 
 @dataclass(frozen=True)
-class Run:
-    """A run folder.
-
-        run = open_run("runs/course")
-        run.records["zmp"]  # planned ZMP (n, 2)
-        run.unit("records.zmp")  # "m"
-
-    Attributes:
-        path: the folder.
-        manifest: versions, seed, exit reason.
-    """
+class StoredRun(Run):
+    """A run in a folder."""
 
     path: Path
-    manifest: dict[str, Any]
-
-    @property
-    def seed(self) -> int:
-        """Seed of the run."""
-        return int(self.manifest["seed"])
-
-    @property
-    def ended(self) -> bool:
-        """Whether the run ended by itself, so that its records are complete."""
-        return self.manifest.get("exit_reason") not in INCOMPLETE
-
-    @property
-    def running(self) -> bool:
-        """Whether the run had not ended, or was killed, when its manifest was read."""
-        return bool(self.manifest.get("exit_reason") == RUNNING)
 
     @property
     def scenario_file(self) -> Path:
@@ -104,57 +73,6 @@ class Run:
         file = self.path / run_folder.METRICS
         return _json(file) if os.path.lexists(file) else {}
 
-    @cached_property
-    def ticks(self) -> Table:
-        """Sensors and setpoints of every control tick.
-
-        Raises:
-            UsageError: here and for the other tables, the file is damaged or, in a run that ended,
-                cut off.
-        """
-        return self._table("ticks")
-
-    @cached_property
-    def records(self) -> Table:
-        """True state of the world and state of the walking engine, every 20 ms."""
-        return self._table("records")
-
-    @cached_property
-    def frames(self) -> Table:
-        """Detections, belief and decisions of every camera frame."""
-        return self._table("frames")
-
-    @cached_property
-    def seconds(self) -> Table:
-        """Hashes and saturation, every second."""
-        return self._table("seconds")
-
-    @cached_property
-    def events(self) -> Table:
-        """Events."""
-        return self._table("events")
-
-    @cached_property
-    def images(self) -> Table:
-        """Images of the head camera."""
-        return self._table("images")
-
-    def unit(self, column: str) -> str:
-        """Return the unit of a column, for example of ``records.zmp``.
-
-        Raises:
-            UsageError: unknown table or column.
-        """
-        table, _, name = column.partition(".")
-        if table not in TABLES:
-            raise UsageError(f"unknown table {table!r}{suggestion(table, list(TABLES))}")
-        unit: str = getattr(self, table).unit(name)
-        return unit
-
-    def to_pandas(self) -> dict[str, Any]:
-        """Return all tables as pandas data frames by name; pandas must be installed."""
-        return {name: getattr(self, name).to_pandas() for name in TABLES}
-
     def _table(self, name: str) -> Table:
         path = self.path / f"{name}{SUFFIX}"
         table = read_table(path, TABLES[name], whole=self.ended)
@@ -164,7 +82,7 @@ class Run:
         return table
 
 
-def open_run(path: str | Path) -> Run:
+def open_run(path: str | Path) -> StoredRun:
     """Return the run at `path`, or the newest one in this folder, see `run_folders`.
 
     Raises:
@@ -214,7 +132,7 @@ def _subfolders(path: Path) -> list[Path]:
     return [path / name for name in sorted(names)]
 
 
-def _run(path: Path) -> Run:
+def _run(path: Path) -> StoredRun:
     file = path / run_folder.MANIFEST
     manifest = _json(file)
     seed, number = manifest.get("seed"), manifest.get("format", 1)
@@ -223,7 +141,7 @@ def _run(path: Path) -> Run:
     if not isinstance(number, int):
         raise UsageError(f"cannot read {file}: format: expected an integer, got {number!r}")
     check_number(number, FORMAT, path, "run folder")
-    return Run(path, manifest)
+    return StoredRun(path, manifest)
 
 
 def _alternatives(path: Path) -> str:

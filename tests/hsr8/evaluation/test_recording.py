@@ -3,9 +3,9 @@ import weakref
 
 import pytest
 
-from hsr8.evaluation.recording import Recording
+from hsr8.evaluation.recording import record, started_folder
 from hsr8.loop import Simulation
-from hsr8.recorder.run.manifest import Manifest
+from hsr8.recorder.log_level import LogLevel
 from hsr8.scenario.loader import load_scenario
 
 
@@ -22,10 +22,10 @@ def recorded(path):
     settings = ['robot.body="kinematic"', 'camera.source="analytic"', "duration=1.2"]
     simulation = Simulation(load_scenario("quick", settings), 1)
     model = weakref.ref(simulation.model)
-    recording = Recording(simulation)
-    manifest = Manifest.now("quick", 1, ("test",), "analytic")
-    recording.into(path, manifest)
-    recording.run()
+    log = LogLevel.STANDARD
+    record(
+        simulation, started_folder(path, simulation.scenario, ("test",), "analytic", log), log=log
+    )
     return model
 
 

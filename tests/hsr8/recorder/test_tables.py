@@ -6,13 +6,25 @@ from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
+import pyarrow as pa
 import pytest
 from numpy.typing import NDArray
 
 from hsr8.errors import RecordingFailed, UsageError
-from hsr8.recorder.columns import BYTES, INT, SHADE, TEXT, Column, Row, attributes
+from hsr8.recorder.columns import (
+    BYTES,
+    INT,
+    SHADE,
+    TEXT,
+    Column,
+    Row,
+    attributes,
+    batch_of,
+    schema_of,
+)
 from hsr8.recorder.rows import TABLES
-from hsr8.recorder.stream import CHECKSUMS, TableWriter, read_table
+from hsr8.recorder.stream import CHECKSUMS, ArrowFiles, read_table
+from hsr8.recorder.table import Table
 
 Array = NDArray[np.float64]
 
@@ -82,17 +94,17 @@ def rows(n, seed=0):
     ]
 
 
-def write_all(writer, content, size=7):
+def write_all(files, content, size=7):
+    schema = schema_of(THING, content, {"joints": ("hip", "knee", "ankle")})
     for start in range(0, len(content), size):
-        writer.write(content[start : start + size])
+        batch = batch_of(THING, content[start : start + size], schema)
+        files.add({"things": Table("things", pa.Table.from_batches([batch]))})
 
 
 def written(folder, content):
-    checksums = (folder / CHECKSUMS).open("wb")
-    writer = TableWriter(folder, "things", THING, {"joints": ("hip", "knee", "ankle")}, checksums)
-    write_all(writer, content)
-    writer.close()
-    checksums.close()
+    files = ArrowFiles(folder)
+    write_all(files, content)
+    files.close()
     return folder / "things.arrows"
 
 
@@ -184,19 +196,20 @@ def test_checksums_cut_off_at_any_byte_lose_the_last_batches_only(tmp_path):
 
 @pytest.mark.parametrize("size", [100, 3000, 7001])
 def test_a_full_disk_is_one_error_and_the_whole_batches_stay(tmp_path, size):
-    content, lines = rows(70), (tmp_path / CHECKSUMS).open("wb")
-    writer = TableWriter(tmp_path, "things", THING, {}, lines)
+    content, files = rows(70), ArrowFiles(tmp_path)
     limits = resource.getrlimit(resource.RLIMIT_FSIZE)
     resource.setrlimit(resource.RLIMIT_FSIZE, (size, limits[1]))
     try:
         with pytest.raises(RecordingFailed, match="File too large"):
-            write_all(writer, content)
+            write_all(files, content)
     finally:
         resource.setrlimit(resource.RLIMIT_FSIZE, limits)
-    writer.close()  # with room again
-    lines.close()
+    files.close()  # with room again
     assert (tmp_path / "things.arrows").stat().st_size == size
-    check(read_table(tmp_path / "things.arrows", THING, whole=False), content[: writer.count - 7])
+    check(
+        read_table(tmp_path / "things.arrows", THING, whole=False),
+        content[: files.rows["things"] - 7],
+    )
 
 
 def test_a_damaged_table_is_refused_with_the_rows(tmp_path):

@@ -7,7 +7,7 @@ import pytest
 from hsr8.errors import UsageError
 from hsr8.recorder.run import run_folder
 from hsr8.recorder.run.manifest import FORMAT, Manifest
-from hsr8.recorder.run.run_folder import RunFolder, write_metrics
+from hsr8.recorder.run.run_folder import RunFolder
 from hsr8.recorder.run.run_reader import open_run
 
 
@@ -26,7 +26,7 @@ def test_folders_of_equal_runs_are_different(tmp_path):
 
 def test_a_finished_run_can_be_read_back(folder):
     folder.note("goal", {"ticks": 5})
-    write_metrics(folder.path, {"success": True, "time_to_goal_s": float("nan")})
+    folder.write_metrics({"success": True, "time_to_goal_s": float("nan")})
     run = open_run(folder.path)
     assert run.seed == 7
     assert run.manifest["exit_reason"] == "goal"
