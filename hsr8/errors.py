@@ -1,10 +1,27 @@
 """Errors that a user may encounter, each with the exit code of the command line."""
 
 
+def escaped(text: str) -> str:
+    """Return a text with an escape for every character that a terminal does not print.
+
+    These are control characters and line ends, also those that change the direction of the text.
+    """
+    if text.isprintable():
+        return text
+    return "".join(c if c.isprintable() else c.encode("unicode_escape").decode() for c in text)
+
+
 class Hsr8Error(Exception):
-    """Base of every error of the simulator; its message is meant for users."""
+    """Base of every error of the simulator; its message is meant for users.
+
+    Args:
+        message: one or more lines; characters that a terminal does not print are escaped.
+    """
 
     exit_code = 3
+
+    def __init__(self, message: str = "") -> None:
+        super().__init__("\n".join(map(escaped, message.split("\n"))))
 
 
 class UsageError(Hsr8Error):

@@ -1,5 +1,6 @@
 """User-defined planners, gazes and walkers in Python files, named as ``FILE.py:CLASS``."""
 
+import ast
 import hashlib
 import sys
 from pathlib import Path
@@ -8,10 +9,12 @@ from types import ModuleType
 from typing import TYPE_CHECKING, Any
 
 from hsr8.errors import UsageError
+from hsr8.files.regular import read_bytes
 
 if TYPE_CHECKING:  # the command line imports this module for its errors alone
     from hsr8.scenario.plugin import Plugin
 
+MAX_SIZE = 10_000_000  # of a plugin file [byte]
 PREFIX = "plugin "  # of module names; with the space, no import statement can name them
 
 
@@ -39,14 +42,58 @@ def load_plugin(reference: str) -> Any:
         raise UsageError(f"{reference}: {name}() failed: {_described(error, file)}") from error
 
 
-def require_plugins(plugin: "Plugin") -> None:
-    """Check that the plugins of a scenario can be instantiated.
+def load_named(plugin: "Plugin", kind: str) -> Any:
+    """Return a new instance of a plugin that a scenario names; None if it names none.
+
+    Code runs only if a person named it: on the command line, in Python, in a scenario file that
+    they gave by path and that has the code below its folder, or by trust in the files.
+
+    Args:
+        plugin: section of the scenario.
+        kind: planner, gaze or walker.
 
     Raises:
-        UsageError: as `load_plugin`.
+        UsageError: it may not run, or as of `load_plugin`.
     """
-    for reference in plugin.named:
-        load_plugin(reference)
+    reference = plugin.named.get(kind)
+    if reference is None:
+        return None
+    if kind in plugin.untrusted:
+        raise UsageError(
+            f"{plugin.untrusted[kind]}: names code that would run, got {reference}; "
+            "expected --trust (in Python, trust=True) if you trust it"
+        )
+    return load_plugin(reference)
+
+
+def require_plugins(plugin: "Plugin") -> None:
+    """Check that the plugins of a scenario may run and can be instantiated.
+
+    Raises:
+        UsageError: as `load_named`.
+    """
+    for kind in plugin.named:
+        load_named(plugin, kind)
+
+
+def inspect_plugins(plugin: "Plugin") -> None:
+    """Check the plugins of a scenario without running them: files, syntax, names of the classes.
+
+    Raises:
+        UsageError: a file cannot be read, is not Python, or does not define the class.
+    """
+    for reference in plugin.named.values():
+        path, _, name = reference.rpartition(":")
+        try:
+            nodes = list(ast.walk(ast.parse(_content(reference))))
+        except (SyntaxError, ValueError, RecursionError, MemoryError) as error:
+            raise UsageError(f"{reference}: {path} is not Python: {_one_line(error)}") from None
+        classes = [node.name for node in nodes if isinstance(node, ast.ClassDef)]
+        imported = [alias.asname or alias.name for node in nodes for alias in _aliases(node)]
+        assigned = [node.id for node in nodes if isinstance(node, ast.Name)]
+        if not {name, "*"}.intersection([*classes, *imported, *assigned]):
+            expected = ", ".join(classes) or "a class"
+            raise UsageError(f"{reference}: {path} has no class {name}; expected {expected}")
 
 
 def digests(plugin: "Plugin") -> dict[str, str]:
@@ -55,7 +102,8 @@ def digests(plugin: "Plugin") -> dict[str, str]:
     Raises:
         UsageError: a file cannot be read.
     """
-    return {name: hashlib.sha256(_content(name)).hexdigest()[:12] for name in plugin.named}
+    names = plugin.named.values()
+    return {name: hashlib.sha256(_content(name)).hexdigest()[:12] for name in names}
 
 
 def start_plugin(plugin: object, name: str, argument: object) -> None:
@@ -75,10 +123,9 @@ def start_plugin(plugin: object, name: str, argument: object) -> None:
     try:
         start(argument)
     except Exception as error:
-        reason = f"{type(error).__name__}: {' '.join(str(error).split())}"
         line = line_of(error)
         where = f" ({line})" if line else ""
-        raise UsageError(f"{name}: start failed: {reason}{where}") from error
+        raise UsageError(f"{name}: start failed: {_one_line(error)}{where}") from error
 
 
 def line_of(error: BaseException) -> str | None:
@@ -91,9 +138,13 @@ def line_of(error: BaseException) -> str | None:
 def _content(reference: str) -> bytes:
     file = reference.rpartition(":")[0]
     try:
-        return Path(file).read_bytes()
+        return read_bytes(file, MAX_SIZE)
     except OSError as error:
         raise UsageError(f"{reference}: cannot read {file}: {error.strerror}") from error
+
+
+def _aliases(node: ast.AST) -> list[ast.alias]:
+    return node.names if isinstance(node, ast.Import | ast.ImportFrom) else []
 
 
 def _module(reference: str, file: Path) -> ModuleType:
@@ -119,4 +170,8 @@ def _described(error: BaseException, file: Path) -> str:
     """An exception in one line, with the line of `file` that raised it."""
     lines = [f.lineno for f in extract_tb(error.__traceback__) if f.filename == str(file)]
     where = f" (line {lines[-1]})" if lines else ""
-    return f"{type(error).__name__}: {' '.join(str(error).split())}{where}"
+    return f"{_one_line(error)}{where}"
+
+
+def _one_line(error: BaseException) -> str:
+    return f"{type(error).__name__}: {' '.join(str(error).split())}"

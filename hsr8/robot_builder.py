@@ -14,7 +14,7 @@ from hsr8.command_schedule import (
 from hsr8.decisions import Decisions, GazeController, MissionPlanner, MotionPlanner
 from hsr8.errors import ScenarioError, UsageError
 from hsr8.plugin_decisions import Limits, PluginGaze, PluginPlanner
-from hsr8.plugin_file import load_plugin
+from hsr8.plugin_file import load_named
 from hsr8.plugin_walker import CustomWalker, PluginEngine, PluginWalker, RobotInfo
 from hsr8.robot import Robot
 from hsr8.robots.arms import ground_shadow
@@ -106,8 +106,8 @@ def build_walker(scenario: Scenario, walker: CustomWalker | None = None) -> Walk
     """
     humanoid = load_robot(scenario.robot.model)
     body = humanoid.model
-    if walker is None and scenario.plugin.walker:
-        walker = load_plugin(scenario.plugin.walker)
+    if walker is None:
+        walker = load_named(scenario.plugin, "walker")
     if walker is None:
         return Walker(body, walking_parameters(humanoid, scenario))
     parameters = override(humanoid.parameters, scenario.walking, WalkingParameters())
@@ -180,10 +180,10 @@ def build_decisions(
             planner and a `schedule` are given.
     """
     plugin, navigation, limits = scenario.plugin, scenario.navigation, scenario.speed_limits()
-    if planner is None and plugin.planner:
-        planner = load_plugin(plugin.planner)
-    if gaze is None and plugin.gaze:
-        gaze = load_plugin(plugin.gaze)
+    if planner is None:
+        planner = load_named(plugin, "planner")
+    if gaze is None:
+        gaze = load_named(plugin, "gaze")
     beacons = known_beacons(scenario, layout)
     mission: MissionPlanner
     motion: MotionPlanner

@@ -11,7 +11,7 @@ from hsr8.cli.command_line import command_words, option_tables, run_options, set
 from hsr8.cli.options import Check
 from hsr8.cli.output_file import require_file_name, writing
 from hsr8.files import atomic
-from hsr8.plugin_file import require_plugins
+from hsr8.plugin_file import inspect_plugins
 from hsr8.render.plan_view import PlanView
 from hsr8.render.png import write_png
 from hsr8.robot_builder import field_of_view, head_camera
@@ -30,12 +30,12 @@ def main(options: Check) -> int:
 
     Raises:
         ScenarioError: the scenario is invalid or its world cannot be drawn.
-        UsageError: a plugin cannot be made, or the image cannot be written.
+        UsageError: a plugin is invalid, or the image cannot be written.
     """
     scenario = load_scenario(
         options.scenario, settings(options), options.seed, options=option_tables(options)
     )
-    require_plugins(scenario.plugin)
+    inspect_plugins(scenario.plugin)
     if options.image is not None:
         require_file_name("--image", options.image, (".png",))
     world = draw_world(scenario, scenario.seed)
@@ -79,6 +79,8 @@ def summarize(scenario: Scenario, world: FairWorld) -> dict[str, Any]:
         "command": _set_values(scenario.command),
         "disturbance": _set_values(scenario.disturbance),
         "fault": [_set_values(fault) for fault in scenario.fault],
+        "plugin": scenario.plugin.named,
+        "runs_with_trust_only": list(scenario.plugin.untrusted),
         "field_m": list(layout.field_size),
         "start_m": [round(x, 3), round(y, 3)],
         "start_heading_deg": round(degrees(heading), 1),

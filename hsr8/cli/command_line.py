@@ -50,7 +50,8 @@ def run_options(options: Check | Sweep, seed: int | None, more: Sequence[str] = 
         set=(*options.set, *((setting,) for setting in more)),
     )
     if isinstance(options, Sweep):
-        run = replace(run, duration=options.duration, body=options.body, camera=options.camera)
+        given = {name: getattr(options, name) for name in ("duration", "body", "camera", "trust")}
+        run = replace(run, **given)
     return run
 
 

@@ -46,6 +46,8 @@ class Run:
     camera: Camera = None
     """rendered: OpenGL; analytic: geometry only; neck-reach, omnidirectional: bounds."""
     set: Settings = ()
+    trust: Flag = False
+    """Run the code of plugins that the scenario names outside of its folder."""
     no_log: Flag = False
     """Write no Rerun log."""
     log_level: Level = None
@@ -76,6 +78,8 @@ class Sweep:
     workers: Integer = None
     """Parallel runs; default: number of CPUs."""
     set: Settings = ()
+    trust: Flag = False
+    """Run the code of plugins that the scenario names outside of its folder."""
     vary: Values = ()
     """Also vary a setting, one folder per value; repeated: all combinations."""
     duration: Seconds = None
@@ -185,6 +189,8 @@ class Verify:
     """Recompute a run from its records and compare physics, belief and decisions bit for bit."""
 
     run: RunPath
+    trust: Flag = False
+    """Run the code of the plugins that the run folder names."""
     json: Json = False
 
 

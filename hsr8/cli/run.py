@@ -18,7 +18,11 @@ def main(options: Run) -> int:
     """
     log = log_level(options)
     scenario = load_scenario(
-        options.scenario, settings(options), options.seed, options=option_tables(options)
+        options.scenario,
+        settings(options),
+        options.seed,
+        options=option_tables(options),
+        trust=options.trust or None,
     )
     if not options.quiet:
         print(f"{scenario.name}, seed {scenario.seed}", file=sys.stderr, flush=True)

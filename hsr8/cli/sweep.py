@@ -82,7 +82,11 @@ def _scenario(options: Sweep, varied: tuple[str, ...]) -> Scenario:
     require_no_seed("--set", settings(options))
     require_no_seed("--vary", varied)
     return load_scenario(
-        options.scenario, settings(options), options=option_tables(options), more={"--vary": varied}
+        options.scenario,
+        settings(options),
+        options=option_tables(options),
+        more={"--vary": varied},
+        trust=options.trust or None,
     )
 
 

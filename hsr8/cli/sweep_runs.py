@@ -24,7 +24,7 @@ from hsr8.evaluation.sweep.summary import Summary
 from hsr8.gl import require_gl
 from hsr8.plugin_file import digests, require_plugins
 from hsr8.robots.locate import digest
-from hsr8.scenario.loader import dump
+from hsr8.scenario.loader import as_words, dump
 from hsr8.scenario.schema import Scenario
 from hsr8.scenario.track_file import track_digests
 
@@ -120,8 +120,10 @@ def run_sweeps(
             folders[name] = folder
             limit = execution.timeout or START_TIME + MAX_SLOWNESS * scenario.duration
             path, text = str(folder.path.resolve()), folder.definition.scenario
+            named = {f"plugin.{kind}": name for kind, name in scenario.plugin.named.items()}
+            job = Job(0, path, text, limit, execution.log, execution.keep, settings=as_words(named))
             jobs += [
-                Job(seed, path, text, limit, log=execution.log, keep=execution.keep)
+                replace(job, seed=seed)
                 for seed in pending(execution.seeds, folder.results(), execution.shard)
             ]
         interrupted = bool(jobs) and _run(jobs, list(folders.values()), execution)

@@ -22,7 +22,7 @@ def main(options: Verify) -> int:
     Raises:
         UsageError: there is no such run, or its records cannot be read.
     """
-    run = open_run(options.run)
+    run = open_run(options.run, trust=options.trust)
     if not options.json:
         print(f"run         {run.path}", flush=True)
     from hsr8.evaluation.replay import replay  # noqa: PLC0415  takes seconds

@@ -167,9 +167,8 @@ def _checksums(file: Path) -> list[str]:
     """Return the lines of the file of checksums."""
     try:
         return read_text(file).splitlines(keepends=True)
-    except (OSError, UnicodeDecodeError) as error:
-        reason = error.strerror if isinstance(error, OSError) else error
-        raise UsageError(f"cannot read {file}: {reason}") from error
+    except OSError as error:
+        raise UsageError(f"cannot read {file}: {error.strerror}") from error
 
 
 def _verified(path: Path, lines: Sequence[str], *, whole: bool) -> bytearray:

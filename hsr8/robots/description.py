@@ -1,7 +1,6 @@
 """Robot description: the file ``robot.toml`` next to a model, its keys and their meaning."""
 
 import json
-import tomllib
 from pathlib import Path
 from typing import Annotated, Any, Literal
 
@@ -18,6 +17,8 @@ from pydantic import (
 )
 
 from hsr8.errors import ModelError
+from hsr8.files.regular import read_text
+from hsr8.files.toml import TomlError, parse_toml
 from hsr8.robots.description_mistakes import NAME, NAMES, TABLE, mistakes_of
 
 MODEL_SUFFIXES = (".xml", ".mjcf", ".urdf")
@@ -267,9 +268,10 @@ def read_description(file: Path) -> RobotDescription:
             "--write FILE` makes"
         )
     try:
-        data = tomllib.loads(file.read_bytes().decode("utf-8"))
-    except (OSError, ValueError, RecursionError) as error:
-        raise ModelError(f"{file}: cannot be read: {error}") from error
+        data = parse_toml(read_text(file))
+    except (OSError, TomlError) as error:
+        reason = error.strerror if isinstance(error, OSError) else error
+        raise ModelError(f"{file}: cannot be read: {reason}") from error
     return checked(data, str(file))
 
 

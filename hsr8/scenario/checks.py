@@ -11,7 +11,7 @@ from hsr8.scenario.problem import Problem
 from hsr8.scenario.schema import Scenario
 from hsr8.scenario.section import Point
 from hsr8.scenario.track_checks import track_problems
-from hsr8.scenario.world import CircleMover, LineMover, ShuttleMover, TrackMover
+from hsr8.scenario.world import MAX_CYLINDERS, CircleMover, LineMover, ShuttleMover, TrackMover
 from vision.errors import VisionError
 
 MAX_CELLS = 1000
@@ -20,20 +20,19 @@ MAX_LEG_RATIO = 0.7
 """Maximum of the shortest leg of a drawn mission, relative to the diagonal of the field [1]."""
 
 
-def check(scenario: Scenario) -> list[Problem]:
-    """Return all inconsistencies."""
-    return [
-        *_parameters(scenario),
-        *_mission(scenario),
-        *_command(scenario),
-        *fault_problems(scenario),
-        *robot_problems(scenario),
-        *_outside(scenario),
-        *_gaps(scenario),
-        *_overlaps(scenario),
-        *_movers(scenario),
-        *track_problems(scenario),
-    ]
+def check(scenario: Scenario) -> Iterator[Problem]:
+    """Yield all inconsistencies."""
+    checks = (
+        *(_parameters, _mission, _command, fault_problems, robot_problems),
+        *(_outside, _gaps, _movers),
+    )
+    for problems in checks:
+        yield from problems(scenario)
+    if walls := [*_long_walls(scenario)]:
+        yield from walls
+    else:
+        yield from _overlaps(scenario)
+        yield from track_problems(scenario)
 
 
 def _parameters(scenario: Scenario) -> Iterator[Problem]:
@@ -172,6 +171,18 @@ def _gaps(scenario: Scenario) -> Iterator[Problem]:
             yield Problem(
                 ("world", "wall", i, "gap"),
                 f"must be less than 2 robot.radius = {diameter:g}, got {wall.gap:g}",
+            )
+
+
+def _long_walls(scenario: Scenario) -> Iterator[Problem]:
+    """Walls of too many cylinders."""
+    for i, wall in enumerate(scenario.world.wall):
+        n = wall.intervals(scenario.robot.radius) + 1
+        if n > MAX_CYLINDERS:
+            yield Problem(
+                ("world", "wall", i, "radius"),
+                f"too many cylinders, got {n}; expected at most {MAX_CYLINDERS}, from a larger "
+                "radius or gap",
             )
 
 

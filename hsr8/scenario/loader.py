@@ -1,10 +1,13 @@
 """Scenario files: lookup, inheritance, overrides, validation and output."""
 
+import hashlib
 import json
 import re
 import tomllib
-from collections.abc import Mapping, Sequence
+import unicodedata
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
+from itertools import islice
 from pathlib import Path as FilePath
 from typing import Any
 
@@ -12,10 +15,13 @@ import tomlkit
 from pydantic import ValidationError
 
 from hsr8.errors import ModelError, ScenarioError
+from hsr8.files.regular import read_text
+from hsr8.files.toml import MAX_SIZE, TomlError, parse_toml
 from hsr8.robots.scale import DEFAULT_ROBOT, RobotDefaults, RobotScale
 from hsr8.scenario.checks import check
 from hsr8.scenario.constants import CONSTANTS, misplaced, placed, separated, with_constants
-from hsr8.scenario.key_lines import Path, depth, line_of
+from hsr8.scenario.key_lines import Path, depth, lines_of
+from hsr8.scenario.plugin import KINDS, located_plugins
 from hsr8.scenario.presets import expand_presets, followers, merged, under
 from hsr8.scenario.problem import Problem, dotted, problems_of
 from hsr8.scenario.renamed import renamed
@@ -26,6 +32,8 @@ from hsr8.scenario.track_file import legible, located_tracks, read_tracks
 from hsr8.suggestion import suggestion
 
 BUILT_IN = FilePath(__file__).resolve().parents[1] / "scenarios"
+MAX_LISTED = 20  # mistakes in a message
+MAX_EXTENDED = 16  # files that extend each other
 
 Table = dict[str, Any]
 
@@ -41,6 +49,8 @@ def load_scenario(
     seed: int | None = None,
     options: Mapping[str, Mapping[str, Any]] | None = None,
     more: Mapping[str, Sequence[str]] | None = None,
+    *,
+    trust: bool | None = None,
 ) -> Scenario:
     """Read a scenario.
 
@@ -56,6 +66,8 @@ def load_scenario(
             precedence.
         more: further ``key=value`` by their source, which messages name, such as ``--vary``;
             these take precedence over all others.
+        trust: whether plugins that files name may run; default: those below the folder of
+            `name_or_path`. Plugins that overrides name may always run.
 
     Raises:
         ScenarioError: the file or an override is wrong; the message lists every mistake with its
@@ -64,7 +76,9 @@ def load_scenario(
     words = [("--set", word) for word in as_words(overrides)]
     words += [(source, word) for source, given in (more or {}).items() for word in given]
     layers = _read(_find(name_or_path), ())
-    return _Sources(layers, options or {}, words, seed).scenario(name_or_path)
+    scenario, draft = _Sources(layers, options or {}, words, seed).scenario(name_or_path)
+    _note_untrusted(scenario, draft, trust)
+    return scenario
 
 
 def as_words(overrides: Sequence[str] | Mapping[str, Any]) -> tuple[str, ...]:
@@ -96,7 +110,32 @@ def loads(text: str, name: str = "scenario") -> Scenario:
     Raises:
         ScenarioError: as `load_scenario`.
     """
-    return _Sources(_layered(text, name, name, BUILT_IN, ())).scenario(name)
+    scenario, draft = _Sources(_layered(text, name, name, BUILT_IN, ())).scenario(name)
+    _note_untrusted(scenario, draft, trust=False)
+    return scenario
+
+
+def _note_untrusted(scenario: Scenario, draft: "_Draft", trust: bool | None) -> None:
+    """Note in the scenario which of its plugins no user named or trusts, and where they are named.
+
+    Args:
+        scenario: to note it in.
+        draft: tables of the scenario.
+        trust: see `load_scenario`.
+    """
+    if trust:
+        return
+    for kind in KINDS:
+        path, reference = ("plugin", kind), getattr(scenario.plugin, kind)
+        layer = draft.layer(path)
+        if not reference or layer is None or layer.text is None:
+            continue
+        (source,) = draft.sources([path])
+        folder = FilePath(layer.source).resolve().parent
+        file = FilePath(reference.rpartition(":")[0]).resolve()
+        if trust is None and file.is_relative_to(folder):
+            continue
+        scenario.plugin.untrusted[kind] = f"{source}plugin.{kind}"
 
 
 def dump(scenario: Scenario) -> str:
@@ -122,10 +161,10 @@ class _Layer:
     text: str | None = None  # of a file
     built_in: bool = False
 
-    def location(self, path: Path) -> str:
-        """File and line, or option, that gives the key at `path`."""
-        line = None if self.text is None else line_of(self.text, path)
-        return self.source if line is None else f"{self.source}:{line}"
+    def locations(self, paths: Sequence[Path]) -> dict[Path, str]:
+        """File and line, or option, that gives the key at each path."""
+        lines = {} if self.text is None else lines_of(self.text, paths)
+        return {p: f"{self.source}:{lines[p]}" if p in lines else self.source for p in paths}
 
 
 @dataclass
@@ -137,8 +176,8 @@ class _Sources:
     words: Sequence[tuple[str, str]] = ()
     seed: int | None = None
 
-    def scenario(self, name: str) -> Scenario:
-        """Return the scenario for its robot.
+    def scenario(self, name: str) -> "tuple[Scenario, _Draft]":
+        """Return the scenario for its robot, and its tables.
 
         Raises:
             ScenarioError: it is wrong.
@@ -147,7 +186,7 @@ class _Sources:
             draft = self._draft(RobotDefaults())
             if draft.robot != DEFAULT_ROBOT and not draft.misnamed():
                 draft = self._for_robot(draft, name)
-            return draft.finish(name)
+            return draft.finish(name), draft
         except RecursionError:
             raise ScenarioError(f"{name}: tables or lists are nested too deeply") from None
 
@@ -202,12 +241,15 @@ class _Draft:
 
     def misnamed(self) -> list[Problem]:
         """Return the renamed and misplaced keys."""
-        return list(renamed(self.data)) or list(misplaced(self.data))
+        return _first(renamed(self.data)) or _first(misplaced(self.data))
 
     def add(self, layer: _Layer) -> None:
         """Merge a layer over the present tables."""
         folder = FilePath(layer.source).parent
-        self.data = merged(self.data, located_tracks(located(layer.table, folder), folder))
+        table = located_tracks(located(layer.table, folder), folder)
+        if layer.text is not None:
+            table = located_plugins(table, folder)
+        self.data = merged(self.data, table)
         self.layers.append(layer)
 
     def finish(self, name: str) -> Scenario:
@@ -233,32 +275,51 @@ class _Draft:
         try:
             scenario = Scenario.model_validate_json(json.dumps(data, default=str))
         except ValidationError as error:
-            return None, problems_of(error, data)
-        return scenario, check(scenario)
+            return None, _first(problems_of(error, data))
+        return scenario, _first(check(scenario))
 
     def _tables(self) -> Table:
         """Tables with the constants in their sections."""
         return with_constants(under(self.data, followers(self.data)))
 
     def error(self, name: str, problems: Sequence[Problem]) -> ScenarioError:
-        """Return the error that lists problems with their places."""
+        """Return the error that lists the first problems with their places."""
         count = "1 mistake" if len(problems) == 1 else f"{len(problems)} mistakes"
+        if len(problems) > MAX_LISTED:
+            count, problems = f"the first {MAX_LISTED} mistakes", problems[:MAX_LISTED]
         lines = [f"{count} in scenario {name!r}"]
-        for problem in problems:
-            path = problem.path
-            if depth(self.data, path) < len(path) <= depth(self.data.get(CONSTANTS), path):
-                path = (CONSTANTS, *path)
-            lines.append(f"  {self._place(path)}{dotted(path)}: {problem.text}")
+        paths = [self._path(problem.path) for problem in problems]
+        for source, path, problem in zip(self.sources(paths), paths, problems, strict=True):
+            lines.append(f"  {source}{dotted(path)}: {problem.text}")
         return ScenarioError("\n".join(lines))
 
-    def _place(self, path: Path) -> str:
-        """Source of the longest given prefix of `path`, with a colon; empty without one."""
+    def _path(self, path: Path) -> Path:
+        """Path of a key as given, which may be a constant."""
+        if depth(self.data, path) < len(path) <= depth(self.data.get(CONSTANTS), path):
+            return (CONSTANTS, *path)
+        return path
+
+    def layer(self, path: Path) -> _Layer | None:
+        """Return the layer that gives the longest part of `path`, the last one of several."""
         depths = [depth(layer.table, path) for layer in self.layers]
         deepest = max(depths, default=0)
         if not deepest:
-            return ""
-        k = max(k for k, d in enumerate(depths) if d == deepest)
-        return f"{self.layers[k].location(path)}: "
+            return None
+        return self.layers[max(k for k, d in enumerate(depths) if d == deepest)]
+
+    def sources(self, paths: Sequence[Path]) -> list[str]:
+        """Source of the longest given part of each path, with a colon; empty without one."""
+        layers = [self.layer(path) for path in paths]
+        sources = dict.fromkeys(paths, "")
+        for layer in self.layers:
+            within = [path for path, of in zip(paths, layers, strict=True) if of is layer]
+            sources |= {path: f"{source}: " for path, source in layer.locations(within).items()}
+        return [sources[path] for path in paths]
+
+
+def _first(problems: Iterable[Problem]) -> list[Problem]:
+    """The problems of a message, and one more if there are more."""
+    return list(islice(problems, MAX_LISTED + 1))
 
 
 def _for_scale(table: Table, scale: RobotScale) -> Table:
@@ -287,12 +348,12 @@ def _files(folder: FilePath) -> list[str]:
 
 def _read(file: FilePath, above: tuple[FilePath, ...]) -> list[_Layer]:
     try:
-        text = file.read_bytes().decode("utf-8")
+        text = read_text(file, MAX_SIZE)
     except FileNotFoundError:
         hint = suggestion(file.name, _files(file.parent))
         raise ScenarioError(f"scenario file {str(file)!r} does not exist{hint}") from None
-    except (OSError, ValueError) as error:
-        raise ScenarioError(f"scenario file {str(file)!r}: {error}") from None
+    except OSError as error:
+        raise ScenarioError(f"scenario file {str(file)!r}: {error.strerror}") from None
     return _layered(text, str(file), file.stem, file.parent, (*above, file))
 
 
@@ -301,21 +362,36 @@ def _layered(
 ) -> list[_Layer]:
     """The layers of the scenario that `text` extends, and `text`."""
     try:
-        data = tomllib.loads(text)
-    except (ValueError, RecursionError) as error:
-        raise ScenarioError(f"{source}: invalid TOML: {error}") from None
+        data = parse_toml(text)
+    except TomlError as error:
+        raise ScenarioError(f"{source}: {error}") from None
     data.setdefault("name", _name(stem))
+    built_in = bool(files) and files[-1].parent == BUILT_IN
+    layer = _Layer(data, source, text, built_in)
     layers: list[_Layer] = []
     if "extends" in data:
-        key = f"{source}:{line_of(text, ('extends',))}: extends"
-        layers = _read(_parent(data.pop("extends"), key, folder, files), files)
-    built_in = bool(files) and files[-1].parent == BUILT_IN
-    return [*layers, _Layer(data, source, text, built_in)]
+        key = ("extends",)
+        location = f"{layer.locations([key])[key]}: extends"
+        layers = _read(_parent(data.pop("extends"), location, folder, files), files)
+    return [*layers, layer]
 
 
 def _name(stem: str) -> str:
-    """Name of a scenario from the name of its file."""
-    return (re.sub(r"[^A-Za-z0-9._-]+", "-", stem).lstrip("._-") or "scenario")[:64]
+    """Name of a scenario from the name of its file: letters and digits of any script."""
+    normal = unicodedata.normalize("NFC", stem)
+    allowed = "".join(c if c in "._-" or _kind(c) in "LMN" else "\0" for c in normal)
+    name = re.sub("\0+", "-", allowed)
+    while name and _kind(name[0]) not in "LN":
+        name = name[1:]
+    if not name:  # of other characters alone
+        digest = hashlib.sha256(stem.encode(errors="surrogateescape")).hexdigest()
+        return f"scenario-{digest[:8]}"
+    return name[:64]
+
+
+def _kind(character: str) -> str:
+    """Unicode's major category: L for letters, M for marks on them, N for digits."""
+    return unicodedata.category(character)[0]
 
 
 def _parent(name: object, source: str, folder: FilePath, files: tuple[FilePath, ...]) -> FilePath:
@@ -332,6 +408,8 @@ def _parent(name: object, source: str, folder: FilePath, files: tuple[FilePath, 
             f"{source}: unknown scenario {name!r}{suggestion(name, names)}; expected a .toml file "
             f"in the same folder or one of {', '.join(names)}"
         )
+    if len(files) > MAX_EXTENDED:
+        raise ScenarioError(f"{source}: more than {MAX_EXTENDED} files extend each other")
     if parent in files:
         chain = " -> ".join(str(f) for f in (*files, parent))
         raise ScenarioError(f"{source}: scenarios extend each other in a loop: {chain}")

@@ -1,10 +1,15 @@
 """Section ``[plugin]``: a user-defined planner, gaze and walker."""
 
-from typing import Annotated
+import os
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Annotated, Any
 
-from pydantic import Field
+from pydantic import Field, PrivateAttr
 
 from hsr8.scenario.section import Section
+
+KINDS = ("planner", "gaze", "walker")
 
 Reference = Annotated[str, Field(pattern=r"^$|^.+\.py:[A-Za-z_][A-Za-z0-9_]*$")]
 
@@ -19,8 +24,34 @@ class Plugin(Section):
     walker: Reference = ""
     """FILE.py:CLASS with a method `step`; replaces the walking engine; empty: none."""
 
+    _untrusted: dict[str, str] = PrivateAttr(default_factory=dict)
+
     @property
-    def named(self) -> tuple[str, ...]:
-        """References that are given, planner first."""
-        references = self.planner, self.gaze, self.walker
-        return tuple(reference for reference in references if reference)
+    def named(self) -> dict[str, str]:
+        """References that are given, by kind."""
+        references = {kind: getattr(self, kind) for kind in KINDS}
+        return {kind: reference for kind, reference in references.items() if reference}
+
+    @property
+    def untrusted(self) -> dict[str, str]:
+        """Kinds whose code must not run without consent, and the place that names each."""
+        return self._untrusted
+
+
+def located_plugins(table: Mapping[str, Any], folder: Path) -> dict[str, Any]:
+    """Return a scenario's tables with the absolute paths of the plugins next to it.
+
+    Args:
+        table: with `plugin` or without.
+        folder: in which a relative path begins; else it begins in the working folder.
+    """
+    plugin = table.get("plugin")
+    if not isinstance(plugin, dict):
+        return dict(table)
+    located = {}
+    for kind, reference in plugin.items():
+        name, colon, word = str(reference).rpartition(":")
+        file = folder / os.path.expanduser(name)
+        beside = colon and kind in KINDS and os.path.isfile(file)
+        located[kind] = f"{file.absolute()}:{word}" if beside else reference
+    return {**table, "plugin": located}

@@ -1,12 +1,13 @@
 """Mistakes in a scenario: key, wrong value and allowed values."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
 from pydantic import ValidationError
 from pydantic_core import ErrorDetails
 
+from hsr8.errors import escaped
 from hsr8.scenario.key_lines import Path, holds
 from hsr8.scenario.reference import allowed, keys_at, node_at
 from hsr8.suggestion import suggestion
@@ -31,21 +32,24 @@ class Problem:
 
 def dotted(path: Path) -> str:
     """Return a key as written in messages: with dots, and indices in brackets."""
-    parts = "".join(f"[{part}]" if isinstance(part, int) else f".{part}" for part in path)
+    parts = "".join(f"[{part}]" if isinstance(part, int) else f".{_short(part)}" for part in path)
     return parts.lstrip(".") or "scenario"
 
 
-def problems_of(error: ValidationError, data: Mapping[str, Any]) -> list[Problem]:
-    """Return the mistakes that pydantic found in `data`."""
-    return [_problem(details, data) for details in error.errors(include_url=False)]
+def problems_of(error: ValidationError, data: Mapping[str, Any]) -> Iterator[Problem]:
+    """Yield the mistakes that pydantic found in `data`."""
+    for details in error.errors(include_url=False):
+        yield _problem(details, data)
 
 
 def shown(value: Any) -> str:
     """Return a value as TOML would show it, shortened for a message."""
     text = f'"{value}"' if isinstance(value, str) else str(value)
-    if isinstance(value, bool):
-        text = text.lower()
-    return text if len(text) <= _MAX_SHOWN else text[: _MAX_SHOWN - 3] + "..."
+    return _short(text.lower() if isinstance(value, bool) else text)
+
+
+def _short(text: str) -> str:
+    return escaped(text if len(text) <= _MAX_SHOWN else f"{text[: _MAX_SHOWN - 3]}...")
 
 
 def _problem(details: ErrorDetails, data: Mapping[str, Any]) -> Problem:

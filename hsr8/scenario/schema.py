@@ -60,8 +60,8 @@ class Recorder(Section):
 class Scenario(Section):
     """World, robot, mission and criteria of success."""
 
-    name: Annotated[str, Len(1, 64), Field(pattern=r"^[A-Za-z0-9][A-Za-z0-9._-]*$")]
-    """Name of the run folders; default: the name of the file."""
+    name: Annotated[str, Len(1, 64), Field(pattern=r"^[\p{L}\p{N}][\p{L}\p{M}\p{N}._-]*$")]
+    """Name of the run folders, letters and digits of any script; default: the name of the file."""
     description: Annotated[str, Len(0, 2000)] = ""
     """Description in one or two sentences."""
     seed: Annotated[int, Interval(ge=0, le=MAX_SEED)] = 0

@@ -1,6 +1,7 @@
 """CSV files of recorded tracks: reading, checks of the rows, samples of each track.
 
-The columns are t [s], x [m], y [m] and id. A scenario holds them as text, see `content`.
+The columns are t [s], x [m], y [m] and id. Commas, semicolons and tabs separate them; between
+semicolons, numbers may have decimal commas. A scenario holds them as text, see `content`.
 """
 
 import csv
@@ -16,12 +17,14 @@ from typing import Any
 
 import tomlkit
 
+from hsr8.files.regular import read_text
 from hsr8.scenario.problem import Problem
 from hsr8.scenario.section import Point
 from hsr8.scenario.world import TrackMover
 
 COLUMNS = ("t", "x", "y", "id")
-MAX_SIZE = 8_000_000  # of a file [byte]
+SEPARATORS = ",;\t"
+MAX_SIZE = 8_000_000  # of the files of a scenario together [byte]
 MAX_ROWS = 50_000
 MAX_ID = 32  # [characters]
 MAX_GAP = 1.0  # between the samples of a track [s]
@@ -66,7 +69,7 @@ def located_tracks(table: Mapping[str, Any], folder: Path) -> Table:
 
 def _located(mover: Table, folder: Path) -> Table:
     name = os.path.expanduser(mover["file"])
-    paths = (os.path.abspath(path) for path in (folder / name, name) if os.path.isfile(path))
+    paths = (os.path.abspath(path) for path in (folder / name, name) if os.path.exists(path))
     return {**mover, "file": next(paths, mover["file"])}
 
 
@@ -78,13 +81,14 @@ def read_tracks(tables: Table) -> list[Problem]:
     world = tables.get("world")
     if not isinstance(world, dict) or not isinstance(world.get("mover"), list):
         return []
-    movers, problems = list(world["mover"]), []
+    movers, problems, room = list(world["mover"]), [], MAX_SIZE
     for i, mover in enumerate(movers):
         if not _is_track(mover):
             continue
         name, data = Path(mover["file"]).name, mover.get("data")
         try:
-            text = data if isinstance(data, str) and data else _read(mover["file"])
+            text = data if isinstance(data, str) and data else _read(mover["file"], room)
+            room -= len(text)
             movers[i] = {**mover, "file": name, "data": content(text)}
         except TrackFileError as error:
             problems.append(Problem(("world", "mover", i, "file"), f"{name}, {error}"))
@@ -109,25 +113,19 @@ def _is_track(mover: Any) -> bool:
     )
 
 
-def _read(file: str) -> str:
+def _read(file: str, max_size: int) -> str:
     try:
-        with open(file, "rb") as stream:
-            raw = stream.read(MAX_SIZE + 1)
-        text = raw.decode("utf-8-sig")
+        return read_text(file, max_size)
     except FileNotFoundError:
         raise TrackFileError(
             f"file does not exist, got {file!r}; expected a CSV file next to the scenario or in "
             "the working folder"
         ) from None
     except OSError as error:
+        limit = f"{MAX_SIZE / 1e6:g} MB in all files of a scenario"
         raise TrackFileError(
-            f"cannot be read, got {file!r}: {error.strerror}; expected a CSV file"
+            f"cannot be read, got {file!r}: {error.strerror}; expected a CSV file, at most {limit}"
         ) from None
-    except ValueError as error:
-        raise TrackFileError(f"not a text, got {file!r}: {error}; expected a CSV file") from None
-    if len(raw) > MAX_SIZE:
-        raise TrackFileError(f"{file!r} is too long; expected at most {MAX_SIZE:_} bytes")
-    return text
 
 
 def content(text: str) -> str:
@@ -170,18 +168,17 @@ Row = tuple[int, tuple[str, ...]]
 
 def _rows(text: str) -> list[Row]:
     """Return the rows with valid fields."""
-    reader = csv.reader(text.splitlines())
+    lines = text.splitlines()
+    separator, header = _header(lines[0] if lines else "")
+    reader = csv.reader(lines, delimiter=separator)
+    order = [header.index(name) for name in COLUMNS]
     try:
-        header = [name.strip() for name in next(reader, [])]
-        for name in COLUMNS:
-            if header.count(name) != 1:
-                problem = "missing" if name not in header else "repeated"
-                raise TrackFileError(
-                    f"line 1: column {name!r} is {problem}, got {','.join(header)[:60]!r}; "
-                    "expected a header with t, x, y and id"
-                )
-        order = [header.index(name) for name in COLUMNS]
-        rows = [(reader.line_num, _fields(reader.line_num, row, order)) for row in reader if row]
+        next(reader)
+        rows = [
+            (reader.line_num, _fields(reader.line_num, row, order, separator))
+            for row in reader
+            if row
+        ]
     except csv.Error as error:
         raise TrackFileError(f"line {reader.line_num}: not CSV: {error}") from None
     if not 1 <= len(rows) <= MAX_ROWS:
@@ -189,31 +186,50 @@ def _rows(text: str) -> list[Row]:
     return rows
 
 
-def _fields(line: int, row: list[str], order: list[int]) -> tuple[str, ...]:
+def _header(line: str) -> tuple[str, list[str]]:
+    """Return the separator that the first line has most often, and its names in lower case."""
+    separator = max(SEPARATORS, key=line.count)
+    try:
+        (names,) = csv.reader([line], delimiter=separator)
+    except (csv.Error, ValueError):
+        names = []
+    header = [name.strip().lower() for name in names]
+    for name in COLUMNS:
+        if header.count(name) != 1:
+            problem = "missing" if name not in header else "repeated"
+            raise TrackFileError(
+                f"line 1: column {name!r} is {problem}, got {line[:60]!r}; expected a header with "
+                "t, x, y and id, separated by commas, semicolons or tabs"
+            )
+    return separator, header
+
+
+def _fields(line: int, row: list[str], order: list[int], separator: str) -> tuple[str, ...]:
     if len(row) <= max(order):
         raise TrackFileError(
             f"line {line}: a column is missing, got {len(row)} values; expected t, x, y and id"
         )
-    fields = tuple(row[k].strip() for k in order)
-    for name, field in zip(COLUMNS[:3], fields, strict=False):
-        limit = MAX_TIME if name == "t" else MAX_COORDINATE
+    *numbers, name = (row[k].strip() for k in order)
+    if separator == ";":
+        numbers = [number.replace(",", ".") for number in numbers]
+    for column, number in zip(COLUMNS, numbers, strict=False):
+        limit = MAX_TIME if column == "t" else MAX_COORDINATE
         try:
-            valid = abs(float(field)) <= limit
+            valid = abs(float(number)) <= limit
         except ValueError:
             valid = False
         if not valid:
-            unit = "seconds" if name == "t" else "metres"
+            unit = "seconds" if column == "t" else "metres"
             raise TrackFileError(
-                f"line {line}: {name} is not valid, got {field[:60]!r}; "
+                f"line {line}: {column} is not valid, got {number[:60]!r}; "
                 f"expected {unit} from {-limit:g} to {limit:g}"
             )
-    name = fields[3]
     if not (0 < len(name) <= MAX_ID and all(c.isalnum() or c in "._-" for c in name)):
         raise TrackFileError(
             f"line {line}: id is not valid, got {name[:60]!r}; "
             f"expected 1 to {MAX_ID} letters, digits, '.', '_' or '-'"
         )
-    return fields
+    return *numbers, name
 
 
 def _check_tracks(rows: list[Row]) -> None:

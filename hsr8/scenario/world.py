@@ -25,6 +25,7 @@ Bearing = Annotated[float, Interval(ge=0.0, le=180.0)]
 RecordedTime = Annotated[float, Interval(ge=-1e10, le=1e10)]
 BearingRange = Annotated[tuple[Bearing, Bearing], AfterValidator(ordered)]
 
+MAX_CYLINDERS = 1000  # of a wall
 GAP_RATIO = 5.0 / 6.0  # default gap in a wall, relative to the diameter of the robot [1]
 
 
@@ -94,11 +95,16 @@ class Wall(Section):
     gap: Annotated[float, Interval(ge=0.0, le=4.0), "m"] | None = None
     """Maximum gap between neighbouring cylinders; default: 5/6 of the robot's diameter [m]."""
 
+    def intervals(self, robot_radius: float) -> int:
+        """Number of intervals between the cylinders, for a robot of some radius [m]."""
+        length = hypot(self.end[0] - self.start[0], self.end[1] - self.start[1])
+        gap = 2.0 * GAP_RATIO * robot_radius if self.gap is None else self.gap
+        return ceil(length / max(2.0 * self.radius + gap, 1e-9) - 1e-9)
+
     def positions(self, robot_radius: float) -> list[Point]:
         """Axes of the cylinders, evenly spaced, for a robot of some radius [m]."""
         (x, y), (dx, dy) = self.start, (self.end[0] - self.start[0], self.end[1] - self.start[1])
-        gap = 2.0 * GAP_RATIO * robot_radius if self.gap is None else self.gap
-        n = ceil(hypot(dx, dy) / (2.0 * self.radius + gap) - 1e-9)
+        n = self.intervals(robot_radius)
         return [(x + k / n * dx, y + k / n * dy) for k in range(n + 1)] if n else [self.start]
 
 

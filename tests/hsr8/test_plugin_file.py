@@ -154,13 +154,142 @@ def test_plugins_of_a_scenario_decide_as_the_same_objects_in_python(folder):
     assert from_file.metrics["state_hash"] != usual.metrics["state_hash"]
 
 
+RUNS = """
+from pathlib import Path
+
+Path(__file__).with_name("ran").touch()
+
+
+class Mine:
+    def plan(self, belief, task):
+        raise RuntimeError("called")
+"""
+
+
+@pytest.fixture
+def stranger(tmp_path, monkeypatch):
+    """Folder with a scenario, that of a run and a plugin, which leaves a file when it runs."""
+    monkeypatch.setattr(sys, "path", list(sys.path))
+    folder = tmp_path / "stranger"
+    folder.mkdir()
+    (folder / "mine.py").write_text(RUNS)
+    (tmp_path / "elsewhere").mkdir()
+    monkeypatch.chdir(tmp_path / "elsewhere")
+    return folder
+
+
+def named_by(file, reference, **keys):
+    """Write a scenario that names a planner; return its path."""
+    lines = [f"{key} = {value}" for key, value in keys.items()]
+    file.write_text("\n".join(['extends = "quick"', *lines, f'plugin.planner = "{reference}"\n']))
+    return str(file)
+
+
+@pytest.mark.parametrize(
+    ("where", "reference", "words", "runs"),
+    [
+        ("stranger/yard.toml", "mine.py:Mine", (), True),
+        ("stranger/yard.toml", "../stranger/mine.py:Mine", (), True),
+        ("yard.toml", "stranger/mine.py:Mine", (), True),
+        ("elsewhere/yard.toml", "../stranger/mine.py:Mine", (), False),
+        ("elsewhere/yard.toml", "{folder}/mine.py:Mine", (), False),
+        ("elsewhere/yard.toml", "link.py:Mine", (), False),
+        ("elsewhere/yard.toml", "{folder}/mine.py:Mine", ("--trust",), True),
+        ("elsewhere/yard.toml", "../stranger/mine.py:Mine", ("--set", "duration=1"), False),
+        ("elsewhere/yard.toml", "x.py:X", ("--set", "plugin.planner={folder}/mine.py:Mine"), True),
+    ],
+)
+def test_code_runs_only_if_a_person_named_it(stranger, capsys, where, reference, words, runs):
+    (stranger.parent / "elsewhere/link.py").symlink_to(stranger / "mine.py")
+    file = named_by(stranger.parent / where, reference.format(folder=stranger))
+    words = [word.format(folder=stranger) for word in words]
+    for command in ("check", "sweep", "run"):
+        if command == "check" and "--trust" in words:
+            continue
+        more = ["--seeds", "0:1"] if command == "sweep" else []
+        fast = [] if command == "check" else FAST
+        code = entry([command, file, *more, *fast, *words])
+        message = capsys.readouterr()
+        if command == "check":
+            assert code == 0
+            assert not (stranger / "ran").exists()
+            assert ("runs with trust only" in message.out) == (not runs)
+        elif runs:
+            assert (stranger / "ran").exists()
+            assert command == "sweep" or "RuntimeError: called" in message.err
+            (stranger / "ran").unlink()
+            sys.modules.pop(f"{PREFIX}{stranger / 'mine.py'}")
+        else:
+            assert code == 2
+            assert not (stranger / "ran").exists()
+            assert f"{file}:2: plugin.planner: names code that would run, got " in message.err
+            assert "expected --trust" in message.err
+
+
+def test_python_asks_for_trust_as_the_command_line_does(stranger):
+    file = named_by(stranger.parent / "elsewhere/yard.toml", f"{stranger}/mine.py:Mine")
+    with pytest.raises(UsageError, match=r"names code .* \(in Python, trust=True\)"):
+        hsr8.run(file, settings=SETTINGS)
+    assert not (stranger / "ran").exists()
+    with pytest.raises(RuntimeError, match="called"):
+        hsr8.run(hsr8.load_scenario(file, SETTINGS, trust=True))
+    with pytest.raises(RuntimeError, match="called"):
+        hsr8.run(file, settings=[*SETTINGS, f"plugin.planner={stranger}/mine.py:Mine"])
+
+
+def test_a_run_folder_runs_no_code_without_trust(stranger, capsys):
+    assert entry(["run", "quick", *FAST, "--duration", "1.2", "--out", str(stranger)]) == 1
+    (run,) = stranger.glob("quick/*")
+    scenario = run / "scenario.toml"
+    text = scenario.read_text()
+    for file in (stranger / "mine.py", run / "mine.py"):
+        file.write_text(RUNS)
+        named = text.replace('[plugin]\nplanner = ""', f'[plugin]\nplanner = "{file}:Mine"')
+        scenario.write_text(named)
+        for command in ("verify", "info", "plot", "diff", "replay", "render"):
+            more = {"diff": [str(run)], "replay": ["--screenshot", "x"], "render": ["--size", "x"]}
+            entry([command, str(run), *more.get(command, [])])
+            message = capsys.readouterr().err
+            assert ("names code" in message) == (command == "verify")
+            assert not list(stranger.rglob("ran"))
+    assert entry(["verify", str(run), "--trust"]) == 2
+    assert "RuntimeError: called" in capsys.readouterr().err
+    assert (run / "ran").exists()
+
+
+@pytest.mark.parametrize(
+    ("source", "expected"),
+    [
+        ("class Mine(:", "is not Python: SyntaxError: "),
+        ("(" * 10_000, "is not Python: "),
+        ("class Other: pass\nmine = 1\n", "has no class Mine; expected Old, Other"),
+        ("a = b'\\0'\n\0", "is not Python: "),
+        ("if True:\n    class Mine: pass\n", ""),
+        ("from x import Mine", ""),
+        ("from x import y as Mine", ""),
+        ("from x import *", ""),
+        ("Mine = type('Mine', (), {})", ""),
+    ],
+)
+def test_check_reads_the_file_of_a_plugin_without_running_it(stranger, capsys, source, expected):
+    (stranger / "mine.py").write_text(RUNS.replace("class Mine", "class Old") + source)
+    code = entry(["check", named_by(stranger / "yard.toml", "mine.py:Mine")])
+    assert code == (2 if expected else 0)
+    message = capsys.readouterr().err
+    assert expected in message
+    assert message.count("\n") == (1 if expected else 0)
+    assert not (stranger / "ran").exists()
+
+
 def test_a_run_records_the_digest_and_can_be_verified(folder, capsys):
     plugins = ("--set", "plugin.planner=mine.py:Ahead", "plugin.gaze=mine.py:Down", "duration=3.0")
     assert entry(["run", "quick", *FAST, *plugins, "--no-log", "--out", "runs"]) == 1
     (manifest,) = folder.glob("runs/quick/*/manifest.json")
     libraries = json.loads(manifest.read_text())["libraries"]
     assert digests(Plugin(planner="mine.py:Ahead")).items() <= libraries.items()
-    assert entry(["verify", "runs"]) == 0
+    assert entry(["verify", "runs"]) == 2
+    assert "names code" in capsys.readouterr().err
+    assert entry(["verify", "runs", "--trust"]) == 0
 
 
 def test_a_sweep_refuses_to_continue_with_another_file(folder, capsys):

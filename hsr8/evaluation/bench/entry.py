@@ -148,7 +148,7 @@ def read_entry(path: Path) -> Entry:
         text = f"cannot be read: {error.strerror}"
     except ValidationError as error:
         text = mistakes(error)[0]
-    except (json.JSONDecodeError, UnicodeDecodeError, RecursionError) as error:
+    except (json.JSONDecodeError, RecursionError) as error:
         text = f"invalid JSON: {error}"
     except ValueError as error:
         text = str(error)

@@ -2,7 +2,6 @@
 
 import hashlib
 import json
-import tomllib
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Annotated, Any
@@ -16,6 +15,7 @@ from hsr8.evaluation.sweep.definition import Differences, table_differences
 from hsr8.evaluation.sweep.seeds import parse_seeds
 from hsr8.evaluation.sweep.table import flatten
 from hsr8.files.regular import read_text
+from hsr8.files.toml import TomlError, parse_toml
 from hsr8.scenario.loader import load_scenario, tables
 from hsr8.scenario.schema import Scenario
 from hsr8.scenario.section import Section
@@ -26,6 +26,13 @@ FREE = ("walking", "vision", "belief", "navigation", "plugin", "recorder", "desc
 NOT_FREE = ("walking.head", "navigation.mission")
 CONDITIONS = ("robot.body", "camera", "sensors", "walking.head")
 """Sections and keys of the suite that an entry may change; its results name the changes."""
+
+
+def _without_plugins(settings: tuple[str, ...]) -> tuple[str, ...]:
+    for setting in settings:
+        if setting.partition("=")[0].strip().split(".")[0].strip() == "plugin":
+            raise ValueError(f"a suite names no plugins, got {setting}; expected --set {setting}")
+    return settings
 
 
 class Suite(Section):
@@ -39,8 +46,8 @@ class Suite(Section):
     """Seeds of every family with ``--quick``, such as ``1000:1008``."""
     full: str
     """Seeds of every family otherwise."""
-    settings: tuple[str, ...] = ()
-    """Standard settings as KEY=VALUE."""
+    settings: Annotated[tuple[str, ...], AfterValidator(_without_plugins)] = ()
+    """Standard settings as KEY=VALUE, without plugins."""
     families: Annotated[dict[str, str], Len(min_length=1)]
     """Subject of each scenario's test, by the scenario's name or its file next to the suite."""
 
@@ -96,15 +103,15 @@ def read_suite(file: Path) -> Suite:
         UsageError: the file is not a suite.
     """
     try:
-        data = tomllib.loads(read_text(file))
+        data = parse_toml(read_text(file))
         suite = Suite.model_validate_json(json.dumps(data, default=str))
     except OSError as error:
         raise UsageError(f"--suite {file}: cannot be read: {error.strerror}") from error
     except ValidationError as error:
         lines = [f"--suite {file}: not a suite", *mistakes(error)]
         raise UsageError("\n  ".join(lines)) from error
-    except (ValueError, RecursionError) as error:
-        raise UsageError(f"--suite {file}: invalid TOML: {error}") from error
+    except TomlError as error:
+        raise UsageError(f"--suite {file}: {error}") from error
     for key in ("quick", "full"):
         parse_seeds(getattr(suite, key), f"--suite {file}: {key}")
     return suite

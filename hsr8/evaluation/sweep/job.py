@@ -35,6 +35,7 @@ class Job:
         log: whether the run writes a Rerun log.
         keep: which run folders are kept.
         attempt: 1, or 2 after a crash.
+        settings: KEY=VALUE of the plugins, which a file alone may not name.
     """
 
     seed: int
@@ -44,6 +45,7 @@ class Job:
     log: bool = False
     keep: Keep = "all"
     attempt: int = 1
+    settings: tuple[str, ...] = ()
 
 
 class StartedJob:
@@ -73,6 +75,7 @@ class StartedJob:
         self.messages = runs / f"{job.seed}.messages"
         self.arguments = ["run", str(scenario), "--seed", str(job.seed), "--out", str(runs)]
         self.arguments += ["--quiet"] if job.log else ["--quiet", "--no-log"]
+        self.arguments += ["--set", *job.settings] if job.settings else []
         self._old_folders = set(self._run_folders())
 
     def result(self, exit_code: int, *, timed_out: bool = False) -> RunResult:

@@ -23,9 +23,15 @@ from hsr8.version import VERSION
 
 @dataclass(frozen=True)
 class StoredRun(Run):
-    """A run in a folder."""
+    """A run in a folder.
+
+    Attributes:
+        path: the folder.
+        trust: whether the plugins that its scenario names may run.
+    """
 
     path: Path
+    trust: bool = False
 
     @property
     def scenario_file(self) -> Path:
@@ -42,8 +48,6 @@ class StoredRun(Run):
             return read_text(self.scenario_file)
         except OSError as error:
             raise UsageError(f"cannot read {self.scenario_file}: {error.strerror}") from error
-        except UnicodeDecodeError as error:
-            raise UsageError(f"cannot read {self.scenario_file}: {error}") from error
 
     def scenario(self) -> Scenario:
         """Return the scenario with the seed of the run.
@@ -52,7 +56,7 @@ class StoredRun(Run):
             ScenarioError: this version cannot read it.
         """
         try:
-            return load_scenario(str(self.scenario_file), seed=self.seed)
+            return load_scenario(str(self.scenario_file), seed=self.seed, trust=self.trust)
         except ScenarioError as error:
             made_by = (
                 f"hsr8 {self.manifest.get('hsr8', '?')} of {self.manifest.get('started', '?')}"
@@ -82,8 +86,12 @@ class StoredRun(Run):
         return table
 
 
-def open_run(path: str | Path) -> StoredRun:
+def open_run(path: str | Path, *, trust: bool = False) -> StoredRun:
     """Return the run at `path`, or the newest one in this folder, see `run_folders`.
+
+    Args:
+        path: of a run folder, or of a folder above it.
+        trust: whether the plugins that the scenario in the folder names may run.
 
     Raises:
         UsageError: there is no run, or its manifest cannot be read.
@@ -102,7 +110,7 @@ def open_run(path: str | Path) -> StoredRun:
             f"{path}: no run in this folder; a run folder has a {run_folder.MANIFEST}, and "
             "`hsr8 run SCENARIO` makes one"
         )
-    return _run(runs[-1])
+    return _run(runs[-1], trust)
 
 
 def run_folders(path: Path) -> list[Path]:
@@ -132,7 +140,7 @@ def _subfolders(path: Path) -> list[Path]:
     return [path / name for name in sorted(names)]
 
 
-def _run(path: Path) -> StoredRun:
+def _run(path: Path, trust: bool) -> StoredRun:
     file = path / run_folder.MANIFEST
     manifest = _json(file)
     seed, number = manifest.get("seed"), manifest.get("format", 1)
@@ -141,7 +149,7 @@ def _run(path: Path) -> StoredRun:
     if not isinstance(number, int):
         raise UsageError(f"cannot read {file}: format: expected an integer, got {number!r}")
     check_number(number, FORMAT, path, "run folder")
-    return StoredRun(path, manifest)
+    return StoredRun(path, manifest, trust)
 
 
 def _alternatives(path: Path) -> str:

@@ -24,6 +24,7 @@ CELLS = (0.10, 0.05)  # cell sizes; the finer lattice is used if the coarser has
 VIA_REACHED = 0.15  # distance at which a via point counts as passed [m]
 MAX_LENGTH = 80.0  # that the robot could walk during the search [m]
 MAX_POINTS = 8  # checked of a long tour
+MAX_WORK = 600_000_000  # cells in all layers of a search, some ten seconds
 SAMPLE = 0.02  # interval of the clearance along a path [s]
 
 
@@ -37,6 +38,7 @@ class Certificate:
         points: number of points.
         time: of the arrival at the last point, or of the end of the search [s].
         path: time, x, y, heading (n, 4) [s, m, m, rad], linear in between; empty if unsolvable.
+        work: cost of the search, as `MAX_WORK` limits it [cell].
     """
 
     solvable: bool
@@ -44,6 +46,7 @@ class Certificate:
     points: int
     time: float
     path: Array = field(default_factory=lambda: np.zeros((0, 4)))
+    work: int = 0
 
     @property
     def length(self) -> float:
@@ -51,16 +54,18 @@ class Certificate:
         return float(np.hypot(*np.diff(self.path[:, 1:3], axis=0).T).sum())
 
 
-def certify(layout: Layout, robot: Robot) -> Certificate:
+def certify(layout: Layout, robot: Robot, max_work: int = MAX_WORK) -> Certificate:
     """Search a path through the first `MAX_POINTS` points of `layout` at most.
 
     Args:
         layout: the world.
         robot: radius and speed limits.
+        max_work: limit of the search, in large fields [cell].
     """
     points = layout.waypoints[:MAX_POINTS].tolist()
     if not points:
         return Certificate(True, 0, 0, 0.0)
+    work = 0
     for cell in CELLS:
         lattice = Lattice(layout, robot, cell * layout.scale)
         targets = _targets(layout, lattice, points)
@@ -70,11 +75,13 @@ def certify(layout: Layout, robot: Robot) -> Certificate:
         search = Reachable(lattice, targets[: (*inside, False).index(False)])
         off = abs(layout.start[2] - EIGHTH * round(layout.start[2] / EIGHTH))
         layers = ceil(LAYERS_PER_CELL * MAX_LENGTH / cell)
+        layers = min(layers, (max_work - work) // (len(lattice.x) * len(lattice.y)))
         search.propagate(layout.start[2], off / robot.speed.wz, layers)
+        work += search.work
         if search.passed == len(points):
             path = _from_start(layout, search.path())
-            return Certificate(True, len(points), len(points), search.time, path)
-    return Certificate(False, search.passed, len(points), search.time)
+            return Certificate(True, len(points), len(points), search.time, path, work)
+    return Certificate(False, search.passed, len(points), search.time, work=work)
 
 
 def _from_start(layout: Layout, path: Array) -> Array:

@@ -23,7 +23,7 @@ from hsr8.scenario.schema import Scenario
 from hsr8.scenario.world import TrackMover
 from hsr8.seeds import named_rng
 from hsr8.world.field.attempt import Attempt, CrowdedError
-from hsr8.world.field.certificate import Certificate, certify
+from hsr8.world.field.certificate import MAX_WORK, Certificate, certify
 from hsr8.world.field.layout import Layout, with_faults
 
 MAX_WORLDS = 20  # attempts per seed
@@ -66,7 +66,7 @@ def draw_world(scenario: Scenario, seed: int) -> FairWorld:
     """
     rng = named_rng(seed, "layout")
     crowded: Counter[str] = Counter()
-    rejected = lanes = 0
+    rejected = lanes = work = 0
     for _ in range(MAX_WORLDS):
         attempt = Attempt(scenario, rng)
         try:
@@ -77,11 +77,14 @@ def draw_world(scenario: Scenario, seed: int) -> FairWorld:
             if lanes > MAX_LANES:
                 break
             continue
-        certificate = certify(layout, scenario.robot)
+        certificate = certify(layout, scenario.robot, MAX_WORK - work)
+        work += certificate.work
         if certificate.solvable or not _draws(scenario):
             faulty = with_faults(layout, scenario.fault)
             return FairWorld(faulty, certificate, rejected, crowded.total())
         rejected += 1
+        if work >= MAX_WORK:
+            break
     width, depth = scenario.world.size
     attempts = crowded.total() + rejected
     reasons = [f"no room for {objects} {n} times" for objects, n in crowded.most_common()]

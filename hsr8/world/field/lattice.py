@@ -83,9 +83,20 @@ class Lattice:
         if len(self._movers) == 0:
             return self._static
         at = self._movers.positions((layer + 0.5) * self.layer)
-        dx2, dy2 = (self.x - at[:, :1]) ** 2, (self.y - at[:, 1:]) ** 2
-        hit = (dx2[:, :, None] + dy2[:, None, :] <= self._reach2[:, None, None]).any(axis=0)
-        return np.where(hit, np.uint8(0), self._static)
+        free = self._static.copy()
+        for (x, y), reach2 in zip(at, self._reach2, strict=True):
+            rows, columns = _near(self.x, x, reach2**0.5), _near(self.y, y, reach2**0.5)
+            gap2 = ((self.x[rows] - x) ** 2)[:, None] + (self.y[columns] - y) ** 2
+            free[rows, columns][gap2 <= reach2] = 0
+        return free
+
+    def is_free(self, layer: int, i: int, j: int) -> bool:
+        """Return whether a cell is free during a layer."""
+        if not self._static[i, j]:
+            return False
+        at = self._movers.positions((layer + 0.5) * self.layer)
+        dx2, dy2 = (self.x[i] - at[:, 0]) ** 2, (self.y[j] - at[:, 1]) ** 2
+        return not bool((dx2 + dy2 <= self._reach2).any())
 
     def connected(self) -> Bits:
         """Return the cells reachable among static obstacles alone (n, m), 0 or `ALL`."""
@@ -125,12 +136,15 @@ class Lattice:
         clear = np.ones((len(self.x), len(self.y)), dtype=bool)
         square = move[0] ** 2 + move[1] ** 2
         for obstacle in layout.static:
-            dx = (self.x - obstacle.position[0])[:, None]
-            dy = (self.y - obstacle.position[1])[None]
+            reach = obstacle.radius + self._disc + square**0.5
+            rows = _near(self.x, obstacle.position[0], reach)
+            columns = _near(self.y, obstacle.position[1], reach)
+            dx = (self.x[rows] - obstacle.position[0])[:, None]
+            dy = (self.y[columns] - obstacle.position[1])[None]
             # Fraction of the move at the closest approach.
             fraction = np.clip(-(dx * move[0] + dy * move[1]) / (square or 1.0), 0.0, 1.0)
             gap2 = (dx + fraction * move[0]) ** 2 + (dy + fraction * move[1]) ** 2
-            clear &= gap2 > (obstacle.radius + self._disc) ** 2
+            clear[rows, columns] &= gap2 > (obstacle.radius + self._disc) ** 2
         return _bits(clear)
 
 
@@ -150,6 +164,12 @@ def _aligned(half: float, through: float, cell: float) -> tuple[Array, int]:
     above = max(0, int((half - through) / cell + 1e-9))
     coordinates: Array = through + cell * np.arange(-below, above + 1, dtype=np.float64)
     return coordinates, below
+
+
+def _near(coordinates: Array, centre: float, distance: float) -> slice:
+    """Return the rising coordinates within a distance of a centre, and one more on both sides."""
+    first, last = np.searchsorted(coordinates, (centre - distance, centre + distance))
+    return slice(max(0, int(first) - 1), int(last) + 1)
 
 
 def _bits(mask: NDArray[np.bool_]) -> Bits:

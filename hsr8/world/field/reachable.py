@@ -33,8 +33,8 @@ class Reachable:
     def __init__(self, lattice: Lattice, targets: list[Bits]) -> None:
         self._lattice, self._targets = lattice, targets
         self._max_layers = max(lattice.turn, *(move.layers for move in lattice.moves))
-        self._free: list[Bits] = []
-        self._states: list[Bits] = []
+        self._shape = len(lattice.x), len(lattice.y)
+        self._layers: list[_Sheets] = []
         self.passed = 0
 
     @property
@@ -45,7 +45,12 @@ class Reachable:
     @property
     def time(self) -> float:
         """Time of the last layer [s]."""
-        return (len(self._states) - 1) * self._lattice.layer
+        return (len(self._layers) - 1) * self._lattice.layer
+
+    @property
+    def work(self) -> int:
+        """Number of cells in all layers."""
+        return len(self._layers) * self._shape[0] * self._shape[1]
 
     def propagate(self, heading: float, turn: float, layers: int) -> None:
         """Propagate all states until the last point is reached, none is left, or time is over.
@@ -55,30 +60,25 @@ class Reachable:
             turn: duration of the turn to the nearest heading of the lattice [s].
             layers: maximum number.
         """
-        shape = len(self._lattice.x), len(self._lattice.y)
-        sheets = np.zeros((len(self._targets) + 1, *shape), dtype=np.uint8)
-        self._states.append(sheets)
         i, j = self._lattice.start
-        begin, standing = ceil(turn / self._lattice.layer - 1e-9), True
-        while len(self._states) <= begin:
-            self._free.append(self._lattice.free(len(self._free)))
-            self._states.append(np.zeros_like(sheets))
-            standing = standing and bool(self._free[-1][i, j])
-        if not standing:
+        begin = ceil(turn / self._lattice.layer - 1e-9)
+        states = np.zeros((len(self._targets) + 1, *self._shape), dtype=np.uint8)
+        self._layers = [_Sheets(0, states[:1])] * (begin + 1)
+        if not all(self._lattice.is_free(layer, i, j) for layer in range(begin)):
             return
-        self._states[-1][0, i, j] = 1 << round(heading / EIGHTH) % len(DIRECTIONS)
-        self._pass_points(0, self._states[-1])
-        low, clear = 0, [np.full_like(sheets[0], ALL) for _ in range(self._max_layers + 1)]
-        while not self.arrived and len(self._states) <= layers:
-            free = self._lattice.free(len(self._free))
-            self._free.append(free)
+        states[0, i, j] = 1 << round(heading / EIGHTH) % len(DIRECTIONS)
+        self._pass_points(0, states)
+        self._layers[-1] = _Sheets(0, states[: self.passed + 1])
+        low, clear = 0, [np.full(self._shape, np.uint8(ALL)) for _ in range(self._max_layers + 1)]
+        while not self.arrived and len(self._layers) <= layers:
+            free = self._lattice.free(len(self._layers) - 1)
             # clear[m]: free during the last m layers.
             clear = [clear[0], *(before & free for before in clear[:-1])]
-            states = self._next(low, clear)
-            self._states.append(states)
+            states = self._next(low, clear, states)
             self._pass_points(low, states)
+            self._layers.append(_Sheets(low, states[low : self.passed + 1]))
             low = max(low, self.passed + 1 - SHEETS)
-            if not states[low:].any() and len(self._states) > begin + self._max_layers:
+            if not states[low:].any() and len(self._layers) > begin + self._max_layers:
                 return
 
     def path(self) -> Array:
@@ -86,9 +86,10 @@ class Reachable:
 
         Units [s, m, m, rad]. The path waits as late as possible, so that it has no detours.
         """
-        layer, passed = len(self._states) - 1, self.passed
-        i, j = (int(k[0]) for k in np.nonzero(self._states[layer][passed]))
-        bits = int(self._states[layer][passed, i, j])
+        layer, passed = len(self._layers) - 1, self.passed
+        (last,) = self._layers[layer].within(passed, passed + 1, self._shape)
+        i, j = (int(k[0]) for k in np.nonzero(last))
+        bits = int(last[i, j])
         state: State = (passed, i, j, bits.bit_length() - 1)
         knots = [(layer, state)]
         while True:
@@ -109,16 +110,17 @@ class Reachable:
         kept: Array = path[np.concatenate([[True], bends, [True]])]
         return kept
 
-    def _next(self, low: int, clear: list[Bits]) -> Bits:
-        """Return the states of the next layer."""
+    def _next(self, low: int, clear: list[Bits], before: Bits) -> Bits:
+        """Return the states of the next layer, from those of the last one."""
         high = self.passed + 1
-        states = np.zeros_like(self._states[-1])
-        states[low:high] = self._states[-1][low:high] & clear[1]
+        states = np.zeros_like(before)
+        states[low:high] = before[low:high] & clear[1]
         since: dict[int, Bits] = {}
         made: dict[int, Bits] = {}
         for layers in {self._lattice.turn, *(move.layers for move in self._lattice.moves)}:
-            if layers <= len(self._states):
-                since[layers] = self._states[-layers][low:high] & clear[layers]
+            if layers <= len(self._layers):
+                sheets = self._layers[-layers].within(low, high, self._shape)
+                since[layers] = sheets & clear[layers]
                 made[layers] = np.zeros_like(since[layers])
         for move in self._lattice.moves:
             if move.layers not in since:
@@ -176,8 +178,44 @@ class Reachable:
 
     def _has(self, layer: int, state: State) -> bool:
         passed, i, j, heading = state
-        return layer >= 0 and bool(int(self._states[layer][passed, i, j]) & (1 << heading))
+        return layer >= 0 and bool(self._layers[layer].at(passed, i, j) & (1 << heading))
 
     def _clear(self, layer: int, layers: int, i: int, j: int) -> bool:
         """Return whether a cell was free during some layers before `layer`."""
-        return all(self._free[k][i, j] for k in range(layer - layers, layer))
+        return all(self._lattice.is_free(k, i, j) for k in range(layer - layers, layer))
+
+
+class _Sheets:
+    """States of one layer: some sheets, cut to the smallest rectangle that has all states.
+
+    Args:
+        low: number of the first sheet.
+        sheets: states (k, n, m).
+    """
+
+    def __init__(self, low: int, sheets: Bits) -> None:
+        self._low = low
+        self._rows = _extent(np.flatnonzero(sheets.any(axis=(0, 2))))
+        self._columns = _extent(np.flatnonzero(sheets.any(axis=(0, 1))))
+        self._cut = sheets[:, self._rows, self._columns].copy()
+
+    def within(self, low: int, high: int, shape: tuple[int, int]) -> Bits:
+        """Return the sheets from `low` to less than `high` (high - low, n, m)."""
+        sheets = np.zeros((high - low, *shape), dtype=np.uint8)
+        first, last = max(low, self._low), min(high, self._low + len(self._cut))
+        if first < last:
+            own = self._cut[first - self._low : last - self._low]
+            sheets[first - low : last - low, self._rows, self._columns] = own
+        return sheets
+
+    def at(self, passed: int, i: int, j: int) -> int:
+        """Return the states of a cell on a sheet."""
+        k, row, column = passed - self._low, i - self._rows.start, j - self._columns.start
+        if min(k, row, column) < 0 or any(np.greater_equal((k, row, column), self._cut.shape)):
+            return 0
+        return int(self._cut[k, row, column])
+
+
+def _extent(indices: NDArray[np.intp]) -> slice:
+    """Return the range of rising indices."""
+    return slice(int(indices[0]), int(indices[-1]) + 1) if len(indices) else slice(0, 0)

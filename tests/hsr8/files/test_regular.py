@@ -15,6 +15,30 @@ def test_a_file_is_read_also_through_a_link(tmp_path):
     assert regular.read_text(tmp_path / "link") == "ü"
 
 
+@pytest.mark.parametrize(
+    ("content", "expected"),
+    [
+        ("\ufeffa = 1".encode(), "a = 1"),
+        ("ä".encode(), "ä"),
+        ("a".encode("utf-16"), "wrong encoding, got UTF-16; expected UTF-8"),
+        ("aä".encode("latin-1"), "wrong encoding, got byte 0xe4 at 1; expected UTF-8"),
+    ],
+)
+def test_text_is_utf_8_with_or_without_a_mark(content, expected, tmp_path):
+    (tmp_path / "file").write_bytes(content)
+    try:
+        text = regular.read_text(tmp_path / "file")
+    except OSError as error:
+        text = error.strerror
+    assert text == expected
+
+
+@pytest.mark.parametrize("path", ["a\0b", "a" * 300, "none"])
+def test_a_path_of_no_file_is_an_error_of_the_system(path):
+    with pytest.raises(OSError, match=r"null|too long|No such file"):
+        regular.read_bytes(path)
+
+
 @pytest.mark.parametrize("kind", ["pipe", "/dev/zero", "/dev/null", "folder"])
 def test_other_kinds_of_files_are_refused(tmp_path, kind):
     path = tmp_path / "x"
@@ -24,11 +48,11 @@ def test_other_kinds_of_files_are_refused(tmp_path, kind):
         path.mkdir()
     else:
         path.symlink_to(kind)
-    with pytest.raises(OSError, match=r"not a regular file|Is a directory"):
+    with pytest.raises(OSError, match=r"not a regular file, got a"):
         regular.read_bytes(path)
-    with pytest.raises(UsageError, match=r"not a regular file|Is a directory"):
+    with pytest.raises(UsageError, match=r"not a regular file, got a"):
         list(read_lines(path, str))
-    with pytest.raises(OSError, match=r"not a regular file|Is a directory"):
+    with pytest.raises(OSError, match=r"not a regular file, got a"):
         open_to_append(path)
 
 

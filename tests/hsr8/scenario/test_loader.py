@@ -1,6 +1,12 @@
+import contextlib
+import os
 import re
 import subprocess
 import sys
+from pathlib import Path
+from tempfile import mkdtemp
+from time import process_time
+from unicodedata import normalize
 
 import numpy as np
 import pytest
@@ -9,7 +15,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from hsr8.errors import ScenarioError
-from hsr8.scenario.loader import built_in_names, dump, load_scenario, loads
+from hsr8.scenario.loader import MAX_LISTED, built_in_names, dump, load_scenario, loads
 from hsr8.scenario.reference import json_schema
 
 COURSE = 'mission = {kind = "course"}\n'
@@ -104,7 +110,7 @@ def test_unknown_names_missing_files_and_folders_are_refused(tmp_path):
         load_scenario("cours")
     with pytest.raises(ScenarioError, match=r"does not exist$"):
         load_scenario(str(tmp_path / "no.toml"))
-    with pytest.raises(ScenarioError, match="Is a directory"):
+    with pytest.raises(ScenarioError, match="not a regular file, got a folder"):
         load_scenario(str(tmp_path))
 
 
@@ -112,8 +118,12 @@ def test_unknown_names_missing_files_and_folders_are_refused(tmp_path):
     ("raw", "expected"),
     [
         (b"a = 1\nb = = 2\n", "invalid TOML.*line 2"),
-        (b"\xff\xfe", "utf-8"),
-        (b"a = " + b"[" * 100_000, "invalid TOML"),
+        (b"\xff\xfe", "wrong encoding, got UTF-16; expected UTF-8"),
+        (b"a = '\xe4'", "wrong encoding, got byte 0xe4 at 5; expected UTF-8"),
+        (b"a = " + b"[" * 40_000, "invalid TOML"),
+        (b"a = " + b"[" * 100_000, "too many keys or values"),
+        (b"a" + b".a" * 30_000 + b" = 1", "nested too deeply"),
+        (b"a = 0x" + b"f" * 10_000, "an integer of 40000 bits"),
         (b"a = " + b"9" * 10_000, "invalid TOML"),
     ],
 )
@@ -334,7 +344,13 @@ def test_reading_a_scenario_needs_no_mujoco():
     [
         ("my room.toml", "my-room"),
         ("_x.toml", "x"),
-        ("ä.toml", "scenario"),
+        ("ä.toml", "ä"),
+        ("a\u0308.toml", "ä"),
+        ("공원 산책.toml", "공원-산책"),
+        ("夜の公園.toml", "夜の公園"),
+        ("सड़क.toml", "सड़क"),
+        ("!.toml", "scenario-bb7208bc"),
+        ("\u0301x" + "y" * 80 + ".toml", "x" + "y" * 63),
         ("a.b-c_d.toml", "a.b-c_d"),
     ],
 )
@@ -359,3 +375,101 @@ def test_mistakes_in_varied_values_name_the_option():
         load_scenario("quick", more={"--vary": ["wold.x=1"]})
     with pytest.raises(ScenarioError, match="--vary x: expected key=value"):
         load_scenario("quick", more={"--vary": ["x"]})
+
+
+@pytest.mark.parametrize(
+    "rows",
+    [
+        [f"key{k} = {k}" for k in range(5000)],
+        ["[constants.walking]", *(f"key{k} = {k}" for k in range(5000))],
+        [f"[navigation.gaze.k{k}]" for k in range(5000)],
+        ["text = '''", *["x"] * 50_000, "'''", *(f"key{k} = {k}" for k in range(100))],
+    ],
+)
+def test_the_list_of_mistakes_ends_and_takes_no_time(tmp_path, rows):
+    file = tmp_path / "many.toml"
+    file.write_text("\n".join(['extends = "course"', *rows]))
+    began = process_time()
+    with pytest.raises(ScenarioError) as error:
+        load_scenario(str(file))
+    assert process_time() - began < 10.0
+    title, *lines = str(error.value).splitlines()
+    assert title == f"the first {MAX_LISTED} mistakes in scenario {str(file)!r}"
+    assert len(lines) == MAX_LISTED
+    places = [int(line.split(":")[1]) for line in lines]
+    assert places == sorted(set(places))
+
+
+def test_files_that_are_not_regular_are_refused(tmp_path):
+    os.mkfifo(tmp_path / "fifo.toml")
+    (tmp_path / "zero.toml").symlink_to("/dev/zero")
+    for name, kind in (("fifo", "FIFO"), ("zero", "device")):
+        (tmp_path / "mine.toml").write_text(f'extends = "{name}.toml"\n')
+        for file in (f"{name}.toml", "mine.toml"):
+            with pytest.raises(ScenarioError, match=f"not a regular file, got a {kind}$"):
+                load_scenario(str(tmp_path / file))
+
+
+def test_long_chains_of_files_are_refused(tmp_path):
+    for k in range(50):
+        (tmp_path / f"f{k}.toml").write_text(f'extends = "f{k + 1}.toml"\n')
+    with pytest.raises(ScenarioError, match="more than 16 files extend each other"):
+        load_scenario(str(tmp_path / "f0.toml"))
+
+
+def test_a_byte_order_mark_is_no_part_of_the_text(tmp_path):
+    file = tmp_path / "mine.toml"
+    file.write_bytes('\ufeffextends = "course"\nduration = 7.0\n'.encode())
+    assert load_scenario(str(file)).duration == 7.0
+
+
+@given(
+    names=st.lists(
+        st.text(st.characters(categories=["L", "N"]), min_size=1, max_size=20), min_size=2
+    )
+)
+def test_different_names_in_any_script_stay_different(names):
+    stems = {normalize("NFC", name) for name in names}
+    folder = Path(mkdtemp())
+    for stem in stems:
+        (folder / f"{stem}.toml").write_text(COURSE)
+    scenarios = [load_scenario(str(folder / f"{stem}.toml")) for stem in stems]
+    assert {scenario.name for scenario in scenarios} == stems
+    assert loads(dump(scenarios[0])) == scenarios[0]
+
+
+hidden = st.sampled_from(["\x1b[31m", "\x07", "\x9b", "\u202e", "\u2028", "\x7f", "\r", "\b"])
+
+
+@given(text=st.lists(hidden | st.text(max_size=3), max_size=4).map("".join), data=st.data())
+def test_messages_have_printable_characters_alone(text, data):
+    table = data.draw(
+        st.sampled_from(
+            [
+                {text: 1},
+                {"name": text},
+                {"camera": {"source": text}},
+                {"camera": {text: {"x": 1}}},
+                {"robot": {"model": text}},
+                {"mission": {"kind": text}},
+                {"constants": {"vision": {text: text}}},
+                {"vision": {"color_table": text}},
+                {"plugin": {"planner": text}},
+                {"extends": text},
+                {"world": {"mover": [{"motion": "track", "file": text}]}},
+            ]
+        )
+    )
+    for read in (
+        lambda: loads(tomlkit.dumps({"mission": {"kind": "course"}} | table), text or "x"),
+        lambda: load_scenario("quick", [text]),
+        lambda: load_scenario(text),
+    ):
+        with contextlib.suppress(UnicodeEncodeError):
+            message = ""
+            try:
+                read()
+            except ScenarioError as error:
+                message = str(error)
+            assert all(line.isprintable() for line in message.split("\n"))
+            assert message.count("\n") <= 3

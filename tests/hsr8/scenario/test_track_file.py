@@ -1,10 +1,18 @@
+import os
+
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
 from hsr8.errors import ScenarioError
 from hsr8.scenario.loader import dump, load_scenario, loads
-from hsr8.scenario.track_file import TrackFileError, content, recorded_tracks, track_digests
+from hsr8.scenario.track_file import (
+    MAX_ROWS,
+    TrackFileError,
+    content,
+    recorded_tracks,
+    track_digests,
+)
 
 ROWS = "t,x,y,id\n0.0,-3.0,0.0,a\n0.4,-2.5,0.1,a\n"
 number = st.floats(-100.0, 100.0)
@@ -25,6 +33,31 @@ def test_samples_are_those_of_the_rows(rows):
     assert content(data) == data
 
 
+@pytest.mark.parametrize(
+    "text",
+    [
+        ROWS.replace(",", ";"),
+        ROWS.replace(",", "\t"),
+        ROWS.replace(",", " ; "),
+        ROWS.replace("t,x,y,id", "T,X,Y,ID"),
+        ROWS.replace(",", ";").replace(".", ","),
+        "\ufeff"
+        + ROWS.replace("t,x,y,id", "Id;Y;note;X;T")
+        .replace("0.0,-3.0,0.0,a", "a;0,0;1,5 m;-3,0;0,0")
+        .replace("0.4,-2.5,0.1,a", 'a;0,1;"a;b";-2,5;0,4'),
+    ],
+)
+def test_separators_decimal_commas_and_case_of_the_header_do_not_matter(text, tmp_path):
+    (tmp_path / "crowd.csv").write_text(text)
+    scenario = tmp_path / "mine.toml"
+    scenario.write_text(
+        'extends = "course"\n[[world.mover]]\nmotion = "track"\nfile = "crowd.csv"\n'
+        'scale = 0.9\ntime_scale = 4.0\nend = "stay"\n'
+    )
+    (mover,) = load_scenario(str(scenario)).world.mover
+    assert mover.data == ROWS
+
+
 def test_other_columns_their_order_and_line_ends_do_not_matter():
     text = "\ufeffid, y ,speed,x,t\r\na,0.0,9,-3.0,0.0\r\n\r\na,0.1,,-2.5,0.4\r\n"
     assert content(text.lstrip("\ufeff")) == ROWS
@@ -36,6 +69,8 @@ def test_other_columns_their_order_and_line_ends_do_not_matter():
         ("", "line 1: column 't' is missing, got ''; expected a header with t, x, y and id"),
         ("0.0,1.0,2.0,1\n", "line 1: column 't' is missing"),
         ("t,x,y\n0,1,2\n", "line 1: column 'id' is missing, got 't,x,y'"),
+        ("t x y id\n0 1 2 3\n", "got 't x y id'; expected a header with t, x, y and id, separated"),
+        ("t,x,y,id,T\n0,1,2,3,4\n", "line 1: column 't' is repeated"),
         ("t,x,y,id,x\n0,1,2,3,4\n", "line 1: column 'x' is repeated"),
         ("t,x,y,id\n", "got 0 rows; expected 1 to 50000"),
         (ROWS + "0.8,1.0\n", "line 4: a column is missing, got 2 values"),
@@ -72,17 +107,34 @@ def test_an_invalid_file_is_refused_with_its_line(text, expected, tmp_path):
     ("name", "expected"),
     [
         ("none.csv", "none.csv, file does not exist, got 'none.csv'; expected a CSV file next to"),
-        (".", "cannot be read"),
-        ("image.csv", "not a text"),
+        (".", "not a regular file, got a folder"),
+        ("image.csv", "wrong encoding, got UTF-16; expected UTF-8"),
+        ("fifo.csv", "not a regular file, got a FIFO"),
+        ("zero.csv", "not a regular file, got a device"),
+        ("long.csv", "larger than 8 MB"),
     ],
 )
 def test_an_unreadable_file_is_refused(name, expected, tmp_path):
     (tmp_path / "image.csv").write_bytes(b"\xff\xfe\x00")
+    os.mkfifo(tmp_path / "fifo.csv")
+    (tmp_path / "zero.csv").symlink_to("/dev/zero")
+    with (tmp_path / "long.csv").open("wb") as stream:
+        stream.truncate(1 << 40)  # sparse
     file = tmp_path / "mine.toml"
     file.write_text(f'extends = "course"\n[[world.mover]]\nmotion = "track"\nfile = "{name}"\n')
     with pytest.raises(ScenarioError) as caught:
         load_scenario(str(file))
     assert expected in str(caught.value)
+
+
+def test_the_recordings_of_a_scenario_are_bounded_together(tmp_path):
+    rows = "".join(f"{k / 10},{k},0.0,a\n" for k in range(MAX_ROWS))
+    (tmp_path / "crowd.csv").write_text(f"t,x,y,id{' ' * 3_000_000}\n{rows}")
+    file = tmp_path / "mine.toml"
+    mover = '[[world.mover]]\nmotion = "track"\nfile = "crowd.csv"\n'
+    file.write_text('extends = "course"\n' + 3 * mover)
+    with pytest.raises(ScenarioError, match=r"larger than .* 8 MB in all files of a scenario"):
+        load_scenario(str(file))
 
 
 @pytest.fixture
