@@ -6,8 +6,9 @@ from math import pi
 from typing import Literal
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import NDArray
 
+from compilation import compiled
 from navigation.value import value
 
 Array = NDArray[np.float64]
@@ -49,6 +50,18 @@ class Observation:
         return float(variance - covariance * covariance / range_variance)
 
 
+@compiled
+def shadow_at(bearing: float, shadow: Array) -> float:
+    """Return the distance from the camera up to which the robot's own body hides the floor [m].
+
+    Args:
+        bearing: direction in R [rad].
+        shadow: this distance in equal steps of the bearing, from 0 to the left (n,) [m].
+    """
+    step = round(bearing * len(shadow) / (2.0 * pi))
+    return float(shadow[int(step) % len(shadow)])
+
+
 @value
 class Sight:
     """What an image must show of an obstacle: its top seen from above, or its foot.
@@ -61,12 +74,6 @@ class Sight:
 
     top: float = 0.0
     shadow: Array = field(default_factory=partial(np.zeros, 1))
-
-    def shadow_at(self, bearings: ArrayLike) -> Array:
-        """Return the reach of the shadow at bearings in R [rad], shaped like them [m]."""
-        steps = np.rint(np.asarray(bearings) * (len(self.shadow) / (2.0 * pi))).astype(int)
-        reach: Array = self.shadow[steps % len(self.shadow)]
-        return reach
 
 
 @value

@@ -1,15 +1,18 @@
 """Partial evaluations of the gaze in [0, 1], Yoo & Kim, eqs. (1)-(4), and their set O."""
 
+from math import cos, sin, sqrt
+
 import numpy as np
 from numpy.typing import NDArray
 
-from navigation.angles import wrap_array
-from navigation.obstacle_set import ObstacleSet, max_deviation
+from compilation import compiled
+from navigation.belief.tracks import Tracks, max_deviation
 from navigation.parameters.gaze import EvaluationParameters
 from navigation.value import value
 
 Array = NDArray[np.float64]
 Mask = NDArray[np.bool_]
+Rows = NDArray[np.record]
 
 
 @value
@@ -89,25 +92,37 @@ def psi_self(pose_covariance: Array, parameters: EvaluationParameters) -> float:
 
 
 def psi_obstacle(
-    obstacles: ObstacleSet, position: Array, velocity: Array, parameters: EvaluationParameters
+    tracks: Tracks, position: Array, velocity: Array, parameters: EvaluationParameters
 ) -> Array:
     """Return psi_ob of every obstacle: uncertain, closing and near (Yoo & Kim, eq. (3)).
 
     Args:
-        obstacles: n obstacles in W.
-        position: of the robot in W (2,) [m].
-        velocity: of the robot in W (2,) [m/s].
+        tracks: n obstacles in W.
+        position: position of the robot in W (2,) [m].
+        velocity: velocity of the robot in W (2,) [m/s].
         parameters: `omega_o`, `gamma_o` and `min_distance`.
 
     Returns:
         (n,), each in [0, 1].
     """
-    relative = obstacles.velocity - velocity
-    offset = obstacles.position - position
-    distance = np.maximum(np.hypot(offset[:, 0], offset[:, 1]), parameters.min_distance)
-    speed = np.hypot(relative[:, 0], relative[:, 1])
-    alpha = parameters.omega_o * obstacles.sigma * speed / distance
-    return np.minimum(1.0, alpha / parameters.gamma_o)
+    p = parameters
+    return _psi_ob(tracks.rows, position, velocity, p.omega_o, p.gamma_o, p.min_distance)
+
+
+@compiled
+def _psi_ob(
+    tracks: Rows, position: Array, velocity: Array, omega: float, gamma: float, nearest: float
+) -> Array:
+    """Return psi_ob of records of type `TRACK`; see `psi_obstacle`."""
+    psi = np.empty(len(tracks))
+    for i in range(len(tracks)):
+        track = tracks[i]
+        dx, dy = track.position[0] - position[0], track.position[1] - position[1]
+        u, w = track.velocity[0] - velocity[0], track.velocity[1] - velocity[1]
+        distance = max(sqrt(dx * dx + dy * dy), nearest)
+        alpha = omega * track.sigma * sqrt(u * u + w * w) / distance
+        psi[i] = min(1.0, alpha / gamma)
+    return psi
 
 
 def psi_way(free_distance: float, parameters: EvaluationParameters) -> float:
@@ -115,34 +130,39 @@ def psi_way(free_distance: float, parameters: EvaluationParameters) -> float:
     return min(1.0, max(0.0, free_distance) / parameters.d_n_thres)
 
 
+@compiled
 def obstacle_free_distance(position: Array, centres: Array, radii: Array, limit: float) -> float:
     """Return d_of of eq. (4), the distance to the nearest extended shape up to `limit` [m].
 
     Args:
-        position: of the robot (2,) [m].
-        centres: of the extended shapes (n, 2) [m].
-        radii: (n,) [m].
+        position: position of the robot (2,) [m].
+        centres: centres of the extended shapes (n, 2) [m].
+        radii: their radii (n,) [m].
         limit: d_nThres [m].
     """
-    if len(centres) == 0:
-        return limit
-    offset = centres - position
-    gap = float(np.min(np.hypot(offset[:, 0], offset[:, 1]) - radii))
-    return min(limit, max(0.0, gap))
+    nearest = limit
+    for i in range(len(radii)):
+        dx, dy = centres[i, 0] - position[0], centres[i, 1] - position[1]
+        nearest = min(nearest, sqrt(dx * dx + dy * dy) - radii[i])
+    return max(0.0, nearest)
 
 
-def attended(obstacles: ObstacleSet, pose: Array, velocity: Array, reach: float) -> Mask:
+@compiled
+def attended(tracks: Rows, pose: Array, velocity: Array, reach: float) -> Mask:
     """Return the set O of eqs. (2)-(6): obstacles ahead, or approaching from behind.
 
     Args:
-        obstacles: n obstacles in W.
-        pose: of the robot (3,) [m, m, rad].
-        velocity: of the robot in W (2,) [m/s].
+        tracks: records of type `TRACK` (n,).
+        pose: pose of the robot (3,) [m, m, rad].
+        velocity: velocity of the robot in W (2,) [m/s].
         reach: maximum distance [m].
     """
-    offset = obstacles.position - pose[:2]
-    distance = np.hypot(offset[:, 0], offset[:, 1])
-    bearing = wrap_array(np.arctan2(offset[:, 1], offset[:, 0]) - pose[2])
-    closing = np.sum((obstacles.velocity - velocity) * offset, axis=1) < 0.0
-    members: Mask = (distance <= reach) & ((np.abs(bearing) < 0.5 * np.pi) | closing)
+    members = np.empty(len(tracks), np.bool_)
+    for i in range(len(tracks)):
+        track = tracks[i]
+        dx, dy = track.position[0] - pose[0], track.position[1] - pose[1]
+        u, w = track.velocity[0] - velocity[0], track.velocity[1] - velocity[1]
+        ahead = dx * cos(pose[2]) + dy * sin(pose[2]) > 0.0
+        near = dx * dx + dy * dy <= reach * reach
+        members[i] = near and (ahead or u * dx + w * dy < 0.0)
     return members

@@ -7,6 +7,7 @@ from typing import NamedTuple, TypeVar
 import numpy as np
 from numpy.typing import NDArray
 
+from compilation import compiled
 from navigation.angles import wrap
 
 Array = NDArray[np.float64]
@@ -60,6 +61,13 @@ def to_world(pose: Sequence[float], distance: float, bearing: float) -> tuple[fl
     """Return the position in W of a point at `distance` [m] and `bearing` [rad] from `pose`."""
     direction = pose[2] + bearing
     return pose[0] + distance * cos(direction), pose[1] + distance * sin(direction)
+
+
+@compiled
+def in_robot(pose: Array, x: float, y: float) -> tuple[float, float]:
+    """Transform a point from W to R of the robot at `pose` (3,) [m]."""
+    dx, dy, c, s = x - pose[0], y - pose[1], cos(pose[2]), sin(pose[2])
+    return c * dx + s * dy, c * dy - s * dx
 
 
 def points_to_robot(pose: Sequence[float] | Array, points: Array) -> Array:

@@ -4,12 +4,12 @@ from dataclasses import dataclass
 from math import cos, pi, sin
 
 from navigation.belief.belief import Motion, Track
+from navigation.belief.tracks import Tracks
 from navigation.motion.avoid_obstacle import avoid_obstacle
 from navigation.motion.extended_radius import extended_radius, physical_radius
 from navigation.motion.motion_field import FieldScene, MotionField
 from navigation.motion.move_to_goal import move_to_goal, muf
 from navigation.motion.univector import normalized
-from navigation.obstacle_set import ObstacleSet
 from navigation.parameters.navigation import NavigationParameters
 
 import numpy as np
@@ -48,7 +48,7 @@ class FieldPanel:
     clearance: Array
 
 
-def obstacle() -> ObstacleSet:
+def obstacle() -> Tracks:
     """The obstacle of the figure."""
     still = Track(
         id=0,
@@ -64,7 +64,7 @@ def obstacle() -> ObstacleSet:
         last_seen=np.array(OBSTACLE),
         visible=True,
     )
-    return ObstacleSet.from_tracks([still])
+    return Tracks.of([still])
 
 
 def grid() -> Array:

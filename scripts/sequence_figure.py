@@ -17,8 +17,8 @@ from hsr8.scenario.schema import Scenario
 from hsr8.world.field.generator import draw_layout
 from hsr8.world.field.layout import Layout
 from navigation.belief.belief import Motion, Track
+from navigation.belief.tracks import Tracks
 from navigation.motion.extended_radius import extended_radius
-from navigation.obstacle_set import ObstacleSet
 from navigation.partial_evaluation import psi_obstacle
 
 import numpy as np
@@ -127,7 +127,7 @@ def shapes(shown: Tour, frame: ShownFrame) -> list[tuple[tuple[float, float], fl
         )
         for t in frame.tracks
     ]
-    obstacles, p = ObstacleSet.from_tracks(tracks), shown.scenario.navigation
+    obstacles, p = Tracks.of(tracks), shown.scenario.navigation
     x, y, yaw = frame.pose
     forward, left, _ = frame.velocity
     velocity = np.array(

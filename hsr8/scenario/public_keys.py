@@ -1,7 +1,7 @@
 """Public keys: the parameters of the libraries that a user may set.
 
 All other parameters of walking, vision, belief and navigation are constants. Studies change them
-in the table ``[constants]``: ``constants.navigation.gaze.risk.exponent = 2.0``.
+in the table ``[constants]``: ``constants.navigation.gaze.risk.look_time = 0.3``.
 """
 
 LIBRARIES = ("walking", "vision", "belief", "navigation")

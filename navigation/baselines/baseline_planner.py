@@ -9,11 +9,11 @@ from numpy.typing import NDArray
 from navigation.angles import wrap
 from navigation.baselines.planning_scene import PlanningScene
 from navigation.belief.belief import Belief
+from navigation.belief.tracks import Tracks
 from navigation.decision import MotionDecision, SpeedLimits, Task, read_only
 from navigation.motion.facing import arriving, towards
 from navigation.motion.move_to_goal import ArrivalSide, arrival_gain, move_to_goal
 from navigation.motion.velocity_mapping import idle_velocity
-from navigation.obstacle_set import ObstacleSet
 from navigation.parameters.navigation import NavigationParameters
 
 Array = NDArray[np.float64]
@@ -79,8 +79,8 @@ class BaselinePlanner:
 
     def _scene(self, belief: Belief, task: Task, look: float | None) -> PlanningScene:
         p = self._parameters
-        known = [t for t in belief.tracks if t.particles is None or t.age <= p.planner.memory]
-        obstacles = ObstacleSet.from_tracks(known)
+        obstacles = Tracks.of(belief.tracks)
+        obstacles = obstacles.where(~obstacles.lost | (obstacles.age <= p.planner.memory))
         sigma = np.minimum(p.planner.max_sigma, obstacles.sigma)
         course, speed, side = self._move_to_goal(belief.pose, task)
         turning = arriving(belief.pose[:2], task, p.univector.holonomic_distance)

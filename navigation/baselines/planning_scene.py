@@ -6,9 +6,9 @@ from math import cos, sin
 import numpy as np
 from numpy.typing import NDArray
 
+from navigation.belief.tracks import Tracks
 from navigation.decision import SpeedLimits, Task
 from navigation.motion.velocity_mapping import body_velocity
-from navigation.obstacle_set import ObstacleSet
 from navigation.parameters.navigation import NavigationParameters
 from navigation.transform import velocity_in_world
 
@@ -35,7 +35,7 @@ class PlanningScene:
 
     pose: Array
     body: Array
-    obstacles: ObstacleSet
+    obstacles: Tracks
     inflation: Array
     task: Task
     course: float
@@ -95,8 +95,7 @@ class PlanningScene:
         """Return the scene after one footstep, when the command takes effect."""
         dt = self.limits.footstep
         pose = self.pose + dt * np.array([*self.velocity().tolist(), float(self.body[2])])
-        position = self.obstacles.position + dt * self.obstacles.velocity
-        return replace(self, pose=pose, obstacles=replace(self.obstacles, position=position))
+        return replace(self, pose=pose, obstacles=self.obstacles.moved(dt))
 
     def walk(self, velocity: Array) -> Array:
         """Return the body velocity (3,) for `velocity` in W (2,) [m/s].

@@ -1,5 +1,6 @@
 """Belief of the robot: its pose, obstacle tracks and local map."""
 
+from collections.abc import Sequence
 from enum import StrEnum
 from typing import TYPE_CHECKING
 
@@ -89,7 +90,7 @@ class Belief:
             `navigation.belief.prediction`.
         pose: x, y, heading of R in W (3,) [m, m, rad], heading wrapped.
         pose_covariance: (3, 3).
-        tracks: obstacles, by id.
+        tracks: obstacles, by id; see `navigation.belief.tracks` for arrays.
         local_map: occupancy, confidence and age per cell around the robot.
         view: pose and field of view of the camera in R.
         seen_beacons: names of the beacons in the frame.
@@ -100,7 +101,7 @@ class Belief:
     time: float
     pose: Array
     pose_covariance: Array
-    tracks: tuple[Track, ...]
+    tracks: Sequence[Track]
     local_map: "LocalMap"
     view: "CameraView"
     seen_beacons: tuple[str, ...]

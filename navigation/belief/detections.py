@@ -1,49 +1,56 @@
 """Obstacle detections of one frame, transformed from R to W with their covariance."""
 
 from collections.abc import Sequence
-from math import cos, sin
+from math import cos, inf, sin, tanh
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
+from compilation import compiled
 from navigation.observation import Observation
-from navigation.value import value
+from navigation.record import record_type
 
 Array = NDArray[np.float64]
+Rows = NDArray[np.record]
+
+DETECTION = record_type(
+    ("position", np.float64, 2),
+    ("covariance", np.float64, (2, 2)),
+    ("radius", np.float64),
+    ("radius_sigma", np.float64),
+    ("by_radius", np.float64, 2),
+    ("distance", np.float64),
+    ("partial", np.bool_),
+)
+"""Detection in W.
+
+Position [m] and its covariance, including the pose uncertainty [m²]; radius and its standard
+deviation [m]; partial derivatives of the position with respect to the radius [1]; distance from the
+robot [m]; whether the obstacle is visible in part only.
+"""
 
 
-@value
-class Detections:
+class Detections(NamedTuple):
     """Obstacle detections of one frame in W.
 
     Attributes:
-        observations: in R (m).
-        positions: in W (m, 2) [m].
-        covariances: of the positions, including the pose uncertainty (m, 2, 2) [m²].
-        radii: (m,) [m].
-        radius_sigmas: standard deviations of the radii (m,) [m].
-        by_radius: partial derivatives of the positions with respect to the radius (m, 2) [1].
+        rows: records of type `DETECTION` (m,).
+        labels: colour classes (m).
     """
 
-    observations: tuple[Observation, ...]
-    positions: Array
-    covariances: Array
-    radii: Array
-    radius_sigmas: Array
-    by_radius: Array
+    rows: Rows
+    labels: tuple[str, ...]
 
-    def given_radius(self, index: int, radius: float, sigma: float) -> tuple[Array, Array]:
-        """Return position (2,) [m] and covariance (2, 2) [m²] of a detection, given its radius.
+    @property
+    def positions(self) -> Array:
+        """Positions in W (m, 2) [m]."""
+        return np.ascontiguousarray(self.rows["position"])
 
-        Args:
-            index: of the detection.
-            radius: [m].
-            sigma: standard deviation of `radius` [m].
-        """
-        slope = self.by_radius[index]
-        added = sigma * sigma - float(self.radius_sigmas[index]) ** 2
-        position = self.positions[index] + (radius - float(self.radii[index])) * slope
-        return position, self.covariances[index] + added * (slope[:, None] * slope)
+    @property
+    def radii(self) -> Array:
+        """Radii (m,) [m]."""
+        return np.ascontiguousarray(self.rows["radius"])
 
 
 def in_world(
@@ -58,16 +65,16 @@ def in_world(
     R = J R_polar J' + H P_pose H' with H = [1 0 -d sin a; 0 1 d cos a], a the direction in W.
 
     Args:
-        observations: of one frame.
+        observations: observations of one frame.
         pose: x, y, heading of R in W (3,) [m, m, rad].
         pose_covariance: (3, 3); scaled down as a whole to `max_pose_sigma`.
-        max_pose_sigma: [m].
+        max_pose_sigma: maximum standard deviation of the position [m].
     """
-    obstacles = tuple(o for o in observations if o.kind == "obstacle")
+    obstacles = [o for o in observations if o.kind == "obstacle"]
     x, y, heading = pose.tolist()
     variance = max(float(pose_covariance[0, 0]), float(pose_covariance[1, 1]), 1e-12)
     P = (pose_covariance * min(1.0, max_pose_sigma**2 / variance)).tolist()
-    positions, covariances, by_radius = [], [], []
+    rows = []
     for o in obstacles:
         direction = heading + o.bearing
         c, s, d = cos(direction), sin(direction), o.distance
@@ -80,16 +87,45 @@ def in_world(
         xx += P[0][0] + 2.0 * hx * P[0][2] + hx * hx * P[2][2]
         yy += P[1][1] + 2.0 * hy * P[1][2] + hy * hy * P[2][2]
         xy += P[0][1] + hy * P[0][2] + hx * P[1][2] + hx * hy * P[2][2]
-        positions.append((x + d * c, y + d * s))
-        covariances.append(((xx, xy), (xy, yy)))
         radial, angular = o.by_radius.tolist()
-        by_radius.append((c * radial - s * d * angular, s * radial + c * d * angular))
-    count = len(obstacles)
-    return Detections(
-        obstacles,
-        np.array(positions, float).reshape(count, 2),
-        np.array(covariances, float).reshape(count, 2, 2),
-        np.array([o.radius for o in obstacles], float),
-        np.array([o.radius_sigma for o in obstacles], float),
-        np.array(by_radius, float).reshape(count, 2),
-    )
+        slope = (c * radial - s * d * angular, s * radial + c * d * angular)
+        position, covariance = (x + d * c, y + d * s), ((xx, xy), (xy, yy))
+        partial = o.cut or o.occluded
+        rows.append((position, covariance, o.radius, o.radius_sigma, slope, d, partial))
+    return Detections(np.array(rows, DETECTION), tuple(o.label for o in obstacles))
+
+
+@compiled
+def given_radius(d: np.record, radius: float, sigma: float) -> tuple[Array, Array]:
+    """Return position (2,) [m] and covariance (2, 2) [m²] of a detection, given its radius.
+
+    Args:
+        d: record of type `DETECTION`.
+        radius: known radius [m].
+        sigma: standard deviation of `radius` [m].
+    """
+    position, covariance, slope = np.empty(2), np.empty((2, 2)), d.by_radius
+    added = sigma * sigma - d.radius_sigma * d.radius_sigma
+    for a in range(2):
+        position[a] = d.position[a] + (radius - d.radius) * slope[a]
+        for b in range(2):
+            covariance[a, b] = d.covariance[a, b] + added * (slope[a] * slope[b])
+    return position, covariance
+
+
+@compiled
+def variance_inflation(dt: float, correlation_time: float) -> float:
+    """Return the inflation (1 + a)/(1 - a) = coth(dt/(2 tau)) of a measurement's variance, >= 1.
+
+    Consecutive camera frames share the error of the camera's pitch. For an error with
+    autocorrelation a = exp(-dt/tau) the variance of a mean decays (1 + a)/(1 - a) times slower
+    than for white noise; a filter whose measurement variances are inflated by this factor
+    remains consistent.
+
+    Args:
+        dt: time since the previous measurement of the same object, > 0, may be infinite [s].
+        correlation_time: tau [s].
+    """
+    if correlation_time <= 0.0 or dt == inf:
+        return 1.0
+    return 1.0 / tanh(0.5 * dt / correlation_time)

@@ -8,6 +8,7 @@ Several missing landmarks mean that the pose is wrong, unless other landmarks of
 are detected. The map is then frozen until its constellation is matched again.
 """
 
+from collections.abc import Sequence
 from math import atan2, cos, hypot, inf, sin
 
 import numpy as np
@@ -15,8 +16,7 @@ from numpy.typing import NDArray
 
 from navigation.angles import wrap
 from navigation.belief.belief import Motion, Track
-from navigation.belief.correlated_noise import variance_inflation
-from navigation.belief.detections import in_world
+from navigation.belief.detections import in_world, variance_inflation
 from navigation.belief.localization import MAX_SHARED
 from navigation.belief.map_relocalization import MapRelocalization
 from navigation.belief.visibility import Viewpoint
@@ -100,7 +100,7 @@ class EkfSlam:
             self._missing.clear()
             self.lost = False
 
-    def map_landmarks(self, frame: Frame, tracks: tuple[Track, ...]) -> None:
+    def map_landmarks(self, frame: Frame, tracks: Sequence[Track]) -> None:
         """Add static tracks as landmarks and delete those no longer static.
 
         The map does not change while lost, because the tracks are displaced by the wrong pose.

@@ -7,6 +7,7 @@ from numpy.typing import NDArray
 
 from navigation.angles import wrap
 from navigation.belief.belief import Belief
+from navigation.belief.tracks import Tracks
 from navigation.observation import CameraView
 from navigation.transform import propagate
 
@@ -35,6 +36,6 @@ def predict(belief: Belief, then: Array, now: Array, time: float, view: CameraVi
         time=time,
         pose=pose,
         pose_covariance=J @ belief.pose_covariance @ J.T,
-        tracks=tuple(replace(t, position=t.position + dt * t.velocity) for t in belief.tracks),
+        tracks=Tracks.of(belief.tracks).moved(dt),
         view=view,
     )

@@ -72,8 +72,9 @@ class Viewpoint:
             margin: distance from the border of the image [rad].
             occlusion_margin: enlargement of every disc [m].
         """
-        seen_from = self.position, self._camera(margin), self.sight.shadow
-        return visibility_kernel.in_clear_view(points, *seen_from, centres, radii, occlusion_margin)
+        return visibility_kernel.in_clear_view(
+            points, *self.packed(margin), centres, radii, occlusion_margin
+        )
 
     def observed_cells(
         self, corner: tuple[int, int], cell: float, count: int, centres: Array, radii: Array
@@ -88,8 +89,13 @@ class Viewpoint:
             radii: (m,) [m].
         """
         first = np.array(corner, np.float64)
-        seen_from = self.position, self._camera(0.0), self.sight.shadow
-        return visibility_kernel.observed_cells(first, cell, count, *seen_from, centres, radii)
+        return visibility_kernel.observed_cells(
+            first, cell, count, *self.packed(0.0), centres, radii
+        )
+
+    def packed(self, margin: float) -> tuple[Array, visibility_kernel.Camera, Array]:
+        """Return position, camera less a margin [rad] and shadow, as `in_view` takes them."""
+        return self.position, self._camera(margin), self.sight.shadow
 
     def _camera(self, margin: float) -> visibility_kernel.Camera:
         """Camera in the format of `visibility_kernel.in_view` (15)."""

@@ -7,9 +7,9 @@ depend on the path of the robot or the time to collision. The gains in one view 
 import numpy as np
 from numpy.typing import NDArray
 
+from navigation.belief.tracks import Tracks
 from navigation.gaze.gaze_map import Votes
 from navigation.gaze.scene import GazeScene, relative
-from navigation.obstacle_set import possible_positions
 from navigation.parameters.navigation import NavigationParameters
 from navigation.transform import points_to_world
 
@@ -29,11 +29,9 @@ def information_votes(scene: GazeScene, parameters: NavigationParameters) -> Vot
 
 def track_information(scene: GazeScene, parameters: NavigationParameters) -> Votes:
     """½ log det(1 + P/R) of every track; that of a lost track is split over its particles."""
-    tracks = scene.belief.tracks
-    if not tracks:
-        return Votes.join([])
-    owner, positions, weights = possible_positions(tracks)
-    spread = [np.linalg.eigvalsh(track.covariance[:2, :2]) for track in tracks]
+    tracks = Tracks.of(scene.belief.tracks)
+    owner, positions, weights = tracks.possible_positions()
+    spread = np.linalg.eigvalsh(tracks.rows["covariance"][:, :2, :2])
     variances = np.maximum(spread, 0.0)[owner]
     bearing, distance = relative(positions, scene.belief.pose)
     near = distance <= parameters.evaluation.attention_range

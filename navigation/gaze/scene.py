@@ -1,13 +1,16 @@
 """Scene of one gaze decision: obstacles, beacons and partial evaluations."""
 
+from math import atan2, sqrt
+
 import numpy as np
 from numpy.typing import NDArray
 
+from compilation import compiled
 from navigation.angles import wrap_array
 from navigation.belief.belief import Belief
+from navigation.belief.tracks import Tracks
 from navigation.decision import MotionDecision
 from navigation.motion.extended_radius import extended_radius
-from navigation.obstacle_set import ObstacleSet
 from navigation.parameters.navigation import NavigationParameters
 from navigation.partial_evaluation import (
     MapEvaluation,
@@ -19,7 +22,7 @@ from navigation.partial_evaluation import (
     psi_self,
     psi_way,
 )
-from navigation.transform import points_to_world
+from navigation.transform import in_robot, points_to_world
 from navigation.value import value
 
 Array = NDArray[np.float64]
@@ -48,7 +51,7 @@ class GazeScene:
     """
 
     belief: Belief
-    obstacles: ObstacleSet
+    obstacles: Tracks
     bearing: Array
     distance: Array
     attended: Mask
@@ -75,11 +78,14 @@ class GazeScene:
         return members, pan, np.arctan2(height - self.camera_height, self.distance[members])
 
 
+@compiled
 def relative(points: Array, pose: Array) -> tuple[Array, Array]:
     """Return bearing in R (n,) [rad] and distance (n,) [m] of points in W (n, 2) [m]."""
-    offset = points - pose[:2]
-    bearing = wrap_array(np.arctan2(offset[:, 1], offset[:, 0]) - pose[2])
-    return bearing, np.hypot(offset[:, 0], offset[:, 1])
+    bearing, distance = np.empty(len(points)), np.empty(len(points))
+    for i in range(len(points)):
+        x, y = in_robot(pose, points[i, 0], points[i, 1])
+        bearing[i], distance[i] = atan2(y, x), sqrt(x * x + y * y)
+    return bearing, distance
 
 
 def gaze_scene(
@@ -101,13 +107,13 @@ def gaze_scene(
     e, g = parameters.evaluation, parameters.gaze
     view, pose = belief.view, belief.pose
     reach = g.max_pan + 0.5 * view.horizontal_fov
-    obstacles = ObstacleSet.from_tracks(belief.tracks)
-    bearing, distance = relative(obstacles.position, pose)
+    obstacles = Tracks.of(belief.tracks)
+    bearing, distance = relative(np.ascontiguousarray(obstacles.position), pose)
     body = np.zeros(2) if motion is None else motion.velocity[:2]
     velocity = points_to_world(pose, body[None])[0] - pose[:2]
     psi_sf = psi_self(belief.pose_covariance, e)
     psi_ob = psi_obstacle(obstacles, pose[:2], velocity, e)
-    members = attended(obstacles, pose, velocity, e.attention_range)
+    members = attended(obstacles.rows, pose, velocity, e.attention_range)
     height = float(view.position[2])
     aside = np.abs(wrap_array(samples.bearing - view.pan))
     above = np.abs(-np.arctan2(height, samples.distance) - view.tilt)
@@ -115,8 +121,7 @@ def gaze_scene(
     in_gaze &= not view.blind
     confidence = belief.local_map.confidence_at(points_to_world(pose, samples.points))
     radii = extended_radius(obstacles, psi_sf, psi_ob, parameters.univector)
-    centres = obstacles.position[members]
-    radii = radii[members]
+    centres, radii = obstacles.position[members], radii[members]
     if motion is not None and motion.virtual_obstacles:
         centres = np.concatenate([centres, [v.position for v in motion.virtual_obstacles]])
         radii = np.concatenate([radii, [v.radius for v in motion.virtual_obstacles]])

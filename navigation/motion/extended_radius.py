@@ -3,14 +3,14 @@
 import numpy as np
 from numpy.typing import NDArray
 
-from navigation.obstacle_set import ObstacleSet
+from navigation.belief.tracks import Tracks
 from navigation.parameters.motion import UnivectorParameters
 
 Array = NDArray[np.float64]
 
 
 def extended_radius(
-    obstacles: ObstacleSet, psi_sf: float, psi_ob: Array, parameters: UnivectorParameters
+    obstacles: Tracks, psi_sf: float, psi_ob: Array, parameters: UnivectorParameters
 ) -> Array:
     """Return S_oe = S_r + S_o + omega (eta_vo |v_o| + eta_imp (psi_sf + psi_ob)), eq. (7).
 
@@ -31,6 +31,6 @@ def extended_radius(
     return s_phys + parameters.margin + parameters.omega_soe * inflation
 
 
-def physical_radius(obstacles: ObstacleSet, parameters: UnivectorParameters) -> Array:
+def physical_radius(obstacles: Tracks, parameters: UnivectorParameters) -> Array:
     """Return S_phys = S_robot + S_o, the distance at which the bodies touch (n,) [m]."""
     return parameters.s_robot + obstacles.radius

@@ -1,152 +1,156 @@
 """Collision hypotheses of the safety filter: tracks, particles of lost movers, reversals."""
 
-from collections.abc import Sequence
-from dataclasses import fields
-from typing import TYPE_CHECKING
+from math import cos, sin, sqrt
 
 import numpy as np
 from numpy.typing import NDArray
 
-from navigation.belief.belief import Track
-from navigation.motion.bend_kernel import mean_velocity
-from navigation.obstacle_set import ObstacleSet
-from navigation.parameters.motion import SafetyFilterParameters
-from navigation.value import value
-
-if TYPE_CHECKING:
-    from navigation.belief.local_map import LocalMap
+from compilation import compiled
+from navigation.belief.tracks import MOVING, STATIC, TURN_RATE, VX, VY, WEIGHT, X, Y
+from navigation.record import record_type
 
 Array = NDArray[np.float64]
+Rows = NDArray[np.record]
+
+DISC = record_type(
+    ("position", np.float64, 2),
+    ("velocity", np.float64, 2),
+    ("radius", np.float64),
+    ("horizon", np.float64),
+    ("weight", np.float64),
+)
+"""Disc at constant velocity.
+
+Position in W [m], velocity [m/s], distance of the robot's centre that counts as a collision [m],
+maximum time to collision [s] and weight of the penalty [1].
+"""
 
 
-@value
-class Hypotheses:
-    """m discs at constant velocity.
+@compiled
+def chord_velocity(vx: float, vy: float, turn_rate: float, time: float) -> tuple[float, float]:
+    """Return the mean velocity of a mover that turns at a constant rate, along its chord [m/s].
 
-    Attributes:
-        position: in W (m, 2) [m].
-        velocity: (m, 2) [m/s].
-        radius: distance of the robot's centre that counts as a collision (m,) [m].
-        horizon: maximum time to collision (m,) [s].
-        weight: of the penalty (m,).
+    Args:
+        vx: velocity at the start [m/s].
+        vy: velocity at the start [m/s].
+        turn_rate: turn rate of the velocity, left positive [rad/s].
+        time: duration [s].
     """
-
-    position: Array
-    velocity: Array
-    radius: Array
-    horizon: Array
-    weight: Array
-
-    def __len__(self) -> int:
-        return len(self.radius)
-
-    def within_reach(self, position: Array, speed: float) -> "Hypotheses":
-        """Return those a robot at `position` (2,) [m] can reach in time at `speed` [m/s]."""
-        offset = self.position - position
-        gap = np.hypot(offset[:, 0], offset[:, 1]) - self.radius
-        reach = (np.hypot(self.velocity[:, 0], self.velocity[:, 1]) + speed) * self.horizon
-        near = gap < reach
-        return Hypotheses(*(getattr(self, f.name)[near] for f in fields(self)))
+    half = 0.5 * time * turn_rate
+    ratio = sin(half) / half if half != 0.0 else 1.0
+    c, s = ratio * cos(half), ratio * sin(half)
+    return c * vx - s * vy, s * vx + c * vy
 
 
-def collision_hypotheses(
-    tracks: Sequence[Track],
-    obstacles: ObstacleSet,
-    s_robot: float,
-    parameters: SafetyFilterParameters,
-    local_map: "LocalMap",
-) -> Hypotheses:
-    """Build the hypotheses of all tracks.
+@compiled
+def set_disc(disc: np.record, x: float, y: float, velocity: tuple[float, float]) -> None:
+    """Set position [m] and velocity [m/s] of a disc."""
+    disc.position[0], disc.position[1] = x, y
+    disc.velocity[0], disc.velocity[1] = velocity[0], velocity[1]
+
+
+@compiled
+def set_penalty(disc: np.record, radius: float, horizon: float, weight: float) -> None:
+    """Set radius [m], horizon [s] and weight [1] of a disc."""
+    disc.radius, disc.horizon, disc.weight = radius, horizon, weight
+
+
+@compiled
+def is_reachable_set(track: np.record, seen_age: float, p: np.record) -> bool:
+    """Return whether an unseen mover counts as its reachable set.
+
+    The set is a static disc at its latest detection. It lasts until its centre is seen or it is
+    too old.
+
+    Args:
+        track: record of type `TRACK`.
+        seen_age: time since the place of its latest detection was seen [s].
+        p: parameters.
+    """
+    moving, unseen = track.motion == MOVING, track.age - seen_age < p.reachable_delay
+    return bool(moving and unseen and p.reachable_delay < track.age <= p.reachable_age)
+
+
+@compiled
+def collision_discs(
+    tracks: Rows, clouds: Array, seen_ages: Array, s_robot: float, parameters: Rows
+) -> Rows:
+    """Return the hypotheses of all tracks, records of type `DISC`.
 
     A lost mover counts as its particles; a visible one also as its reversal. A turning mover
     follows the chord of its arc over `bend_time`.
 
     Args:
-        tracks: of the belief.
-        obstacles: the tracks as arrays.
+        tracks: records of type `TRACK` (n,).
+        clouds: particles of the lost tracks (k, 6, m).
+        seen_ages: time since the places of their latest detections were seen (n,) [s].
         s_robot: radius of the robot [m].
-        parameters: horizons, weights and margins.
-        local_map: ages of positions.
+        parameters: record of the parameters of the safety filter (1,).
     """
-    radius_sigma = np.array([t.radius_sigma for t in tracks], dtype=np.float64)
-    base = s_robot + obstacles.radius + radius_sigma + parameters.margin
-    inflated = base + np.minimum(parameters.max_sigma, obstacles.sigma)
-    lost = np.array([t.particles is not None for t in tracks], dtype=np.bool_)
-    known = ~lost
-    static = obstacles.static[known]
-    time = parameters.bend_time
-    forward = mean_velocity(obstacles.velocity, obstacles.turn_rate, time)
-    parts = [
-        Hypotheses(
-            obstacles.position[known],
-            forward[known],
-            np.where(static, base[known], inflated[known]),
-            np.where(static, parameters.static_horizon, parameters.moving_horizon),
-            np.ones(int(known.sum())),
-        )
-    ]
-    reversing = known & obstacles.moving
-    if parameters.reversal_weight > 0.0 and reversing.any():
-        n = int(reversing.sum())
-        backward = mean_velocity(obstacles.velocity, -obstacles.turn_rate, time)
-        parts.append(
-            Hypotheses(
-                obstacles.position[reversing],
-                -backward[reversing],
-                inflated[reversing],
-                np.full(n, parameters.reversal_horizon),
-                np.full(n, parameters.reversal_weight),
-            )
-        )
-    for index, track in enumerate(tracks):
-        if track.particles is not None:
-            cloud = track.particles
-            n = len(cloud.weights)
-            parts.append(
-                Hypotheses(
-                    cloud.positions,
-                    mean_velocity(cloud.velocities, cloud.turn_rates, time),
-                    np.full(n, base[index]),
-                    np.full(n, parameters.moving_horizon),
-                    parameters.particle_weight * cloud.weights,
+    p = parameters[0]
+    discs, count = np.empty(3 * len(tracks) + clouds.shape[0] * clouds.shape[2], DISC), 0
+    for reversed_ in (False, True):
+        for i in range(len(tracks)):
+            track = tracks[i]
+            if track.cloud >= 0:
+                continue
+            if reversed_ and (track.motion != MOVING or p.reversal_weight <= 0.0):
+                continue
+            static, turn_rate = track.motion == STATIC, track.turn_rate
+            radius = s_robot + track.radius + track.radius_sigma + p.margin
+            if not static:
+                radius += min(p.max_sigma, track.sigma)
+            vx, vy = track.velocity[0], track.velocity[1]
+            if reversed_:
+                u, v = chord_velocity(vx, vy, -turn_rate, p.bend_time)
+                set_disc(discs[count], track.position[0], track.position[1], (-u, -v))
+                set_penalty(discs[count], radius, p.reversal_horizon, p.reversal_weight)
+            else:
+                velocity = chord_velocity(vx, vy, turn_rate, p.bend_time)
+                set_disc(discs[count], track.position[0], track.position[1], velocity)
+                set_penalty(
+                    discs[count], radius, p.static_horizon if static else p.moving_horizon, 1.0
                 )
+            count += 1
+    for i in range(len(tracks)):
+        track = tracks[i]
+        if track.cloud < 0:
+            continue
+        cloud, radius = clouds[track.cloud], s_robot + track.radius + track.radius_sigma + p.margin
+        for k in range(cloud.shape[1]):
+            velocity = chord_velocity(cloud[VX, k], cloud[VY, k], cloud[TURN_RATE, k], p.bend_time)
+            set_disc(discs[count], cloud[X, k], cloud[Y, k], velocity)
+            set_penalty(
+                discs[count], radius, p.moving_horizon, p.particle_weight * cloud[WEIGHT, k]
             )
-    if parameters.reachable:
-        parts.append(reachable_discs(tracks, obstacles, base, parameters, local_map))
-    return Hypotheses(
-        *(np.concatenate([getattr(p, f.name) for p in parts]) for f in fields(Hypotheses))
-    )
+            count += 1
+    for i in range(len(tracks)):
+        track = tracks[i]
+        if p.reachable == 0.0 or not is_reachable_set(track, seen_ages[i], p):
+            continue
+        grown = min(p.reachable_radius, track.speed * (track.age - p.reachable_delay))
+        radius = s_robot + track.radius + track.radius_sigma + p.margin + grown
+        set_disc(discs[count], track.last_seen[0], track.last_seen[1], (0.0, 0.0))
+        set_penalty(discs[count], radius, p.static_horizon, 1.0)
+        count += 1
+    return discs[:count]
 
 
-def reachable_discs(
-    tracks: Sequence[Track],
-    obstacles: ObstacleSet,
-    base: Array,
-    parameters: SafetyFilterParameters,
-    local_map: "LocalMap",
-) -> Hypotheses:
-    """Return the reachable sets of unseen movers, as static discs at their latest detections.
-
-    A disc lasts until its centre is seen or it is too old.
+@compiled
+def within_reach(discs: Rows, position: Array, speed: float) -> Rows:
+    """Return the discs that a robot can reach in time, in a new array.
 
     Args:
-        tracks: of the belief.
-        obstacles: the tracks as arrays.
-        base: collision distances of visible tracks (n,) [m].
-        parameters: growth and age.
-        local_map: ages of positions.
+        discs: records of type `DISC` (m,).
+        position: position of the robot (2,) [m].
+        speed: maximum speed of the robot [m/s].
     """
-    p = parameters
-    centre = np.array([t.last_seen for t in tracks], dtype=np.float64).reshape(-1, 2)
-    unseen = obstacles.age - local_map.age_at(centre) < p.reachable_delay
-    kept = obstacles.moving & (obstacles.age > p.reachable_delay) & unseen
-    kept &= obstacles.age <= p.reachable_age
-    grown = obstacles.speed * np.maximum(0.0, obstacles.age - p.reachable_delay)
-    n = int(kept.sum())
-    return Hypotheses(
-        centre[kept],
-        np.zeros((n, 2)),
-        base[kept] + np.minimum(p.reachable_radius, grown[kept]),
-        np.full(n, p.static_horizon),
-        np.ones(n),
-    )
+    near, count = discs.copy(), 0
+    for disc in discs:
+        dx, dy = disc.position[0] - position[0], disc.position[1] - position[1]
+        vx, vy = disc.velocity[0], disc.velocity[1]
+        gap = sqrt(dx * dx + dy * dy) - disc.radius
+        if gap < (sqrt(vx * vx + vy * vy) + speed) * disc.horizon:
+            near[count] = disc
+            count += 1
+    return near[:count]

@@ -7,6 +7,7 @@ from math import hypot
 import numpy as np
 
 from navigation.belief.belief import Belief, Motion, Track
+from navigation.belief.tracks import join
 from navigation.parameters.motion import LandmarkParameters
 
 
@@ -40,7 +41,7 @@ class LandmarkObstacles:
             for track in self._tracks
             if hypot(*(track.position - belief.pose[:2]).tolist()) < self._range
         )
-        return replace(belief, tracks=near + belief.tracks) if near else belief
+        return replace(belief, tracks=join(near, belief.tracks)) if near else belief
 
 
 def _static_track(

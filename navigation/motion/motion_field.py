@@ -5,6 +5,7 @@ from math import atan2, cos, hypot, pi, sin
 import numpy as np
 from numpy.typing import NDArray
 
+from navigation.belief.tracks import Tracks
 from navigation.decision import VirtualObstacle
 from navigation.motion.avoid_obstacle import avoid_obstacle, spiral_turn, turning_sign
 from navigation.motion.extended_radius import physical_radius
@@ -18,7 +19,6 @@ from navigation.motion.virtual_obstacle import (
     printed_path_length,
     printed_radius,
 )
-from navigation.obstacle_set import ObstacleSet
 from navigation.parameters.motion import MovingObstacleParameters, UnivectorParameters
 from navigation.value import value
 
@@ -39,7 +39,7 @@ class FieldScene:
         signs: sign of (9) for each obstacle (n,); None for the shorter side at every point.
     """
 
-    obstacles: ObstacleSet
+    obstacles: Tracks
     s_oe: Array
     psi: Array
     target: Array

@@ -8,14 +8,14 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.sparse.csgraph import connected_components
 
+from navigation.belief.tracks import Tracks
 from navigation.motion.avoid_obstacle import turning_sign
-from navigation.obstacle_set import ObstacleSet
 from navigation.parameters.motion import UnivectorParameters
 
 Array = NDArray[np.float64]
 
 
-def groups(obstacles: ObstacleSet, width: float) -> NDArray[np.int64]:
+def groups(obstacles: Tracks, width: float) -> NDArray[np.int64]:
     """Return the group of each obstacle (n,); gaps in a group are narrower than `width` [m]."""
     if len(obstacles) == 0:
         return np.zeros(0, dtype=np.int64)
@@ -32,7 +32,7 @@ class PassingSides:
         self._parameters = parameters
         self._signs: dict[int, float] = {}
 
-    def signs(self, position: Array, target: Array, obstacles: ObstacleSet, s_oe: Array) -> Array:
+    def signs(self, position: Array, target: Array, obstacles: Tracks, s_oe: Array) -> Array:
         """Return the sign of (9) for each obstacle (n,).
 
         Args:

@@ -7,6 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from navigation.belief.belief import Belief
+from navigation.belief.tracks import Tracks
 from navigation.decision import (
     DirectionField,
     MotionDecision,
@@ -19,7 +20,7 @@ from navigation.decision import (
 from navigation.motion.collision_band import CollisionCase, Encounter
 from navigation.motion.extended_radius import extended_radius, physical_radius
 from navigation.motion.facing import Facing, arriving, towards
-from navigation.motion.hypotheses import collision_hypotheses
+from navigation.motion.hypotheses import collision_discs
 from navigation.motion.motion_field import ActiveVirtualObstacles, FieldScene, MotionField
 from navigation.motion.move_to_goal import ArrivalSide, arrival_gain
 from navigation.motion.passing_side import PassingSides
@@ -28,9 +29,9 @@ from navigation.motion.unseen_ground import ground_seen
 from navigation.motion.velocity_mapping import body_velocity, idle_velocity
 from navigation.motion.velocity_modification import ModifiedSpeed, modify_speed, sample_speed
 from navigation.motion.waypoint_search import search_waypoint
-from navigation.obstacle_set import ObstacleSet
 from navigation.parameters.navigation import NavigationParameters
 from navigation.partial_evaluation import psi_obstacle, psi_self
+from navigation.record import record
 from navigation.transform import velocity_in_world
 from navigation.value import value
 
@@ -78,6 +79,7 @@ class Planner:
         self._safety_filter = SafetyFilter(
             parameters.safety_filter, parameters.velocity_mapping, limits
         )
+        self._limits_of_filter = record(parameters.safety_filter)
         self._sides = PassingSides(parameters.univector)
         self._arrival = ArrivalSide(parameters.univector)
         self._path: tuple[float, float] | None = None
@@ -99,7 +101,7 @@ class Planner:
             turn_rate = self._parameters.velocity_mapping.lost_turn_rate
             self._body = idle_velocity(not task.done, turn_rate, self._limits)
             return MotionDecision(read_only(self._body), self._direction)
-        obstacles = ObstacleSet.from_tracks(belief.tracks)
+        obstacles = Tracks.of(belief.tracks)
         task = self._search_waypoint(belief, task, obstacles)
         scene, radii = self._scene(belief, task, obstacles)
         wanted = self._wanted(belief, task, scene)
@@ -124,7 +126,7 @@ class Planner:
             field=wanted.field,
         )
 
-    def _search_waypoint(self, belief: Belief, task: Task, obstacles: ObstacleSet) -> Task:
+    def _search_waypoint(self, belief: Belief, task: Task, obstacles: Tracks) -> Task:
         """Return `task`, or one with a waypoint around static obstacles that block the path."""
         p = self._parameters
         if not p.waypoint_search.enabled or task.aligning:
@@ -140,26 +142,25 @@ class Planner:
         return replace(task, target=waypoint, heading=atan2(dy, dx), is_goal=False)
 
     def _filtered(
-        self, belief: Belief, wanted: _Wanted, facing: Facing, obstacles: ObstacleSet
+        self, belief: Belief, wanted: _Wanted, facing: Facing, obstacles: Tracks
     ) -> tuple[float, float]:
         """Return direction [rad] and speed [m/s] after the safety filter."""
         p = self._parameters
         if not p.safety_filter.enabled:
             return wanted.direction, wanted.speed
-        discs = collision_hypotheses(
-            belief.tracks, obstacles, p.univector.s_robot, p.safety_filter, belief.local_map
-        )
+        rows, s_robot = obstacles.rows, p.univector.s_robot
+        ages = belief.local_map.age_at(rows["last_seen"])
+        discs = collision_discs(rows, obstacles.clouds, ages, s_robot, self._limits_of_filter)
         start = RolloutStart(belief.pose, self._body, wanted.direction, facing)
         velocity = wanted.speed * np.array([cos(wanted.direction), sin(wanted.direction)])
         return self._safety_filter.choose(start, velocity, discs)
 
     def _scene(
-        self, belief: Belief, task: Task, obstacles: ObstacleSet
+        self, belief: Belief, task: Task, obstacles: Tracks
     ) -> tuple[FieldScene, tuple[tuple[int, float], ...]]:
         """Return the inputs of the field, and (track id, S_oe) of its obstacles."""
         p = self._parameters
-        known = [t.particles is None or t.age <= p.univector.memory for t in belief.tracks]
-        obstacles = obstacles.where(np.array(known, dtype=np.bool_))
+        obstacles = obstacles.where(~obstacles.lost | (obstacles.age <= p.univector.memory))
         psi_sf = psi_self(belief.pose_covariance, p.evaluation)
         velocity = velocity_in_world(belief.pose, self._body)
         psi_ob = psi_obstacle(obstacles, belief.pose[:2], velocity, p.evaluation)

@@ -10,11 +10,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from navigation.decision import SpeedLimits
-from navigation.motion import rollout_kernel
+from navigation.motion import rollout
 from navigation.motion.facing import Facing
-from navigation.motion.hypotheses import Hypotheses
+from navigation.motion.hypotheses import within_reach
 from navigation.motion.velocity_mapping import envelope
 from navigation.parameters.motion import SafetyFilterParameters, VelocityMappingParameters
+from navigation.record import record
 from navigation.transform import velocity_in_world
 from navigation.value import value
 
@@ -54,6 +55,7 @@ class SafetyFilter:
         limits: SpeedLimits,
     ) -> None:
         p = self._parameters = parameters
+        self._penalties = record(parameters)
         self._limits = limits
         self._envelope = envelope(limits, mapping.turn_gain)
         self._gait = (
@@ -66,15 +68,17 @@ class SafetyFilter:
         self._turns = np.repeat(2.0 * pi * np.arange(p.headings) / p.headings, p.speeds)
         self._speeds = np.tile(limits.vx * np.arange(1, p.speeds + 1) / p.speeds, p.headings)
 
-    def choose(self, start: RolloutStart, wanted: Array, discs: Hypotheses) -> tuple[float, float]:
+    def choose(
+        self, start: RolloutStart, wanted: Array, discs: NDArray[np.record]
+    ) -> tuple[float, float]:
         """Return direction in W [rad] and speed [m/s] of the best candidate.
 
         Args:
             start: of the rollout.
             wanted: desired velocity in W (2,) [m/s].
-            discs: collision hypotheses.
+            discs: collision hypotheses, records of type `DISC` (m,).
         """
-        near = discs.within_reach(start.pose[:2], self._limits.vx)
+        near = within_reach(discs, start.pose[:2], self._limits.vx)
         best = wanted
         if len(near) > 0:
             candidates = self.candidates(wanted, start.course)
@@ -95,27 +99,16 @@ class SafetyFilter:
         fan = self._speeds[:, None] * np.stack([np.cos(angles), np.sin(angles)], axis=1)
         return np.concatenate([wanted[None], np.zeros((1, 2)), fan])
 
-    def penalty(self, start: RolloutStart, candidates: Array, discs: Hypotheses) -> Array:
+    def penalty(self, start: RolloutStart, candidates: Array, discs: NDArray[np.record]) -> Array:
         """Return the collision penalty of every candidate (n,)."""
-        p, position = self._parameters, start.pose[:2]
-        time, closing = rollout_kernel.contact_times(
-            *self.rollout(start, candidates), position, discs.position, discs.velocity, discs.radius
-        )
-        offset = discs.position - position
-        return rollout_kernel.penalties(
-            time,
-            closing,
-            1.0 - np.hypot(offset[:, 0], offset[:, 1]) / discs.radius,
-            discs.horizon,
-            discs.weight,
-            (p.urgent_time, p.urgent_weight, p.weight),
-            (p.inside_weight, p.inside_depth, p.inside_closing),
-        )
+        paths, position = self.rollout(start, candidates), start.pose[:2]
+        contacts = rollout.contact_times(*paths, position, discs)
+        return rollout.penalties(*contacts, position, discs, self._penalties)
 
     def rollout(self, start: RolloutStart, candidates: Array) -> tuple[Array, Array]:
         """Return velocities (k, n, 2) [m/s] and durations (k, n) [s] of the path segments."""
         facing = start.facing
-        return rollout_kernel.rollout(
+        return rollout.rollout(
             candidates,
             float(start.pose[2]),
             start.course,

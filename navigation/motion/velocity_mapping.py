@@ -4,7 +4,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from navigation.decision import SpeedLimits
-from navigation.motion import rollout_kernel
+from navigation.motion import rollout
 
 Array = NDArray[np.float64]
 
@@ -35,10 +35,10 @@ def body_velocity(
         vx, vy, wz (3,) [m/s, m/s, rad/s].
     """
     bounds = envelope(limits, turn_gain)
-    return np.array(rollout_kernel.body_velocity(course - heading, speed, facing - heading, bounds))
+    return np.array(rollout.body_velocity(course - heading, speed, facing - heading, bounds))
 
 
-def envelope(limits: SpeedLimits, turn_gain: float) -> rollout_kernel.Envelope:
+def envelope(limits: SpeedLimits, turn_gain: float) -> rollout.Envelope:
     """Return the envelope of the kernels; `turn_gain` is the turn rate per heading error [1/s]."""
     return limits.vx, limits.vx_backward, limits.vy, limits.wz, turn_gain
 

@@ -29,7 +29,6 @@ class RiskParameters:
 
     look_time: Annotated[float, "s"] = 0.25  # duration of a look after the saccade
     switch_ratio: float = 1.5  # ratio of the values at which another view replaces the present [1]
-    exponent: float = 1.5  # exponent of the urgency [1]
     max_urgency: float = 4.0  # upper bound of the urgency [1]
     # assumed approach of obstacles: static, and undecided or moving at most, ratios to the robot's
     static_speed: Annotated[float, "m/s"] = 0.02

@@ -1,9 +1,7 @@
-from dataclasses import replace
-
 import numpy as np
 import pytest
 
-from navigation.obstacle_set import ObstacleSet
+from navigation.belief.tracks import Tracks
 from navigation.parameters.gaze import EvaluationParameters
 from navigation.parameters.navigation import NavigationParameters
 from navigation.partial_evaluation import (
@@ -81,7 +79,7 @@ def test_psi_sf_includes_the_heading_in_extended_only():
 
 def test_psi_ob_scales_with_sigma_and_inverse_distance(track):
     def psi(distance, sigma):
-        o = ObstacleSet.from_tracks([track((distance, 0), (0.05, 0), sigma=sigma)])
+        o = Tracks.of([track((distance, 0), (0.05, 0), sigma=sigma)])
         return psi_obstacle(o, HERE, STILL, E)[0]
 
     assert psi(1.0, 0.01) == pytest.approx(20 * 0.01 * 0.05 / 0.25)
@@ -91,10 +89,10 @@ def test_psi_ob_scales_with_sigma_and_inverse_distance(track):
 
 
 def test_psi_ob_depends_on_relative_speed(track):
-    o = ObstacleSet.from_tracks([track((1, 0), (0.1, 0)), track((1, 0))])
+    o = Tracks.of([track((1, 0), (0.1, 0)), track((1, 0))])
     assert psi_obstacle(o, HERE, np.array([0.1, 0.0]), E)[0] == 0.0
     assert psi_obstacle(o, HERE, np.array([0.1, 0.0]), E)[1] > 0.0
-    mirrored = ObstacleSet.from_tracks([track((1, 0.5), (0.1, 0.1)), track((1, -0.5), (0.1, -0.1))])
+    mirrored = Tracks.of([track((1, 0.5), (0.1, 0.1)), track((1, -0.5), (0.1, -0.1))])
     left, right = psi_obstacle(mirrored, HERE, STILL, E)
     assert left == pytest.approx(right)
 
@@ -125,12 +123,14 @@ def test_the_set_o_does_not_depend_on_the_frame(track):
     places, speeds = rng.uniform(-2, 2, (30, 2)), rng.normal(0, 0.1, (30, 2))
     a, shift = 0.8, np.array([3.0, -1.0])
     r = np.array([[np.cos(a), -np.sin(a)], [np.sin(a), np.cos(a)]])
-    here = ObstacleSet.from_tracks([track(p, v) for p, v in zip(places, speeds, strict=True)])
-    there = replace(here, position=here.position @ r.T + shift, velocity=here.velocity @ r.T)
+    here = Tracks.of([track(p, v) for p, v in zip(places, speeds, strict=True)])
+    there = Tracks.of(here).moved(0.0)
+    there.rows["position"] = here.position @ r.T + shift
+    there.rows["velocity"] = here.velocity @ r.T
     v = np.array([0.1, 0.05])
-    one = attended(here, np.array([0.1, 0.2, 0.3]), v, 2.5)
+    one = attended(here.rows, np.array([0.1, 0.2, 0.3]), v, 2.5)
     pose = np.array([*(r @ [0.1, 0.2] + shift), 0.3 + a])
-    assert one.tolist() == attended(there, pose, r @ v, 2.5).tolist()
+    assert one.tolist() == attended(there.rows, pose, r @ v, 2.5).tolist()
     assert psi_obstacle(here, np.array([0.1, 0.2]), v, E) == pytest.approx(
         psi_obstacle(there, pose[:2], r @ v, E)
     )
@@ -140,16 +140,16 @@ def test_the_set_o_is_frontal_or_closing(track):
     def member(degrees, speed=0.0, distance=1.0):
         a = np.radians(degrees)
         outward = np.array([np.cos(a), np.sin(a)])
-        o = ObstacleSet.from_tracks([track(distance * outward, speed * outward)])
-        return bool(attended(o, np.zeros(3), STILL, 2.0)[0])
+        o = Tracks.of([track(distance * outward, speed * outward)])
+        return bool(attended(o.rows, np.zeros(3), STILL, 2.0)[0])
 
     assert [member(d) for d in (85, 95, -85, -95, 170)] == [True, False, True, False, False]
     assert member(170, -0.1)
     assert not member(0, distance=2.1)
-    abeam = ObstacleSet.from_tracks([track((0, 1))])
-    assert not attended(abeam, np.zeros(3), STILL, 2.0)[0]
+    abeam = Tracks.of([track((0, 1))])
+    assert not attended(abeam.rows, np.zeros(3), STILL, 2.0)[0]
     assert not member(170, 0.1)
     walking = np.array([0.1, 0.0])
     for speed, closing in ((0.15, True), (0.05, False), (0.0, False)):
-        o = ObstacleSet.from_tracks([track((-1, 0), (speed, 0))])
-        assert attended(o, np.zeros(3), walking, 2.0)[0] == closing
+        o = Tracks.of([track((-1, 0), (speed, 0))])
+        assert attended(o.rows, np.zeros(3), walking, 2.0)[0] == closing

@@ -20,7 +20,7 @@ from hsr8.world.camera.faults import CameraFaults
 from hsr8.world.field.layout import Beacon, Layout, Obstacle
 from hsr8.world.rotation import heading
 from navigation.angles import wrap
-from navigation.observation import Sight
+from navigation.observation import Sight, shadow_at
 from vision.camera import PinholeCamera
 from vision.color import COLOR_CLASSES
 from vision.detection import Detection
@@ -161,7 +161,7 @@ class AnalyticCamera:
         distance, bearing = polar
         if self._panoramic or top > 0.0:
             return False
-        return distance < float(self._sight.shadow_at(bearing))
+        return distance < shadow_at(bearing, self._sight.shadow)
 
     def _false_detections(self, robot: Pose, mean: float) -> list[Detection]:
         """Return false detections of obstacles, `mean` on average."""

@@ -5,15 +5,15 @@ import pytest
 
 from navigation.baselines.planning_scene import PlanningScene
 from navigation.baselines.rollout import contact_cost, gaps, rollout
+from navigation.belief.tracks import Tracks
 from navigation.decision import Task
-from navigation.obstacle_set import ObstacleSet
 from navigation.parameters.navigation import NavigationParameters
 
 DT = 0.34
 
 
 def scene(tracks, limits, pose=(0.0, 0.0, 0.0), body=(0.0, 0.0, 0.0)):
-    obstacles = ObstacleSet.from_tracks(tracks)
+    obstacles = Tracks.of(tracks)
     return PlanningScene(
         pose=np.array(pose, float),
         body=np.array(body, float),

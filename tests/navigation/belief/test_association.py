@@ -2,7 +2,10 @@ from itertools import permutations
 
 import numpy as np
 
-from navigation.belief.association import assign
+from navigation.belief.association import assign, distinct
+from navigation.belief.tracked_object import OBJECT
+from navigation.parameters.belief import TrackingParameters
+from navigation.record import record
 
 
 def pairs(costs):
@@ -33,3 +36,26 @@ def test_nothing_is_paired_at_a_loss():
 def test_nothing_to_pair():
     assert pairs(np.empty((0, 3))) == []
     assert pairs(np.empty((2, 0))) == []
+
+
+def test_of_two_overlapping_tracks_of_a_colour_the_one_with_weaker_evidence_goes():
+    rng = np.random.default_rng(1)
+    p = TrackingParameters()
+    objects = np.zeros(12, OBJECT)
+    objects["weights"] = (1.0, 0.0, 0.0)
+    objects["states"][:, 0, :2] = centres = rng.uniform(-0.6, 0.6, (12, 2))
+    objects["motion"], objects["radius"] = 0, rng.uniform(0.1, 0.3, 12)
+    objects["hits"] = rng.permutation(12) + p.birth_hits
+    kept = distinct(objects, 1.0, record(p))
+    gap = np.hypot(*(centres[:, None] - centres).transpose(2, 0, 1))
+    reach = p.merge_fraction * (objects["radius"][:, None] + objects["radius"])
+    overlapping = (gap < reach) & ~np.eye(12, dtype=bool)
+    assert 2 < kept.sum() < 10
+    assert not overlapping[np.ix_(kept, kept)].any()
+    for k in np.flatnonzero(~kept):
+        assert (overlapping[k] & (objects["hits"] > objects["hits"][k])).any()
+    for change in ({"last_time": 1.0}, {"lost": True}, {"label": np.arange(12)}):
+        others = objects.copy()
+        for name, value in change.items():
+            others[name] = value
+        assert distinct(others, 1.0, record(p)).all()

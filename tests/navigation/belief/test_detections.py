@@ -1,9 +1,10 @@
 from dataclasses import replace
+from math import exp, inf
 
 import numpy as np
 import pytest
 
-from navigation.belief.detections import in_world
+from navigation.belief.detections import given_radius, in_world, variance_inflation
 from navigation.transform import to_world
 
 
@@ -21,7 +22,7 @@ def test_covariance_is_the_first_order_propagation(observe):
         P = A @ A.T
         o = observe(pose.tolist(), position, sigma=(0.05, 0.02))
         observed = convert([o], pose, P)
-        assert np.allclose(observed.positions[0], position)
+        assert np.allclose(observed.rows[0].position, position)
 
         def f(v, o=o):
             return np.array(to_world(v[:3], o.distance + v[3], o.bearing + v[4]))
@@ -30,7 +31,7 @@ def test_covariance_is_the_first_order_propagation(observe):
         J = np.stack([(f(v + h * e) - f(v - h * e)) / (2 * h) for e in np.eye(5)], axis=1)
         whole = np.zeros((5, 5))
         whole[:3, :3], whole[3:, 3:] = P, o.covariance
-        assert np.allclose(observed.covariances[0], J @ whole @ J.T, atol=1e-8)
+        assert np.allclose(observed.rows[0].covariance, J @ whole @ J.T, atol=1e-8)
 
 
 def test_a_radius_known_otherwise_is_conditioning_on_it(observe):
@@ -49,12 +50,12 @@ def test_a_radius_known_otherwise_is_conditioning_on_it(observe):
     drawn = rng.multivariate_normal([o.distance, o.bearing, o.radius], joint, 400_000)
     chosen = drawn[np.abs(drawn[:, 2] - 0.06) < 5e-4]
     points = np.array([to_world(np.array(pose), d, b) for d, b, _ in chosen])
-    moved, covariance = observed.given_radius(0, 0.06, 0.0)
+    moved, covariance = given_radius(observed.rows[0], 0.06, 0.0)
     assert moved == pytest.approx(points.mean(axis=0), abs=2e-3)
     assert covariance == pytest.approx(np.cov(points.T), abs=5e-5)
-    same, whole = observed.given_radius(0, o.radius, o.radius_sigma)
-    assert np.array_equal(same, observed.positions[0])
-    assert whole == pytest.approx(observed.covariances[0])
+    same, whole = given_radius(observed.rows[0], o.radius, o.radius_sigma)
+    assert np.array_equal(same, observed.rows[0].position)
+    assert whole == pytest.approx(observed.rows[0].covariance)
 
 
 def test_a_lost_pose_does_not_drown_the_tracks(observe):
@@ -62,11 +63,31 @@ def test_a_lost_pose_does_not_drown_the_tracks(observe):
     P = np.diag([1.0, 0.5, 1.0])
     limited = convert([observe(pose, (1.0, 0.2))], pose, P, max_pose_sigma=0.1)
     same = convert([observe(pose, (1.0, 0.2))], pose, 0.01 * P)
-    assert np.allclose(limited.covariances, same.covariances)
+    assert np.allclose(limited.rows["covariance"], same.rows["covariance"])
 
 
 def test_beacons_are_no_obstacles(observe):
     observed = convert([observe((0, 0, 0), (1.0, 0.0), kind="beacon")], (0.0, 0.0, 0.0), np.eye(3))
-    assert observed.observations == ()
+    assert observed.labels == ()
     assert observed.positions.shape == (0, 2)
-    assert observed.covariances.shape == (0, 2, 2)
+    assert observed.radii.shape == (0,)
+
+
+def test_independent_measurements_keep_their_variance():
+    assert variance_inflation(0.06, 0.0) == 1.0
+    assert variance_inflation(inf, 0.1) == 1.0
+    assert variance_inflation(5.0, 0.1) == pytest.approx(1.0)
+
+
+def test_more_correlation_means_less_information():
+    factors = [variance_inflation(dt, 0.1) for dt in (0.02, 0.06, 0.2, 1.0)]
+    assert factors == sorted(factors, reverse=True)
+    assert min(factors) >= 1.0
+
+
+def test_is_the_variance_of_a_mean_of_autocorrelated_noise():
+    dt, tau, n = 0.06, 0.1, 4000
+    a = exp(-dt / tau)
+    lags = np.arange(1, n)
+    variance_of_mean = (1 + 2 * np.sum((1 - lags / n) * a**lags)) / n
+    assert variance_inflation(dt, tau) / n == pytest.approx(variance_of_mean, rel=2e-3)

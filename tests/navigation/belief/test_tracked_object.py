@@ -1,46 +1,63 @@
 import numpy as np
 import pytest
 
-from navigation.belief.belief import Motion, Particles
-from navigation.belief.imm import Modes
-from navigation.belief.imm_kernel import estimates
-from navigation.belief.tracked_object import TrackedObject, reach_of
+from navigation.belief.belief import Motion
+from navigation.belief.tracked_object import (
+    OBJECT,
+    classify,
+    detection_reach,
+    published,
+    search_radius,
+)
+from navigation.belief.tracks import MOTIONS, Tracks
 from navigation.parameters.belief import TrackingParameters
+from navigation.record import record
 
 P = TrackingParameters()
+LIMITS = record(P)
 SHARP = 1e-4 * np.eye(2)
 
 
 def filters(moving=0.5, velocity=(0.03, 0.0)):
     """Stands still at (0.9, 2) or goes on from (1, 2)."""
     walks = [1.0, 2.0, *velocity, 0.2]
-    states = np.array([[0.9, 2.0, 0.0, 0.0, 0.0], walks, walks])
-    covariances = np.stack([np.diag([1e-4, 1e-4, 0.0, 0.0, 0.0])] + 2 * [np.eye(5) * 1e-3])
-    return Modes(np.array([1.0 - moving, moving, 0.0]), states, covariances)
+    return {
+        "weights": [1.0 - moving, moving, 0.0],
+        "states": np.array([[0.9, 2.0, 0.0, 0.0, 0.0], walks, walks]),
+        "covariances": np.stack([np.diag([1e-4, 1e-4, 0.0, 0.0, 0.0])] + 2 * [np.eye(5) * 1e-3]),
+    }
 
 
-def make(**changes):
+def make(modes=None, **changes):
     values = {
         "id": 3,
-        "label": "red",
         "radius": 0.08,
         "radius_sigma": 0.01,
         "first_time": 0.0,
         "last_time": 5.0,
         "last_seen": np.array([1.0, 2.0]),
-        "reach_at_detection": reach_of(np.eye(2) * 1e-4, P),
+        "detection_reach": detection_reach(SHARP, LIMITS[0]),
+        "best": SHARP,
+        "motion": Motion.UNKNOWN,
         "hits": 50,
     }
-    return TrackedObject(**(values | changes))
+    values |= (modes or filters()) | changes
+    values["motion"] = MOTIONS.index(values["motion"])
+    objects = np.zeros(1, OBJECT)
+    for name, value in values.items():
+        objects[name] = value
+    return objects
 
 
-def published(o, time, modes=None, best=SHARP):
-    """The track that becomes of it and of what its filters say."""
-    rows = Modes(*(part[None] for part in modes or filters()))
-    static = np.array([o.motion is Motion.STATIC])
-    bias, speed = P.bias_fraction**2, P.static_velocity_sigma**2
-    moments = estimates(*rows, static, best[None], bias, speed)
-    return o.track(time, P, tuple(part[0] for part in moments))
+def verdict_of(objects):
+    return MOTIONS[int(objects["motion"][0])]
+
+
+def track_of(objects, time, cloud=None):
+    """The published track."""
+    clouds = np.zeros((1, 6, 2)) if cloud is None else cloud[None]
+    (track,) = Tracks(*published(objects, clouds, time, LIMITS), ("red",))
+    return track
 
 
 @pytest.mark.parametrize(
@@ -57,9 +74,9 @@ def published(o, time, modes=None, best=SHARP):
     ],
 )
 def test_verdicts_have_hysteresis(motion, moving, verdict):
-    o = make(motion=motion)
-    o.classify(filters(moving), P)
-    assert o.motion is verdict
+    objects = make(filters(moving), motion=motion)
+    classify(objects[0], LIMITS[0])
+    assert verdict_of(objects) is verdict
 
 
 @pytest.mark.parametrize(
@@ -72,17 +89,17 @@ def test_verdicts_have_hysteresis(motion, moving, verdict):
     ],
 )
 def test_probability_alone_is_not_enough(modes, changes):
-    o = make(**changes)
-    o.classify(modes, P)
-    assert o.motion is Motion.UNKNOWN
+    objects = make(modes, **changes)
+    classify(objects[0], LIMITS[0])
+    assert verdict_of(objects) is Motion.UNKNOWN
 
 
 def test_each_verdict_publishes_its_own_filter():
-    moving = published(make(motion=Motion.MOVING), 5.0)
+    moving = track_of(make(motion=Motion.MOVING), 5.0)
     assert moving.position.tolist() == [1.0, 2.0]
     assert moving.velocity.tolist() == [0.03, 0.0]
     assert moving.turn_rate == 0.2
-    static = published(make(motion=Motion.STATIC), 5.5)
+    static = track_of(make(motion=Motion.STATIC), 5.5)
     assert static.position.tolist() == [0.9, 2.0]
     assert static.velocity.tolist() == [0.0, 0.0]
     assert static.turn_rate == 0.0
@@ -97,8 +114,8 @@ def test_the_reach_grows_with_age_unless_static():
     for motion, growth in ((Motion.STATIC, 0.0), (Motion.MOVING, P.max_speed)):
         o = make(motion=motion)
         known = P.reach_sigmas * 0.01
-        assert published(o, 5.0).reach == pytest.approx(known)
-        assert published(o, 8.0).reach == pytest.approx(known + 3.0 * growth)
+        assert track_of(o, 5.0).reach == pytest.approx(known)
+        assert track_of(o, 8.0).reach == pytest.approx(known + 3.0 * growth)
 
 
 def test_the_reach_does_not_depend_on_the_axes_of_the_world():
@@ -106,38 +123,31 @@ def test_the_reach_does_not_depend_on_the_axes_of_the_world():
     for turn in (0.0, 0.4, 0.8, 2.0):
         c, s = np.cos(turn), np.sin(turn)
         Q = np.array([[c, -s], [s, c]])
-        reach.append(reach_of(Q @ np.diag([9e-4, 1e-6]) @ Q.T, P))
+        reach.append(detection_reach(Q @ np.diag([9e-4, 1e-6]) @ Q.T, LIMITS[0]))
     assert np.allclose(reach, P.reach_sigmas * 0.03)
 
 
 def test_the_search_radius_grows_with_speed():
     for speed in (0.0, 0.03, 0.2):
-        o, modes = make(), filters(1.0, (speed, 0.0))
-        assert o.search_radius(5.0, modes, P) == P.path_width
+        o = make(filters(1.0, (speed, 0.0)))[0]
+        assert search_radius(o, 5.0, LIMITS[0]) == P.path_width
         farther = P.path_width + 4.0 * P.reach_factor * speed
-        assert o.search_radius(9.0, modes, P) == pytest.approx(farther)
+        assert search_radius(o, 9.0, LIMITS[0]) == pytest.approx(farther)
 
 
 def test_a_cloud_is_published_by_its_moments():
-    cloud = Particles(
-        np.array([[0.0, 0.0], [1.0, 0.0]]),
-        np.array([[0.1, 0.0], [-0.1, 0.0]]),
-        np.array([0.1, -0.3]),
-        np.array([0.25, 0.75]),
-    )
-    track = published(make(motion=Motion.MOVING, particles=cloud), 8.0)
+    cloud = np.array([[0.0, 1.0], [0.0, 0.0], [0.1, -0.1], [0.0, 0.0], [0.1, -0.3], [0.25, 0.75]])
+    track = track_of(make(motion=Motion.MOVING, lost=True), 8.0, cloud)
     assert np.allclose(track.position, [0.75, 0.0])
     assert np.allclose(track.velocity, [-0.05, 0.0])
     assert track.turn_rate == pytest.approx(-0.2)
     assert track.covariance[0, 0] == pytest.approx(0.1875)
+    assert np.array_equal(track.particles.positions, cloud[:2].T)
 
 
 def test_a_published_track_does_not_change_later():
-    o, modes = make(motion=Motion.MOVING), filters()
-    track = published(o, 5.0, modes)
-    modes.states[:] = 0.0
-    modes.covariances[:] = 0.0
-    o.last_seen[:] = 0.0
-    assert track.position.tolist() == [1.0, 2.0]
-    assert track.covariance[0, 0] == pytest.approx(1e-3)
+    cloud, objects = np.full((6, 2), 0.5), make(motion=Motion.MOVING, lost=True)
+    track = track_of(objects, 5.0, cloud)
+    objects["last_seen"], cloud[:] = 0.0, 0.0
+    assert track.particles.positions.tolist() == [[0.5, 0.5], [0.5, 0.5]]
     assert track.last_seen.tolist() == [1.0, 2.0]

@@ -8,7 +8,7 @@ import pytest
 
 from navigation.belief import visibility_kernel as kernel
 from navigation.belief.visibility import Viewpoint
-from navigation.observation import Sight
+from navigation.observation import Sight, shadow_at
 
 
 @pytest.fixture
@@ -32,7 +32,7 @@ def contained(points, v, margin):
     offset = points - v.position[:2]
     distance = np.hypot(offset[:, 0], offset[:, 1])
     bearing = np.arctan2(offset[:, 1], offset[:, 0]) - v.heading
-    foot = distance >= v.sight.shadow_at(bearing)
+    foot = distance >= np.array([shadow_at(b, v.sight.shadow) for b in bearing])
     foot &= shown(offset, -v.position[2], v, margin)
     return (distance <= v.range) & (foot | shown(offset, v.sight.top - v.position[2], v, margin))
 

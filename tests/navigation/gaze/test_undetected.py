@@ -6,7 +6,6 @@ import pytest
 from navigation.belief.local_map import LocalMap
 from navigation.belief.visibility import Viewpoint
 from navigation.gaze.undetected import Undetected
-from navigation.gaze.undetected_kernel import NEVER, time_to_collision
 from navigation.parameters.belief import LocalMapParameters
 from navigation.parameters.risk import RiskParameters, UndetectedParameters
 
@@ -15,28 +14,13 @@ STILL = np.zeros(2)
 NOTHING = np.zeros((0, 2)), np.zeros(0)
 
 
-@pytest.mark.parametrize("seed", range(30))
-def test_at_the_time_of_a_collision_the_distance_is_the_gap(seed):
-    rng = np.random.default_rng(seed)
-    (x, y), (vx, vy) = rng.uniform(-2, 2, 2), rng.uniform(-0.4, 0.4, 2)
-    time = time_to_collision(x, y, vx, vy, 0.3)
-    path = np.hypot(x + vx * np.linspace(0, 60, 6001), y + vy * np.linspace(0, 60, 6001))
-    if time == NEVER:
-        assert path.min() > 0.299
-    elif time > 0.0:
-        assert np.hypot(x + vx * time, y + vy * time) == pytest.approx(0.3)
-        assert path[np.linspace(0, 60, 6001) < time].min() >= 0.3 - 1e-9
-    else:
-        assert np.hypot(x, y) <= 0.3
-
-
 @pytest.fixture
 def world(view):
     """A local map and the density on it, after a look for some frames; then unseen."""
 
     def make(pan=0.0, frames=3, pose=(0.0, 0.0, 0.0), parameters=P):
         local_map = LocalMap(LocalMapParameters(), pose[:2], 0.0)
-        undetected = Undetected(parameters, local_map, 0.0)
+        undetected = Undetected(parameters, RISK, local_map, 0.0)
         viewpoint = Viewpoint.of(view(pan, -0.6), np.array(pose), 2.5)
         for k in range(frames):
             time = 0.06 * (k + 1)
@@ -48,7 +32,7 @@ def world(view):
 
 
 def risks(undetected, velocity=STILL, position=STILL):
-    return undetected.risks(np.array(position), np.array(velocity), RISK)
+    return undetected.risks(np.array(position), np.array(velocity))
 
 
 def test_ground_in_view_loses_its_risk_and_ground_beside_keeps_it(world):

@@ -2,21 +2,21 @@ import numpy as np
 import pytest
 
 from navigation.belief.belief import Motion
+from navigation.belief.tracks import Tracks
 from navigation.motion.extended_radius import extended_radius, physical_radius
-from navigation.obstacle_set import ObstacleSet
 from navigation.parameters.motion import UnivectorParameters
 
 P = UnivectorParameters()
 
 
 def radius(track, velocity=(0.0, 0.0), motion=None, psi_sf=0.0, psi_ob=0.0):
-    o = ObstacleSet.from_tracks([track((1, 0), velocity, motion)])
+    o = Tracks.of([track((1, 0), velocity, motion)])
     return float(extended_radius(o, psi_sf, np.array([psi_ob]), P)[0])
 
 
 def test_a_still_certain_obstacle_has_the_sum_of_the_radii(track):
     assert radius(track) == pytest.approx(P.s_robot + P.margin + 0.08)
-    o = ObstacleSet.from_tracks([track((1, 0))])
+    o = Tracks.of([track((1, 0))])
     assert physical_radius(o, P) == pytest.approx([P.s_robot + 0.08])
 
 

@@ -4,28 +4,22 @@ import numpy as np
 import pytest
 
 from navigation.belief.belief import Motion
-from navigation.motion.hypotheses import collision_hypotheses
-from navigation.obstacle_set import ObstacleSet
+from navigation.belief.imm import arc
+from navigation.belief.tracks import Tracks
+from navigation.motion.hypotheses import chord_velocity, collision_discs, within_reach
 from navigation.parameters.motion import SafetyFilterParameters
+from navigation.record import record
 
 P = SafetyFilterParameters()
 SURE = 0.12 + 0.08 + 0.005 + P.margin
 """Collision distance of a track with a radius of 0.08 m and a sigma of 0.005 m [m]."""
 
 
-class LookedAt:
-    """A local map of one age."""
-
-    def __init__(self, age):
-        self._age = age
-
-    def age_at(self, points):
-        return np.full(len(points), self._age)
-
-
 def build(*tracks, p=P, looked=np.inf):
-    obstacles = ObstacleSet.from_tracks(tracks)
-    return collision_hypotheses(tracks, obstacles, 0.12, p, LookedAt(looked))
+    obstacles = Tracks.of(tracks)
+    ages = np.full(len(tracks), looked)
+    discs = collision_discs(obstacles.rows, obstacles.clouds, ages, 0.12, record(p))
+    return discs.view(np.recarray)
 
 
 def test_static_obstacles_have_a_short_horizon_and_no_sigma(track):
@@ -78,8 +72,8 @@ def test_a_turning_mover_follows_its_chord_and_reverses_on_its_circle(track):
 
 def test_only_discs_within_reach_are_kept(track):
     h = build(track((0.6, 0)), track((2, 0)), track((0, 2), (0.0, 0.1)), track((0, 2.5)))
-    near = h.within_reach(np.zeros(2), 0.2)
-    assert near.position.tolist() == [[0.6, 0], [0, 2]]
+    near = within_reach(h.view(np.ndarray), np.zeros(2), 0.2)
+    assert near["position"].tolist() == [[0.6, 0], [0, 2]]
 
 
 def test_no_tracks_are_no_hypotheses():
@@ -99,3 +93,16 @@ def test_an_unseen_mover_is_its_reachable_set_until_its_position_is_seen(track):
             assert not h.velocity[-1].any()
         assert len(build(mover, p=p, looked=0.1)) == len(without)
     assert len(build(track((1, 0), age=2.0), p=p)) == 1
+
+
+@pytest.mark.parametrize("turn", [-1.3, 1e-5, 0.0, 0.4, np.pi])
+def test_the_chord_is_the_mean_velocity_over_the_time(turn):
+    """Against the midpoint rule, and against the arc that the filters of the tracks follow."""
+    time, n = 2.0, 2000
+    angles = turn * time * (np.arange(n) + 0.5) / n
+    c, s = np.cos(angles).mean(), np.sin(angles).mean()
+    chord = chord_velocity(0.03, -0.04, turn, time)
+    assert chord == pytest.approx((0.03 * c + 0.04 * s, 0.03 * s - 0.04 * c), abs=1e-7)
+    along, across, *_ = arc(turn, time)
+    expected = (0.03 * along + 0.04 * across, 0.03 * across - 0.04 * along)
+    assert chord == pytest.approx(expected, abs=1e-12)

@@ -3,13 +3,13 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from navigation.belief.tracks import Tracks
 from navigation.motion.avoid_obstacle import avoid_obstacle
 from navigation.motion.extended_radius import extended_radius
 from navigation.motion.motion_field import FieldScene, MotionField
 from navigation.motion.move_to_goal import move_to_goal, muf
 from navigation.motion.univector import normalized, weighted_sum
 from navigation.motion.virtual_obstacle import oval
-from navigation.obstacle_set import ObstacleSet
 from navigation.parameters.navigation import NavigationParameters
 
 EXTENDED, PAPER = NavigationParameters.extended(), NavigationParameters.paper()
@@ -17,7 +17,7 @@ TARGET = np.array([2.0, 0.0])
 
 
 def scene(tracks, p=EXTENDED, target=TARGET, heading=0.0):
-    o = ObstacleSet.from_tracks(tracks)
+    o = Tracks.of(tracks)
     return FieldScene(o, extended_radius(o, 0.0, np.zeros(len(o)), p.univector), np.zeros(len(o)),
                       np.asarray(target, float), heading)  # fmt: skip
 

@@ -2,9 +2,9 @@ from dataclasses import replace
 
 import numpy as np
 
+from navigation.belief.tracks import Tracks
 from navigation.motion.avoid_obstacle import turning_sign
 from navigation.motion.passing_side import PassingSides, groups
-from navigation.obstacle_set import ObstacleSet
 from navigation.parameters.motion import UnivectorParameters
 
 TARGET = np.array([2.0, 0.0])
@@ -12,7 +12,7 @@ P = UnivectorParameters()
 
 
 def obstacles(track, *places):
-    return ObstacleSet.from_tracks([track(c, id=i + 1) for i, c in enumerate(places)])
+    return Tracks.of([track(c, id=i + 1) for i, c in enumerate(places)])
 
 
 def signs(sides, position, o, s_oe=0.25):

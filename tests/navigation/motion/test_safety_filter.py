@@ -2,8 +2,8 @@ import numpy as np
 import pytest
 
 from navigation.motion.facing import Facing
-from navigation.motion.hypotheses import Hypotheses
-from navigation.motion.rollout_kernel import contact_times
+from navigation.motion.hypotheses import DISC
+from navigation.motion.rollout import contact_times
 from navigation.motion.safety_filter import RolloutStart, SafetyFilter
 from navigation.parameters.motion import SafetyFilterParameters, VelocityMappingParameters
 
@@ -16,14 +16,10 @@ ON_COURSE = Facing()
 def discs(places, velocities=None, radius=0.25, horizon=6.0, weight=1.0):
     places = np.atleast_2d(np.asarray(places, float))
     n = len(places)
-    velocities = np.zeros((n, 2)) if velocities is None else np.atleast_2d(velocities)
-    return Hypotheses(
-        places,
-        np.asarray(velocities, float),
-        np.full(n, radius),
-        np.full(n, horizon),
-        np.full(n, weight),
-    )
+    result = np.zeros(n, DISC).view(np.recarray)
+    result.position, result.velocity = places, 0.0 if velocities is None else velocities
+    result.radius, result.horizon, result.weight = radius, horizon, weight
+    return result
 
 
 def start(pose=HERE, body=STANDING, course=0.0, facing=ON_COURSE):
@@ -42,7 +38,7 @@ def choose(limits, wanted, hypotheses):
 
 
 def times(velocity, duration, d):
-    return contact_times(velocity, duration, np.zeros(2), d.position, d.velocity, d.radius)
+    return contact_times(velocity, duration, np.zeros(2), d.view(np.ndarray))
 
 
 def test_contact_times_equal_brute_force():

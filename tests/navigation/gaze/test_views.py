@@ -3,12 +3,12 @@ from math import tan
 import numpy as np
 import pytest
 
-from navigation.gaze.view_kernel import hidden, move_time, view_values, visible_part
+from navigation.gaze.looks import hidden
+from navigation.gaze.views import LOOK, move_time, view_values
 
 RATE, ACCELERATION = 3.0, 40.0
 EYE, LENS = np.array([0.04, 0.46]), np.array([tan(0.5), tan(0.4)])
-LIMITS = np.array([0.25, 4.0, 1.5, 0.14])
-NO_DISCS = np.zeros((0, 3))
+LOOK_TIME, MAX_URGENCY = 0.25, 4.0
 
 
 def moved(time, angle, speed, steps=20_000):
@@ -44,16 +44,17 @@ def test_times_of_moves_are_symmetric_and_continuous_and_grow_with_the_angle():
 
 
 def look(x, y, weight=1.0, base=1.0, rate=0.0, *, top=0.0, credit=0.0):
-    return np.array([[x, y, weight, base, rate, top, credit]])
+    return np.array([(x, y, weight, base, rate, top, credit)], LOOK)
 
 
 STILL = (0.0, 0.0, -0.4, 0.0)
 
 
-def values(looks, *, pans=(0.0,), tilts=(-0.4,), discs=NO_DISCS, neck=STILL, turn=(0.0, 1.6)):
+def values(looks, *, pans=(0.0,), tilts=(-0.4,), neck=STILL, turn=(0.0, 1.6)):
     motion = np.array([*neck, RATE, ACCELERATION])
     views = np.array(pans), np.array(tilts)
-    return view_values(*views, looks, discs, EYE, LENS, motion, LIMITS, np.array(turn))
+    limits = LOOK_TIME, MAX_URGENCY, np.array(turn)
+    return view_values(*views, looks, EYE, LENS, motion, *limits)
 
 
 @pytest.mark.parametrize("pan", [-1.2, 0.0, 0.6])
@@ -76,42 +77,39 @@ def test_a_view_counts_the_points_that_a_pinhole_camera_projects_into_its_image(
 def test_values_of_looks_add_up_over_the_time_of_saccade_and_look():
     one, other = look(1.0, 0.1), look(0.9, -0.1, weight=2.0)
     pans, tilts = np.linspace(-1.5, 1.5, 7), np.array([-0.8, -0.4])
-    both = values(np.vstack([one, other]), pans=pans, tilts=tilts)
+    both = values(np.concatenate([one, other]), pans=pans, tilts=tilts)
     assert both == pytest.approx(
         values(one, pans=pans, tilts=tilts) + values(other, pans=pans, tilts=tilts)
     )
     away = (1.0, 0.0, -0.4, 0.0)
     time = move_time(-1.0, 0.0, RATE, ACCELERATION)
-    assert values(one)[0, 0] == pytest.approx(1.0 / LIMITS[0])
-    assert values(one, neck=away)[0, 0] == pytest.approx(1.0 / (LIMITS[0] + time))
+    assert values(one)[0, 0] == pytest.approx(1.0 / LOOK_TIME)
+    assert values(one, neck=away)[0, 0] == pytest.approx(1.0 / (LOOK_TIME + time))
 
 
 def test_the_urgency_grows_during_the_saccade_up_to_its_limit():
     away = (1.0, 0.0, -0.4, 0.0)
     time = move_time(-1.0, 0.0, RATE, ACCELERATION)
     growing = values(look(1.0, 0.0, base=0.5, rate=2.0), neck=away)[0, 0]
-    assert growing == pytest.approx((0.5 + 2.0 * time) ** 1.5 / (LIMITS[0] + time))
+    assert growing == pytest.approx((0.5 + 2.0 * time) ** 1.5 / (LOOK_TIME + time))
     for base in (4.0, 9.0):
-        assert values(look(1.0, 0.0, base=base, rate=2.0))[0, 0] == pytest.approx(8.0 / LIMITS[0])
+        assert values(look(1.0, 0.0, base=base, rate=2.0))[0, 0] == pytest.approx(8.0 / LOOK_TIME)
 
 
-def test_a_disc_hides_what_is_behind_it_but_not_itself_or_a_beacon():
+def test_a_disc_hides_the_floor_behind_it_but_not_itself():
     disc = np.array([[0.8, 0.0, 0.08]])
     assert hidden(1.5, 0.0, disc, 0.14)
     assert not hidden(1.5, 0.4, disc, 0.14)
     assert not hidden(0.5, 0.0, disc, 0.14)
     assert not hidden(0.82, 0.0, disc, 0.14)
-    assert values(look(1.5, 0.0), discs=disc)[0, 0] == 0.0
-    beacon = look(1.5, 0.0, top=0.3, credit=-1.0)
-    assert values(beacon, discs=disc, tilts=[-0.2], neck=(0.0, 0.0, -0.2, 0.0))[0, 0] > 0.0
 
 
 @pytest.mark.parametrize("rate", [-0.8, 0.8])
 def test_a_view_that_the_turning_body_moves_out_of_reach_is_worth_nothing(rate):
-    ring = np.vstack([look(np.cos(a), np.sin(a)) for a in np.linspace(-1.9, 1.9, 40)])
+    ring = np.concatenate([look(np.cos(a), np.sin(a)) for a in np.linspace(-1.9, 1.9, 40)])
     pans = np.linspace(-1.5, 1.5, 31)
     still, turning = (values(ring, pans=pans, turn=(r, 1.5))[0] for r in (0.0, rate))
-    times = np.array([move_time(pan, 0.0, RATE, ACCELERATION) for pan in pans]) + LIMITS[0]
+    times = np.array([move_time(pan, 0.0, RATE, ACCELERATION) for pan in pans]) + LOOK_TIME
     kept = np.abs(pans - rate * times) <= 1.5
     assert 0 < kept.sum() < len(pans)
     assert turning == pytest.approx(np.where(kept, still, 0.0))
@@ -119,10 +117,10 @@ def test_a_view_that_the_turning_body_moves_out_of_reach_is_worth_nothing(rate):
 
 def test_a_foot_alone_has_its_credit_and_a_beacon_must_be_whole():
     def part(distance, tilt, top, credit):
-        tilted = (np.cos(tilt), np.sin(tilt))
-        return visible_part(distance, 0.0, EYE[1], top, credit, tilted, LENS)
+        looks = look(distance + EYE[0], 0.0, top=top, credit=credit)
+        return LOOK_TIME * values(looks, tilts=[tilt], neck=(0.0, 0.0, tilt, 0.0))[0, 0]
 
-    assert part(0.3, -0.9, 0.40, 0.7) == 0.7
+    assert part(0.3, -0.9, 0.40, 0.7) == pytest.approx(0.7)
     assert part(0.3, -0.9, 0.40, 0.0) == 0.0
     assert part(0.3, 0.5, 0.40, 0.7) == 0.0
     assert part(0.5, -0.2, 0.40, 0.7) == 1.0

@@ -1,4 +1,4 @@
-"""Compiled against plain Python, and against formulas over whole arrays."""
+"""Compiled functions against formulas over whole arrays."""
 
 from math import inf, nan
 
@@ -6,7 +6,10 @@ import numpy as np
 import pytest
 
 from navigation.angles import wrap, wrap_array
-from navigation.motion import rollout_kernel as kernel
+from navigation.motion import rollout as kernel
+from navigation.motion.hypotheses import DISC
+from navigation.parameters.motion import SafetyFilterParameters
+from navigation.record import record
 
 ENVELOPE = (0.2, 0.1, 0.08, 0.8, 1.5)
 GAIT = (0.34, 0.1, 0.4, 0.5, 0.096)
@@ -23,41 +26,21 @@ def body_velocity(course, speed, heading, facing):
 
 @pytest.fixture
 def scene():
-    """Candidates, present velocity; discs."""
+    """Candidates, present velocity."""
     rng = np.random.default_rng(0)
     candidates = np.concatenate([np.zeros((1, 2)), rng.uniform(-0.2, 0.2, (30, 2))])
-    centres, motions = rng.uniform(-1, 1, (12, 2)), rng.normal(0, 0.1, (12, 2))
-    return candidates, np.array([0.1, 0.02, 0.3]), centres, motions, rng.uniform(0.1, 0.4, 12)
-
-
-def test_compiled_and_plain_agree(scene):
-    candidates, now, centres, motions, radii = scene
-    paths = kernel.rollout(candidates, 2.8, 0.3, nan, now, ENVELOPE, GAIT, 4)
-    discs = (np.zeros(2), centres, motions, radii)
-    times = kernel.contact_times(*paths, *discs)
-    depth = 1.0 - np.hypot(*centres.T) / radii
-    weights = (depth, np.full(12, 3.0), radii, (1.5, 20.0, 6.0), (10.0, 40.0, 100.0))
-    for function, arguments in (
-        (kernel.rollout, (candidates, 2.8, 0.3, nan, now, ENVELOPE, GAIT, 4)),
-        (kernel.rollout, (candidates, 2.8, 0.3, -1.0, now, ENVELOPE, GAIT, 4)),
-        (kernel.contact_times, (*paths, *discs)),
-        (kernel.penalties, (*times, *weights)),
-    ):
-        result, plain = function(*arguments), function.py_func(*arguments)
-        for a, b in zip(result, plain, strict=True):
-            assert np.allclose(a, b, rtol=1e-12, atol=1e-14)
+    return candidates, np.array([0.1, 0.02, 0.3])
 
 
 def test_body_velocities_obey_the_formula_over_arrays():
     inputs = np.random.default_rng(2).uniform(-4, 4, (4, 50))
-    for function in (kernel.body_velocity, kernel.body_velocity.py_func):
-        velocities = [function(c - h, v, f - h, ENVELOPE) for c, v, h, f in inputs.T.tolist()]
-        assert np.array(velocities) == pytest.approx(body_velocity(*inputs))
+    velocities = [kernel.body_velocity(c - h, v, f - h, ENVELOPE) for c, v, h, f in inputs.T]
+    assert np.array(velocities) == pytest.approx(body_velocity(*inputs))
 
 
 @pytest.mark.parametrize("facing", [nan, 2.0])
 def test_footsteps_follow_one_another(scene, facing):
-    candidates, now, *_ = scene
+    candidates, now = scene
     footstep, change, turn_change, turn_first_angle, fast = GAIT
     speed = np.hypot(*candidates.T)
     direction = np.where(speed < 1e-9, 0.3, np.arctan2(candidates[:, 1], candidates[:, 0]))
@@ -83,7 +66,7 @@ def test_footsteps_follow_one_another(scene, facing):
     assert not velocity[4].any()
 
 
-def test_penalties_are_the_sum_over_the_discs(scene):
+def test_penalties_are_the_sum_over_the_discs():
     rng = np.random.default_rng(3)
     time, closing = rng.uniform(0, 8, (20, 12)), rng.uniform(0, 0.2, (20, 12))
     time[rng.random((20, 12)) < 0.3] = inf
@@ -91,9 +74,11 @@ def test_penalties_are_the_sum_over_the_discs(scene):
     each = np.maximum(0.0, 1.0 - time / horizon) * np.where(time < 1.5, 20.0, 6.0)
     within = (depth > 0.0) & (time < horizon)
     each += within * (10.0 + 40.0 * depth + 100.0 * closing)
-    result = kernel.penalties(
-        time, closing, depth, horizon, weight, (1.5, 20.0, 6.0), (10.0, 40.0, 100.0)
-    )
+    discs = np.zeros(12, DISC)
+    discs["radius"], discs["horizon"], discs["weight"] = 0.2, horizon, weight
+    discs["position"][:, 0] = 0.2 * (1.0 - depth)
+    p = record(SafetyFilterParameters())
+    result = kernel.penalties(time, closing, np.zeros(2), discs, p)
     assert result == pytest.approx(each @ weight)
 
 

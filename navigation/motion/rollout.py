@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 from compilation import compiled
 
 Array = NDArray[np.float64]
+Rows = NDArray[np.record]
 Envelope = tuple[float, float, float, float, float]
 Velocity = tuple[float, float, float]
 
@@ -118,12 +119,7 @@ def contact_time(rate: float, square: float, outside: float) -> float:
 
 @compiled
 def contact_times(
-    velocity: Array,
-    duration: Array,
-    position: Array,
-    centres: Array,
-    motions: Array,
-    radii: Array,
+    velocity: Array, duration: Array, position: Array, discs: Rows
 ) -> tuple[Array, Array]:
     """Return time to collision and closing speed of every path with every disc.
 
@@ -133,16 +129,14 @@ def contact_times(
         velocity: of the segments of n paths (k, n, 2) [m/s].
         duration: of the segments (k, n) [s].
         position: start of the paths (2,) [m].
-        centres: of m discs (m, 2) [m].
-        motions: velocities of the discs (m, 2) [m/s].
-        radii: of the discs (m,) [m].
+        discs: records of type `DISC` (m,).
 
     Returns:
         Time to collision (n, m) [s], infinite for none; closing speed at the start (n, m), zero
         for discs out of reach of the first segment [m/s].
     """
     k, n = duration.shape
-    m = len(radii)
+    m = len(discs)
     first, closing = np.empty((n, m)), np.zeros((n, m))
     first[:] = inf
     # Latest end of each segment, and maximum speed of all paths until then.
@@ -159,13 +153,14 @@ def contact_times(
                 moved[segment + 1, i, 0] = moved[segment, i, 0] + duration[segment, i] * u
                 moved[segment + 1, i, 1] = moved[segment, i, 1] + duration[segment, i] * w
     for j in range(m):
-        ox, oy = centres[j, 0] - position[0], centres[j, 1] - position[1]
-        mx, my, radius2 = motions[j, 0], motions[j, 1], radii[j] * radii[j]
+        disc = discs[j]
+        ox, oy = disc.position[0] - position[0], disc.position[1] - position[1]
+        mx, my, radius2 = disc.velocity[0], disc.velocity[1], disc.radius * disc.radius
         distance, speed = sqrt(ox * ox + oy * oy), sqrt(mx * mx + my * my)
         for segment in range(k):
             # Skip discs out of reach.
             within = (speed + fastest[segment]) * latest[segment]
-            if isfinite(latest[segment]) and distance - radii[j] > within:
+            if isfinite(latest[segment]) and distance - disc.radius > within:
                 continue
             for i in range(n):
                 if first[i, j] < inf:
@@ -187,34 +182,31 @@ def contact_times(
 
 @compiled
 def penalties(
-    first: Array,
-    closing: Array,
-    depth: Array,
-    horizon: Array,
-    weight: Array,
-    contact: tuple[float, float, float],
-    inside: tuple[float, float, float],
+    first: Array, closing: Array, position: Array, discs: Rows, parameters: Rows
 ) -> Array:
     """Return the collision penalty of every path (n,).
 
     Args:
         first: times to collision (n, m) [s].
         closing: speeds (n, m) [m/s].
-        depth: of the start in each disc as a fraction of its radius, negative outside (m,).
-        horizon: maximum time to collision of each disc (m,) [s].
-        weight: of each disc (m,).
-        contact: time below which a collision is urgent [s], penalty of urgent and of others [1].
-        inside: penalty of a start in a disc, per depth, per closing speed [1, 1, s/m].
+        position: start of the paths (2,) [m].
+        discs: records of type `DISC` (m,).
+        parameters: record of the parameters of the safety filter (1,).
     """
+    p = parameters[0]
     n, m = first.shape
     total = np.zeros(n)
-    for i in range(n):
-        for j in range(m):
+    for j in range(m):
+        disc = discs[j]
+        dx, dy = disc.position[0] - position[0], disc.position[1] - position[1]
+        depth = 1.0 - sqrt(dx * dx + dy * dy) / disc.radius  # as a fraction of the radius
+        for i in range(n):
             time = first[i, j]
-            if time < horizon[j]:
-                each = contact[1] if time < contact[0] else contact[2]
-                cost = (1.0 - time / horizon[j]) * each
-                if depth[j] > 0.0:
-                    cost += inside[0] + inside[1] * depth[j] + inside[2] * closing[i, j]
-                total[i] += cost * weight[j]
+            if time < disc.horizon:
+                each = p.urgent_weight if time < p.urgent_time else p.weight
+                cost = (1.0 - time / disc.horizon) * each
+                if depth > 0.0:
+                    cost += p.inside_weight + p.inside_depth * depth
+                    cost += p.inside_closing * closing[i, j]
+                total[i] += cost * disc.weight
     return total
