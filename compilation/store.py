@@ -62,6 +62,11 @@ def save(source: Path, name: str, stamp: bytes, payload: bytes) -> bool:
     return False
 
 
+def can_keep() -> bool:
+    """Return whether new code of this project can be kept."""
+    return any(map(_is_writable, folders(Path(__file__))))
+
+
 def folders(source: Path) -> Iterator[Path]:
     """Yield the folders of the compiled code of a source file, in the order of preference."""
     if not config.CACHE_DIR:

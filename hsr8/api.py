@@ -9,6 +9,7 @@ from typing import Any, SupportsIndex
 from hsr8.decisions import GazeController, MotionPlanner
 from hsr8.errors import UsageError
 from hsr8.evaluation.recording import Result, record, renderer_of, started_folder
+from hsr8.files.temporary import require_temporary
 from hsr8.loop import Simulation
 from hsr8.plugin_walker import CustomWalker
 from hsr8.recorder.log_level import LogLevel
@@ -51,6 +52,8 @@ def run(
         KeyboardInterrupt: Ctrl-C; the run folder is complete up to then.
     """
     level = _level(log)
+    if out is not None and level is not None:
+        require_temporary()
     loaded = scenario if isinstance(scenario, Scenario) else load_scenario(str(scenario), settings)
     if isinstance(scenario, Scenario) and settings:
         raise TypeError("settings: need the name or file of a scenario, got a loaded scenario")

@@ -12,6 +12,7 @@ from contextlib import contextmanager
 
 import numpy as np
 
+from compilation import store
 from hsr8.compilation_watch import CompilationWatch
 from hsr8.errors import RenderingUnavailable
 from hsr8.gl import require_gl
@@ -24,6 +25,10 @@ from walking.observer import BodyEstimate
 from walking.sensing import BodySensors
 
 TEXT = "compiling the inner loops, once per installation: half a minute"
+NOT_KEPT = (
+    "compiling the inner loops, a minute in every run because no folder can be written; "
+    "NUMBA_CACHE_DIR=DIR keeps them"
+)
 CODE = "from hsr8.cli.first_compilation import see_and_decide; see_and_decide({source!r})"
 SECONDS = 3.0  # simulated time in which obstacles hide each other and are looked at [s]
 
@@ -37,14 +42,14 @@ def two_processes(source: str, *, quiet: bool) -> Iterator[CompilationWatch]:
         quiet: print nothing.
     """
     processes: list[subprocess.Popen[bytes]] = []
-    announced = quiet
+    kept, announced = store.can_keep(), quiet
 
     def before(package: str) -> None:
         nonlocal announced
         if not announced:
-            print(TEXT, file=sys.stderr, flush=True)
+            print(TEXT if kept else NOT_KEPT, file=sys.stderr, flush=True)
             announced = True
-        if package == "walking" and not processes:
+        if package == "walking" and kept and not processes:
             command = [sys.executable, "-P", "-c", CODE.format(source=source)]
             null = subprocess.DEVNULL
             words = with_parent_watch(command)

@@ -30,7 +30,13 @@ def main(options: Plot) -> int:
             f"the run ended at {end:g} s"
         )
     print(f"plotting    {run.path}", file=sys.stderr, flush=True)
-    from hsr8.render.walk_figure import draw, save  # noqa: PLC0415  takes seconds
+    try:
+        from hsr8.render.walk_figure import draw, save  # noqa: PLC0415  takes seconds
+    except OSError as error:
+        raise UsageError(
+            "MPLCONFIGDIR: Matplotlib can write neither to the home nor to a temporary folder; "
+            "expected MPLCONFIGDIR=DIR with a writable folder"
+        ) from error
     from hsr8.render.walking_table import walking_of  # noqa: PLC0415  loads the robot
 
     table = walking_of(run)

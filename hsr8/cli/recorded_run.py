@@ -21,6 +21,7 @@ from hsr8.evaluation.verdict import exit_code
 from hsr8.export.bag import require_rosbags, write_bag
 from hsr8.files import atomic
 from hsr8.files.atomic import draft
+from hsr8.files.temporary import require_temporary
 from hsr8.gl import require_gl
 from hsr8.loop import Simulation
 from hsr8.recorder.log_level import LogLevel
@@ -51,6 +52,8 @@ def start(options: Run, scenario: Scenario, log: LogLevel | None, command: Seque
         require_rosbags()
     if options.video:
         require_gl()
+    if log is not None:
+        require_temporary()
     with two_processes(scenario.camera.source, quiet=options.quiet):
         return _start(options, scenario, log, command)
 

@@ -21,6 +21,7 @@ from hsr8.evaluation.sweep.local_executor import LocalExecutor
 from hsr8.evaluation.sweep.progress import SweepProgress
 from hsr8.evaluation.sweep.report import report
 from hsr8.evaluation.sweep.summary import Summary
+from hsr8.files.temporary import require_temporary
 from hsr8.gl import require_gl
 from hsr8.plugin_file import digests, require_plugins
 from hsr8.robots.locate import digest
@@ -108,6 +109,8 @@ def run_sweeps(
     local = not parse_executor(execution.executor)
     if local and any(s.camera.source == "rendered" for s in scenarios.values()):
         require_gl()
+    if local:
+        require_temporary()  # of the server that forks the runs
     for scenario in scenarios.values():
         require_plugins(scenario.plugin)
     folders: dict[str, SweepFolder] = {}

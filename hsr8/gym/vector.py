@@ -38,12 +38,18 @@ def make_vec(
             f"{settings['vectorization_mode']!r}; expected no such option"
         )
     check_integer("n", n, 1)
-    made = gymnasium.make_vec(
-        MODULE + name.removeprefix(MODULE),
-        n,
-        "async",
-        vector_kwargs=options,
-        **settings,
-    )
+    try:
+        made = gymnasium.make_vec(
+            MODULE + name.removeprefix(MODULE),
+            n,
+            "async",
+            vector_kwargs=options,
+            **settings,
+        )
+    except OSError as error:
+        raise UsageError(
+            f"make_vec: processes cannot share memory: {error}; expected a writable /dev/shm "
+            "(docker run --tmpfs /dev/shm), or use gymnasium.vector.SyncVectorEnv"
+        ) from error
     assert isinstance(made, AsyncVectorEnv)
     return made

@@ -14,6 +14,7 @@ from pathlib import Path
 from typing import Self
 
 from hsr8.errors import UsageError
+from hsr8.files.temporary import require_temporary
 from hsr8.gl import VULKAN_LINE
 from hsr8.parent_watch import with_parent_watch
 
@@ -107,6 +108,7 @@ class Viewer:
     """
 
     def __init__(self, words: Sequence[str]) -> None:
+        require_temporary()
         # A file, because a pipe that is not read would block the viewer.
         self._stderr = tempfile.TemporaryFile()  # noqa: SIM115  closed by `__exit__`
         try:

@@ -141,6 +141,8 @@ def test_without_a_home_a_private_temporary_folder_is_used(source, monkeypatch):
     store._roots.cache_clear()
     assert store.load(source, "name", STAMP) is None
     assert not store.save(source, "name", STAMP, b"code")
+    monkeypatch.setattr(store, "folders", lambda source: iter(store._roots()))
+    assert not store.can_keep()
 
 
 def test_the_folder_of_the_environment_replaces_all_others(source, tmp_path, monkeypatch):

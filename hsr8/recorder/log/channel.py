@@ -9,6 +9,8 @@ import numpy as np
 import rerun as rr
 import rerun.blueprint as rrb
 
+from hsr8.files.temporary import require_temporary
+
 TIMELINE = "sim_time"
 APPLICATION = "hsr8"
 ABANDONED: list["BlockStream"] = []  # references, because Rerun closes unreferenced streams
@@ -36,7 +38,9 @@ class BlockStream(rr.RecordingStream):  # type: ignore[misc]  # Rerun is not typ
 
         Raises:
             OSError, RuntimeError: a file cannot be written.
+            UsageError: no temporary file can be written.
         """
+        require_temporary()
         self.set_sinks(*sinks)
         with TemporaryDirectory() as folder:
             file = Path(folder, "arrangement.rbl")

@@ -3,8 +3,9 @@ from types import SimpleNamespace
 import pytest
 
 import hsr8
+from compilation import store
 from hsr8.cli import first_compilation
-from hsr8.cli.first_compilation import TEXT, compile_all, two_processes
+from hsr8.cli.first_compilation import NOT_KEPT, TEXT, compile_all, two_processes
 from hsr8.cli.main import entry
 from hsr8.compilation_watch import CompilationWatch
 from hsr8.gl import BACKENDS
@@ -39,6 +40,15 @@ def test_a_change_of_vision_alone_needs_no_second_process(helper, capsys):
         compile_in(watch, "vision")
     assert not helper.exists()
     assert capsys.readouterr().err == ""
+
+
+def test_code_that_cannot_be_kept_is_announced_with_the_remedy(helper, monkeypatch, capsys):
+    monkeypatch.setattr(store, "can_keep", lambda: False)
+    with two_processes("rendered", quiet=False) as watch:
+        compile_in(watch, "walking")
+        compile_in(watch, "vision")
+    assert not helper.exists()
+    assert capsys.readouterr().err == f"{NOT_KEPT}\n"
 
 
 @pytest.mark.timeout(600)
