@@ -5,6 +5,8 @@ import math
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from compilation import compiled
+
 TWO_PI = 2.0 * math.pi
 
 
@@ -16,6 +18,12 @@ def wrap(a: float) -> float:
     """
     wrapped = math.remainder(a, TWO_PI)
     return math.pi if wrapped == -math.pi else wrapped
+
+
+@compiled
+def wrapped(a: float) -> float:
+    """Wrap an angle into (-pi, pi], for compiled functions [rad]."""
+    return a - TWO_PI * math.ceil((a - math.pi) / TWO_PI)
 
 
 def wrap_array(a: ArrayLike) -> NDArray[np.float64]:

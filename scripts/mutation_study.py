@@ -253,7 +253,7 @@ def main() -> None:
         deadline=None,
     )
     settings.load_profile(PROFILE)
-    for heavy in ("scipy.linalg", "scipy.optimize", "filterpy.kalman", "pinocchio"):
+    for heavy in ("scipy.linalg", "scipy.optimize", "pinocchio"):
         importlib.import_module(heavy)  # once, not in every child
     print("| module | mutants | sample | killed | what survived |\n|---|---|---|---|---|")
     for module in options.modules:

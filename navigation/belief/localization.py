@@ -10,8 +10,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from navigation.angles import wrap
+from navigation.belief import pose_filter
 from navigation.belief.beacon_relocalization import BeaconRelocalization
-from navigation.belief.pose_filter import nis, pose_filter
 from navigation.observation import Frame, Observation
 from navigation.parameters.belief import LocalizationParameters
 from navigation.transform import rotate, yaw_rotation
@@ -47,7 +47,6 @@ class Localizer:
         self._parameters = parameters
         self._beacons = {name: (float(x), float(y)) for name, (x, y) in beacons.items()}
         self._relocalization = BeaconRelocalization(parameters, self._beacons)
-        self._filter = pose_filter()
         self._set(np.asarray(pose, float), np.asarray(covariance, float))
         self._last_valid = self.pose
         self._previous: tuple[float, list[float]] | None = None
@@ -58,14 +57,12 @@ class Localizer:
     @property
     def pose(self) -> Array:
         """x, y, heading of R in W (3,), a copy [m, m, rad]."""
-        pose: Array = self._filter.x.copy()
-        return pose
+        return self._pose.copy()
 
     @property
     def covariance(self) -> Array:
         """Covariance of the pose (3, 3), a copy."""
-        covariance: Array = self._filter.P.copy()
-        return covariance
+        return self._P.copy()
 
     def update(self, frame: Frame) -> None:
         """Predict by the odometry since the last frame, then correct by the beacons of the frame.
@@ -79,44 +76,21 @@ class Localizer:
         detected = {o.label: o for o in reversed(frame.observations) if o.kind == "beacon"}
         displaced = self._relocalization.displaced
         beacons = [o for n, o in detected.items() if n in self._beacons and n not in displaced]
-        try:
-            self._predict(frame)
-            for observation in beacons:
-                self._relocalization.remember(observation, frame)
-            if self.lost:
-                self._recover(frame, beacons)
-            elif beacons:
-                self._detect_failure(frame.time, beacons, self._correct(frame, beacons))
-        except np.linalg.LinAlgError:
-            self._restart()
-        if not self._valid():
+        self._predict(frame)
+        for observation in beacons:
+            self._relocalization.remember(observation, frame)
+        if self.lost:
+            self._recover(frame, beacons)
+        elif beacons:
+            self._detect_failure(frame.time, beacons, self._correct(frame, beacons))
+        if not pose_filter.is_valid(self._pose, self._P):
             self._restart()
         self._last_valid = self.pose
 
     def _set(self, pose: Array, covariance: Array) -> None:
-        pose = pose.copy()
-        pose[2] = wrap(float(pose[2]))
-        self._filter.x, self._filter.P = pose, covariance
-        self._symmetrize()
-
-    def _symmetrize(self) -> None:
-        """Remove the rounding errors of the covariance."""
-        P = self._filter.P
-        self._filter.P = 0.5 * (P + P.T)
-
-    def _valid(self) -> bool:
-        """Return whether the pose is finite and its covariance positive definite.
-
-        A very accurate observation of a far landmark can leave an indefinite covariance.
-        """
-        x, P = self._filter.x, self._filter.P
-        if not (np.isfinite(x).all() and np.isfinite(P).all()):
-            return False
-        try:
-            np.linalg.cholesky(P)
-        except np.linalg.LinAlgError:
-            return False
-        return True
+        self._pose = pose.copy()
+        self._pose[2] = wrap(float(pose[2]))
+        self._P = 0.5 * (covariance + covariance.T)
 
     def _restart(self) -> None:
         """Re-initialize, lost, at the last valid pose."""
@@ -135,25 +109,19 @@ class Localizer:
         turn = odometry[2] - last[2]
         middle = last[2] + 0.5 * turn
         dx, dy = rotate(-middle, (odometry[0] - last[0], odometry[1] - last[1]))
-        f = self._filter
         drift = self._parameters.drift_rate() * (frame.time - previous[0])
-        rotation = yaw_rotation(float(f.x[2]))
-        f.Q = rotation @ frame.motion_covariance @ rotation.T + drift
-        f.predict(increment=np.array([dx, dy, turn]))
-        self._symmetrize()
+        rotation = yaw_rotation(float(self._pose[2]))
+        Q = rotation @ frame.motion_covariance @ rotation.T + drift
+        if not pose_filter.predict(self._pose, self._P, np.array([dx, dy, turn]), Q):
+            self._restart()
 
     def _correct(self, frame: Frame, beacons: list[Observation]) -> list[str]:
         """Correct by all beacons inside the gate, as one measurement; return their names."""
-        f = self._filter
-        # There is no prediction before the first frame and after relocalization.
-        f.sigmas_f = f.points_fn.sigma_points(f.x, f.P)
-        distances = nis(f, *self._measurement(frame, beacons))
-        gate = self._parameters.gate
+        pose, P, gate = self._pose, self._P, self._parameters.gate
+        distances = pose_filter.nis(pose, P, *self._measurement(frame, beacons)).tolist()
         accepted = [o for o, d in zip(beacons, distances, strict=True) if d <= gate]
-        if accepted:
-            z, R, landmarks = self._measurement(frame, accepted)
-            f.update(z, R=R, landmarks=landmarks)
-            self._symmetrize()
+        if accepted and not pose_filter.correct(pose, P, *self._measurement(frame, accepted)):
+            self._restart()
         return [o.label for o in accepted]
 
     def _measurement(self, frame: Frame, beacons: list[Observation]) -> tuple[Array, Array, Array]:
@@ -171,11 +139,11 @@ class Localizer:
         if self._relocalization.is_lost(time, accepted, rejected):
             self._relocalization.begin()
             self.lost = True
-            self._filter.P = self._parameters.lost_covariance()
+            self._P = self._parameters.lost_covariance()
 
     def _recover(self, frame: Frame, beacons: list[Observation]) -> None:
         """Relocalize from the recent detections."""
-        pose = self._relocalization.locate(frame, self._filter.x) if beacons else None
+        pose = self._relocalization.locate(frame, self._pose) if beacons else None
         if pose is None:
             return
         self.lost = False

@@ -4,23 +4,18 @@ An envelope is (vx, vx_backward, vy, wz, turn gain): the maximum speeds [m/s, ra
 turn rate per heading error [1/s].
 """
 
-from math import atan2, ceil, cos, inf, isfinite, isnan, pi, sin, sqrt
+from math import atan2, cos, inf, isfinite, isnan, sin, sqrt
 
 import numpy as np
 from numpy.typing import NDArray
 
 from compilation import compiled
+from navigation.angles import wrapped
 
 Array = NDArray[np.float64]
 Rows = NDArray[np.record]
 Envelope = tuple[float, float, float, float, float]
 Velocity = tuple[float, float, float]
-
-
-@compiled
-def wrapped(a: float) -> float:
-    """Wrap an angle into (-pi, pi] [rad]."""
-    return a - 2.0 * pi * ceil((a - pi) / (2.0 * pi))
 
 
 @compiled

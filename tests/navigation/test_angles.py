@@ -5,7 +5,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from navigation.angles import wrap, wrap_array
+from navigation.angles import wrap, wrap_array, wrapped
 
 angles = st.floats(-1e4, 1e4)
 
@@ -30,6 +30,11 @@ def test_the_seam_belongs_to_plus_pi(a):
     assert wrap(math.pi) == math.pi
     assert wrap(-math.pi) == math.pi
     assert -math.pi < float(wrap_array(a)) <= math.pi
+
+
+@pytest.mark.parametrize("a", [0.0, 3.0, math.pi, -math.pi, 7.0, -40.0])
+def test_the_compiled_version_agrees_with_the_scalar_one(a):
+    assert wrapped(a) == pytest.approx(wrap(a), abs=1e-12)
 
 
 def test_array_version_leaves_its_argument_alone():

@@ -19,7 +19,6 @@ LIBRARIES = (
     "scipy",
     "pin",
     "opencv-python-headless",
-    "filterpy",
     "pydantic",
     "av",
 )

@@ -5,12 +5,13 @@ as columns (9), width, height and focal length of the image [pixel], and whether
 panoramic.
 """
 
-from math import asin, atan2, ceil, inf, pi, sqrt
+from math import asin, atan2, inf, pi, sqrt
 
 import numpy as np
 from numpy.typing import NDArray
 
 from compilation import compiled
+from navigation.angles import wrapped
 
 Array = NDArray[np.float64]
 Box = tuple[float, float, float, float, bool]
@@ -22,17 +23,11 @@ DISTANCE, HIDDEN, LEFT, TOP, RIGHT, BOTTOM, CUT = range(7)  # columns of a view
 
 
 @compiled
-def _wrap(angle: float) -> float:
-    """Wrap an angle to (-pi, pi] [rad]."""
-    return angle - 2.0 * pi * ceil((angle - pi) / (2.0 * pi))
-
-
-@compiled
 def _panorama_box(x: float, y: float, radius: float, height: float, eye: Array) -> Box:
     """Return the box in a panorama around the forward axis; it contains every direction."""
     distance = sqrt(x * x + y * y)
     half = asin(min(1.0, radius / distance))
-    left = _wrap(atan2(y, x) - atan2(eye[8], eye[5]))
+    left = wrapped(atan2(y, x) - atan2(eye[8], eye[5]))
     column = eye[12] * (0.5 - left / (2.0 * pi))
     reach = eye[12] * half / (2.0 * pi)
     top = eye[13] * (0.5 - atan2(height - eye[2], distance) / pi)
@@ -120,7 +115,7 @@ def project_all(positions: Array, sizes: Array, beacon: NDArray[np.bool_], eye: 
         for j in range(i):
             if half[j] == 0.0:
                 continue
-            offset = _wrap(azimuth[j] - azimuth[i])
+            offset = wrapped(azimuth[j] - azimuth[i])
             low, high = max(-half[i], offset - half[j]), min(half[i], offset + half[j])
             views[i, HIDDEN] = max(views[i, HIDDEN], (high - low) / (2.0 * half[i]))
         left, top, right, bottom, cut = project(x, y, radius, sizes[i, 1], beacon[i], eye)

@@ -19,7 +19,6 @@ HEAVY = (
     "scipy",
     "cv2",
     "pinocchio",
-    "filterpy",
     "av",
     "pydantic",
     "matplotlib",

@@ -5,7 +5,7 @@ from math import inf, nan
 import numpy as np
 import pytest
 
-from navigation.angles import wrap, wrap_array
+from navigation.angles import wrap_array
 from navigation.motion import rollout as kernel
 from navigation.motion.hypotheses import DISC
 from navigation.parameters.motion import SafetyFilterParameters
@@ -80,8 +80,3 @@ def test_penalties_are_the_sum_over_the_discs():
     p = record(SafetyFilterParameters())
     result = kernel.penalties(time, closing, np.zeros(2), discs, p)
     assert result == pytest.approx(each @ weight)
-
-
-@pytest.mark.parametrize("angle", [0.0, np.pi, -np.pi, 7.0, -40.0])
-def test_wrapping_is_that_of_angles(angle):
-    assert kernel.wrapped(angle) == pytest.approx(wrap(angle), abs=1e-12)
