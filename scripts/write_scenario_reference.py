@@ -7,10 +7,36 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
-from hsr8.scenario.public_keys import BASIC, EXPERIMENTAL
-from hsr8.scenario.reference import Node, allowed, json_schema, resolve
+from hsr8.scenario.reference import EXPERIMENTAL, Node, allowed, json_schema, public_keys, resolve
 
 PAGE = Path(__file__).resolve().parents[1] / "docs" / "scenarios.md"
+
+BASIC = frozenset(
+    f"{section}.{key}".lstrip(".")
+    for section, keys in {
+        "": "extends seed duration",
+        "world": "size n_static n_moving radius speed_ratio",
+        "mission": "kind via_points points goal_heading_deg",
+        "command": "vx vy wz",
+        "robot": "model body",
+        "robot.start": "position heading_deg",
+        "robot.speed": "vx wz",
+        "camera": "source period_ms latency_ms",
+        "walking.gait": "footstep_time",
+        "walking.get_up": "enabled",
+        "vision": "color_table",
+        "belief.localization": "landmarks",
+        "navigation": "profile",
+        "navigation.mission": "r_via r_goal heading_tolerance",
+        "navigation.gaze": "mode",
+        "navigation.planner": "method",
+        "plugin": "planner gaze walker",
+        "fault": "kind start duration magnitude",
+        "criteria": "goal_reached max_collisions max_falls",
+    }.items()
+    for key in keys.split()
+)
+"""Keys for a start."""
 
 _INTRODUCTION = """\
 # Scenario files
@@ -112,13 +138,16 @@ class ReferencePage:
         """Row of a key, whose cells are kept by its full name."""
         full, node = f"{name}.{key}".lstrip("."), resolve(given, None)
         default = "*required*" if required else _default(given, node)
-        meaning = str(given.get("description") or node.get("description", "")).replace("\n", " ")
+        meaning = str(given.get("description") or node.get("description", ""))
+        meaning = meaning.removeprefix(EXPERIMENTAL).replace("\n", " ")
         self.keys[full] = f"{default} | {allowed(node)} | {meaning} |"
         return f"| `{key}`{_mark(full)} | {self.keys[full]}"
 
 
 def _mark(full: str) -> str:
-    return " *basic*" if full in BASIC else " *experimental*" if full in EXPERIMENTAL else ""
+    if full in BASIC:
+        return " *basic*"
+    return " *experimental*" if public_keys().get(full, "").startswith(EXPERIMENTAL) else ""
 
 
 def _title(node: Node) -> str:
@@ -170,4 +199,4 @@ def _toml(value: Any) -> str:
 if __name__ == "__main__":
     page = ReferencePage()
     PAGE.write_text(page.text, encoding="utf-8")
-    print(f"{len(page.keys)} keys, {len(BASIC)} basic, {len(EXPERIMENTAL)} experimental")
+    print(f"{len(page.keys)} keys, {len(BASIC)} basic")

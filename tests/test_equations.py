@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 
 from hsr8.scenario.constants import constant_names
-from hsr8.scenario.public_keys import PUBLIC
+from hsr8.scenario.reference import public_keys
 
 ROOT = Path(__file__).parents[1]
 TEXT = (ROOT / "docs" / "equations.md").read_text(encoding="utf-8")
@@ -62,7 +62,7 @@ def test_docstrings_bear_the_number_of_their_equation(number):
 
 
 def test_keys_in_the_tables_are_keys_of_a_scenario():
-    known = {*PUBLIC, *constant_names()}
+    known = {*public_keys(), *constant_names()}
     for section, key in set(
         re.findall(r"\(`(evaluation|univector|gaze|moving_obstacles)\.(\w+)`", TEXT)
     ):

@@ -4,7 +4,7 @@ from dataclasses import dataclass, field
 from math import sqrt
 from typing import Annotated
 
-from annotated_types import Interval
+from annotated_types import Interval, doc
 
 Sigma = Annotated[float, Interval(ge=0.0, le=1.0)]
 
@@ -13,14 +13,12 @@ Sigma = Annotated[float, Interval(ge=0.0, le=1.0)]
 class PoseParameters:
     """Uncertainty of the camera pose from the robot's kinematics and IMU while walking."""
 
-    tilt_sigma: Sigma = 0.0009
-    """Standard deviation of the camera's pitch [rad]."""
-    roll_sigma: Sigma = 0.0008
-    """Standard deviation of its roll [rad]."""
-    yaw_sigma: Sigma = 0.0005
-    """Standard deviation of its yaw relative to the robot's heading [rad]."""
-    height_sigma: Annotated[Sigma, "m"] = 0.0003
-    """Standard deviation of its height [m]."""
+    tilt_sigma: Annotated[Sigma, doc("Standard deviation of the camera's pitch [rad].")] = 0.0009
+    roll_sigma: Annotated[Sigma, doc("Standard deviation of its roll [rad].")] = 0.0008
+    yaw_sigma: Annotated[
+        Sigma, doc("Standard deviation of its yaw relative to the robot's heading [rad].")
+    ] = 0.0005
+    height_sigma: Annotated[Sigma, "m", doc("Standard deviation of its height [m].")] = 0.0003
 
 
 @dataclass(frozen=True)
@@ -41,20 +39,32 @@ class SplitParameters:
 class VisionParameters:
     """Sizes of obstacles and beacons, error models and thresholds."""
 
-    color_table: str = ""
-    """File of a colour table made by `hsr8 color-table`; empty: the built-in colour classes."""
-    obstacle_height: Annotated[float, Interval(ge=0.001, le=100.0), "m"] = 0.30
-    """Height of every obstacle [m]."""
-    min_radius: Annotated[float, Interval(ge=0.001, le=100.0), "m"] = 0.05
-    """Minimum radius of an obstacle [m]."""
-    max_radius: Annotated[float, Interval(ge=0.001, le=100.0), "m"] = 0.12
-    """Maximum radius of an obstacle [m]."""
+    color_table: Annotated[
+        str,
+        doc(
+            "File of a colour table made by `hsr8 color-table`; empty: the built-in colour classes."
+        ),
+    ] = ""
+    obstacle_height: Annotated[
+        float, Interval(ge=0.001, le=100.0), "m", doc("Height of every obstacle [m].")
+    ] = 0.30
+    min_radius: Annotated[
+        float, Interval(ge=0.001, le=100.0), "m", doc("Minimum radius of an obstacle [m].")
+    ] = 0.05
+    max_radius: Annotated[
+        float, Interval(ge=0.001, le=100.0), "m", doc("Maximum radius of an obstacle [m].")
+    ] = 0.12
     beacon_height: Annotated[float, "m"] = 0.60  # its two colours meet in the middle
     beacon_radius: Annotated[float, "m"] = 0.05
-    max_obstacle_range: Annotated[float, Interval(ge=0.001, le=100.0), "m"] = 4.5
-    """Maximum distance of a reported obstacle [m]."""
-    max_beacon_range: Annotated[float, Interval(ge=0.001, le=100.0), "m"] = 5.5
-    """Maximum distance of a reported beacon [m]."""
+    max_obstacle_range: Annotated[
+        float,
+        Interval(ge=0.001, le=100.0),
+        "m",
+        doc("Maximum distance of a reported obstacle [m]."),
+    ] = 4.5
+    max_beacon_range: Annotated[
+        float, Interval(ge=0.001, le=100.0), "m", doc("Maximum distance of a reported beacon [m].")
+    ] = 5.5
     unit: Annotated[float, "m"] = 1.0  # of the bounds of the fit of a cylinder
     min_area: int = 20  # minimum area of an obstacle's blob [pixel]
     min_beacon_area: int = 5  # minimum area of the blob of one colour of a beacon [pixel]
@@ -74,8 +84,9 @@ class VisionParameters:
     beacon_misfit_factor: float = 5.0  # max_misfit of a beacon relative to that of an obstacle [1]
     split: SplitParameters = field(default_factory=SplitParameters)
     """Segmentation of merged blobs."""
-    pose: PoseParameters = field(default_factory=PoseParameters)
-    """Uncertainty of the camera pose."""
+    pose: Annotated[PoseParameters, doc("Uncertainty of the camera pose.")] = field(
+        default_factory=PoseParameters
+    )
 
     @property
     def radius_prior(self) -> tuple[float, float]:

@@ -8,7 +8,7 @@ and a docstring are public keys of a scenario; the others are constants.
 from dataclasses import dataclass, field
 from typing import Annotated, Literal
 
-from annotated_types import Interval
+from annotated_types import Interval, doc
 
 from walking.dimension import (
     ACCELERATION,
@@ -39,18 +39,26 @@ GRAVITY = 9.81  # [m/s²]
 class GaitParameters:
     """Shape and timing of a footstep."""
 
-    footstep_time: Annotated[float, Interval(ge=0.01, le=10.0), TIME] = 0.34
-    """Duration of a footstep, double support included; shorter if the footsteps would exceed their
-    limits [s]."""
-    min_footstep_time: Annotated[float, Interval(ge=0.01, le=10.0), TIME] = 0.26
-    """Minimum duration of a footstep [s]."""
+    footstep_time: Annotated[
+        float,
+        Interval(ge=0.01, le=10.0),
+        TIME,
+        doc(
+            "Duration of a footstep, double support included; shorter if the footsteps would "
+            "exceed their limits [s]."
+        ),
+    ] = 0.34
+    min_footstep_time: Annotated[
+        float, Interval(ge=0.01, le=10.0), TIME, doc("Minimum duration of a footstep [s].")
+    ] = 0.26
     double_support: Annotated[float, NUMBER] = 0.15  # fraction of the footstep [1]
     start_time: Annotated[float, TIME] = 0.3  # double support before the first footstep [s]
     stop_time: Annotated[float, TIME] = 0.3  # double support after the last footstep [s]
     settle_time: Annotated[float, TIME] = 0.5  # standing before the first command is followed [s]
     half_stance: Annotated[float, STANCE] = 0.042  # foot to the middle of the stance, lateral [m]
-    swing_height: Annotated[float, Interval(ge=0.001, le=1.0), LENGTH] = 0.025
-    """Height of the swing foot at mid-swing [m]."""
+    swing_height: Annotated[
+        float, Interval(ge=0.001, le=1.0), LENGTH, doc("Height of the swing foot at mid-swing [m].")
+    ] = 0.025
     swing_height_rate: Annotated[float, SPEED] = 0.2  # maximum change of it in the air [m/s]
     swing_start: Annotated[float, NUMBER] = 0.05  # lift-off as a fraction of single support [1]
     swing_end: Annotated[float, NUMBER] = 0.97  # touchdown as a fraction of single support [1]
@@ -72,12 +80,18 @@ class GaitParameters:
 class PatternParameters:
     """Pattern generator: ZMP and pendulum."""
 
-    generator: Literal["dcm", "preview", "paper", "robust"] = "robust"
-    """Pattern generator: "dcm" tracks the DCM of the footholds, "preview" is Kajita's preview
-    control, "paper" the modifiable walking pattern with two-level ZMP functions, "robust" a plan
-    with the ZMP inside the soles at all times, which limits infeasible commands."""
-    pelvis_height: Annotated[float, Interval(ge=0.02, le=5.0), LENGTH] = 0.204
-    """Height of the hips while walking [m]."""
+    generator: Annotated[
+        Literal["dcm", "preview", "paper", "robust"],
+        doc(
+            'Experimental. Pattern generator: "dcm" tracks the DCM of the footholds, "preview" is '
+            'Kajita\'s preview control, "paper" the modifiable walking pattern with two-level ZMP '
+            'functions, "robust" a plan with the ZMP inside the soles at all times, which limits '
+            "infeasible commands."
+        ),
+    ] = "robust"
+    pelvis_height: Annotated[
+        float, Interval(ge=0.02, le=5.0), LENGTH, doc("Height of the hips while walking [m].")
+    ] = 0.204
     # height of the pendulum; below the centre of mass, since half of the mass is in the legs [m]
     lipm_height: Annotated[float, HEIGHT] = 0.19
     zmp_forward: Annotated[float, LENGTH] = 0.0  # ZMP ahead of the centre of the sole [m]
@@ -109,14 +123,29 @@ class EstimatorParameters:
 class OdometryParameters:
     """Unmeasured motion in dead reckoning."""
 
-    forward_noise: Annotated[float, Interval(ge=0.0, le=1.0), DIFFUSION] = 0.0004
-    """Random walk along the heading while stepping [m/√s]."""
-    lateral_noise: Annotated[float, Interval(ge=0.0, le=1.0), DIFFUSION] = 0.0005
-    """Random walk across the heading while stepping [m/√s]."""
-    slip_ratio: Annotated[float, Interval(ge=0.0, le=1.0), NUMBER] = 0.5
-    """Slip of the stance foot per axis, per relative slip of the feet in double support [1]."""
-    yaw_drift: Annotated[float, Interval(ge=0.0, le=1.0), NUMBER] = 0.00095
-    """Random walk of the IMU's yaw [rad/√s]."""
+    forward_noise: Annotated[
+        float,
+        Interval(ge=0.0, le=1.0),
+        DIFFUSION,
+        doc("Random walk along the heading while stepping [m/√s]."),
+    ] = 0.0004
+    lateral_noise: Annotated[
+        float,
+        Interval(ge=0.0, le=1.0),
+        DIFFUSION,
+        doc("Random walk across the heading while stepping [m/√s]."),
+    ] = 0.0005
+    slip_ratio: Annotated[
+        float,
+        Interval(ge=0.0, le=1.0),
+        NUMBER,
+        doc(
+            "Slip of the stance foot per axis, per relative slip of the feet in double support [1]."
+        ),
+    ] = 0.5
+    yaw_drift: Annotated[
+        float, Interval(ge=0.0, le=1.0), NUMBER, doc("Random walk of the IMU's yaw [rad/√s].")
+    ] = 0.00095
 
 
 @dataclass(frozen=True)
@@ -162,14 +191,16 @@ class StabilizerParameters:
 class LimitParameters:
     """Limits of commands and footsteps."""
 
-    vx: Annotated[float, Interval(ge=0.001, le=50.0), SPEED] = 0.55
-    """Maximum speed forward [m/s]."""
-    vx_backward: Annotated[float, Interval(ge=0.001, le=50.0), SPEED] = 0.45
-    """Maximum speed backward [m/s]."""
-    vy: Annotated[float, Interval(ge=0.001, le=50.0), SPEED] = 0.20
-    """Maximum speed sideways [m/s]."""
-    wz: Annotated[float, Interval(ge=0.001, le=50.0), RATE] = 2.0
-    """Maximum yaw rate [rad/s]."""
+    vx: Annotated[
+        float, Interval(ge=0.001, le=50.0), SPEED, doc("Maximum speed forward [m/s].")
+    ] = 0.55
+    vx_backward: Annotated[
+        float, Interval(ge=0.001, le=50.0), SPEED, doc("Maximum speed backward [m/s].")
+    ] = 0.45
+    vy: Annotated[
+        float, Interval(ge=0.001, le=50.0), SPEED, doc("Maximum speed sideways [m/s].")
+    ] = 0.20
+    wz: Annotated[float, Interval(ge=0.001, le=50.0), RATE, doc("Maximum yaw rate [rad/s].")] = 2.0
     combined: Annotated[float, NUMBER] = 1.15  # norm of the velocity relative to these limits [1]
     forward_acceleration: Annotated[float, ACCELERATION] = 0.6  # [m/s²]
     lateral_acceleration: Annotated[float, ACCELERATION] = 0.5  # [m/s²]
@@ -190,10 +221,15 @@ class LimitParameters:
 class HeadParameters:
     """Motion of pan and tilt."""
 
-    max_rate: Annotated[float, Interval(ge=0.01, le=10_000.0), RATE] = 3.0
-    """Maximum rate of each axis [rad/s]."""
-    max_acceleration: Annotated[float, Interval(ge=0.01, le=10_000.0), RATE_CHANGE] = 40.0
-    """Maximum angular acceleration of each axis [rad/s²]."""
+    max_rate: Annotated[
+        float, Interval(ge=0.01, le=10_000.0), RATE, doc("Maximum rate of each axis [rad/s].")
+    ] = 3.0
+    max_acceleration: Annotated[
+        float,
+        Interval(ge=0.01, le=10_000.0),
+        RATE_CHANGE,
+        doc("Maximum angular acceleration of each axis [rad/s²]."),
+    ] = 40.0
 
 
 @dataclass(frozen=True)
@@ -208,9 +244,13 @@ class ArmParameters:
 class GetUpParameters:
     """Getting up after a fall."""
 
-    enabled: bool = False
-    """Whether a fallen robot gets up, which takes 10 to 25 s. Off by default: a fall ends a run, as
-    in the paper's experiment. Falls count in both cases."""
+    enabled: Annotated[
+        bool,
+        doc(
+            "Whether a fallen robot gets up, which takes 10 to 25 s. Off by default: a fall ends "
+            "a run, as in the paper's experiment. Falls count in both cases."
+        ),
+    ] = False
     max_attempts: int = 6  # motions, with turning over and rising one each [1]
     max_joint_speed: Annotated[float, RATE] = 12.0  # between postures [rad/s]
     time_scale: Annotated[float, TIME] = 1.0  # of the durations of the motions [1]
@@ -224,21 +264,21 @@ class GetUpParameters:
 class WalkingParameters:
     """All parameters of the walking engine."""
 
-    gait: GaitParameters = field(default_factory=GaitParameters)
-    """Footsteps."""
-    pattern: PatternParameters = field(default_factory=PatternParameters)
-    """Pattern generator."""
+    gait: Annotated[GaitParameters, doc("Footsteps.")] = field(default_factory=GaitParameters)
+    pattern: Annotated[PatternParameters, doc("Pattern generator.")] = field(
+        default_factory=PatternParameters
+    )
     estimator: EstimatorParameters = field(default_factory=EstimatorParameters)
     """State estimation."""
-    odometry: OdometryParameters = field(default_factory=OdometryParameters)
-    """Dead reckoning."""
+    odometry: Annotated[OdometryParameters, doc("Dead reckoning.")] = field(
+        default_factory=OdometryParameters
+    )
     stabilizer: StabilizerParameters = field(default_factory=StabilizerParameters)
     """Balance."""
-    limits: LimitParameters = field(default_factory=LimitParameters)
-    """Limits of commands and footsteps."""
-    head: HeadParameters = field(default_factory=HeadParameters)
-    """Head."""
+    limits: Annotated[LimitParameters, doc("Limits of commands and footsteps.")] = field(
+        default_factory=LimitParameters
+    )
+    head: Annotated[HeadParameters, doc("Head.")] = field(default_factory=HeadParameters)
     arms: ArmParameters = field(default_factory=ArmParameters)
     """Arms."""
-    get_up: GetUpParameters = field(default_factory=GetUpParameters)
-    """Getting up."""
+    get_up: Annotated[GetUpParameters, doc("Getting up.")] = field(default_factory=GetUpParameters)

@@ -4,7 +4,7 @@ import json
 from pathlib import Path
 from typing import Annotated, Any, Literal
 
-from annotated_types import Interval, Len
+from annotated_types import Interval, Len, doc
 from pydantic import (
     AfterValidator,
     BaseModel,
@@ -70,16 +70,11 @@ class Table(BaseModel):
 class SoleRectangle(Table):
     """Rectangle of the left sole in the foot's body or link; the right one is its mirror image."""
 
-    front: Length
-    """Front edge, forward of the origin [m]."""
-    back: Length
-    """Back edge, forward of the origin; usually negative [m]."""
-    left: Length
-    """Left edge, to the left of the origin [m]."""
-    right: Length
-    """Right edge, to the left of the origin; usually negative [m]."""
-    height: Length
-    """Height of the sole above the origin; usually negative [m]."""
+    front: Annotated[Length, doc("Front edge, forward of the origin [m].")]
+    back: Annotated[Length, doc("Back edge, forward of the origin; usually negative [m].")]
+    left: Annotated[Length, doc("Left edge, to the left of the origin [m].")]
+    right: Annotated[Length, doc("Right edge, to the left of the origin; usually negative [m].")]
+    height: Annotated[Length, doc("Height of the sole above the origin; usually negative [m].")]
 
     @model_validator(mode="after")
     def _ordered(self) -> "SoleRectangle":
@@ -96,23 +91,34 @@ class SoleRectangle(Table):
 class CameraMount(Table):
     """Camera fixed to a body or link."""
 
-    body: Name
-    """Body or link that carries the camera."""
-    position: tuple[Length, Length, Length]
-    """Position in the base's directions from the origin of the body, at zero angles [m]."""
-    tilt_deg: Annotated[float, Interval(ge=-90.0, le=90.0)] = 0.0
-    """Elevation of the optical axis, upward positive [deg]."""
+    body: Annotated[Name, doc("Body or link that carries the camera.")]
+    position: Annotated[
+        tuple[Length, Length, Length],
+        doc("Position in the base's directions from the origin of the body, at zero angles [m]."),
+    ]
+    tilt_deg: Annotated[
+        float,
+        Interval(ge=-90.0, le=90.0),
+        doc("Elevation of the optical axis, upward positive [deg]."),
+    ] = 0.0
 
 
 class ServoRule(Table):
     """Position servos by rule, for models without usable servos."""
 
-    compliance: Annotated[float, Interval(ge=0.005, le=10.0)] = 0.1
-    """Relative compliance of a leg servo: weight times height over stiffness [rad/rad]."""
-    lag: Annotated[float, Interval(ge=0.001, le=1.0)] = 0.05
-    """Maximum ratio of damping to stiffness of a leg servo [s]."""
-    upper_hz: Annotated[float, Interval(ge=0.5, le=200.0)] = 6.0
-    """Natural frequency of the other servos [Hz]."""
+    compliance: Annotated[
+        float,
+        Interval(ge=0.005, le=10.0),
+        doc("Relative compliance of a leg servo: weight times height over stiffness [rad/rad]."),
+    ] = 0.1
+    lag: Annotated[
+        float,
+        Interval(ge=0.001, le=1.0),
+        doc("Maximum ratio of damping to stiffness of a leg servo [s]."),
+    ] = 0.05
+    upper_hz: Annotated[
+        float, Interval(ge=0.5, le=200.0), doc("Natural frequency of the other servos [Hz].")
+    ] = 6.0
 
 
 Sole = Annotated[
@@ -130,114 +136,135 @@ Servo = Annotated[
 class SpeedEnvelope(Table):
     """Speeds that the robot walks at without falling, measured by ``hsr8 robot calibrate``."""
 
-    vx: Speed
-    """Forward [m/s]."""
-    vx_backward: Speed
-    """Backward [m/s]."""
-    vy: Speed
-    """Sideways [m/s]."""
-    wz: Speed
-    """Turn rate [rad/s]."""
+    vx: Annotated[Speed, doc("Forward [m/s].")]
+    vx_backward: Annotated[Speed, doc("Backward [m/s].")]
+    vy: Annotated[Speed, doc("Sideways [m/s].")]
+    wz: Annotated[Speed, doc("Turn rate [rad/s].")]
 
 
 class Calibration(Table):
     """Properties measured in simulation by ``hsr8 robot calibrate``."""
 
-    date: Name
-    """Day of the measurement."""
-    version: Name
-    """Version of hsr8."""
-    command: Name
-    """Command that measured."""
-    speed: SpeedEnvelope
-    """Speed envelope."""
-    turn_delay: Sigma
-    """Delay from a commanded turn rate to half of it [s]."""
-    lag: Sigma
-    """Delay of the joints behind their targets [s]."""
-    forward_noise: Sigma
-    """Random walk of the odometry along the heading [m/√s]."""
-    lateral_noise: Sigma
-    """Random walk of the odometry across the heading [m/√s]."""
-    tilt_sigma: Sigma
-    """Standard deviation of the tilt of the camera pose [rad]."""
-    roll_sigma: Sigma
-    """Standard deviation of its roll [rad]."""
-    yaw_sigma: Sigma
-    """Standard deviation of its yaw against the heading by odometry [rad]."""
-    height_sigma: Sigma
-    """Standard deviation of its height [m]."""
+    date: Annotated[Name, doc("Day of the measurement.")]
+    version: Annotated[Name, doc("Version of hsr8.")]
+    command: Annotated[Name, doc("Command that measured.")]
+    speed: Annotated[SpeedEnvelope, doc("Speed envelope.")]
+    turn_delay: Annotated[Sigma, doc("Delay from a commanded turn rate to half of it [s].")]
+    lag: Annotated[Sigma, doc("Delay of the joints behind their targets [s].")]
+    forward_noise: Annotated[Sigma, doc("Random walk of the odometry along the heading [m/√s].")]
+    lateral_noise: Annotated[Sigma, doc("Random walk of the odometry across the heading [m/√s].")]
+    tilt_sigma: Annotated[Sigma, doc("Standard deviation of the tilt of the camera pose [rad].")]
+    roll_sigma: Annotated[Sigma, doc("Standard deviation of its roll [rad].")]
+    yaw_sigma: Annotated[
+        Sigma, doc("Standard deviation of its yaw against the heading by odometry [rad].")
+    ]
+    height_sigma: Annotated[Sigma, doc("Standard deviation of its height [m].")]
 
 
 class About(Table):
     """Facts of a shipped robot, for a list that needs no models."""
 
-    title: Name
-    """Name for people."""
-    source: Name
-    """Origin of the model."""
-    mass: Positive
-    """Mass [kg]."""
-    leg: Size
-    """Hip to sole along the straight leg [m]."""
-    joints: Annotated[int, Interval(ge=12, le=1000)]
-    """Number of joints."""
+    title: Annotated[Name, doc("Name for people.")]
+    source: Annotated[Name, doc("Origin of the model.")]
+    mass: Annotated[Positive, doc("Mass [kg].")]
+    leg: Annotated[Size, doc("Hip to sole along the straight leg [m].")]
+    joints: Annotated[int, Interval(ge=12, le=1000), doc("Number of joints.")]
 
 
 class RobotDescription(Table):
     """Robot: its model file, the roles of its parts, and what the model does not say."""
 
-    model: Name
-    """MJCF or URDF file; a relative path is searched as `docs/robots.md` lists."""
-    feet: Pair
-    """Bodies or links of the left and the right foot."""
-    robot_descriptions: Annotated[str, Field(pattern=r"^[a-z0-9_]+$")] | None = None
-    """Module of the package `robot_descriptions` that fetches the model where it is missing."""
-    base: Name | None = None
-    """Body of the pelvis; default: the body with the free joint, or the root link."""
-    sole: Sole | None = None
-    """Rectangle of the left sole, or the names of the left and the right geom; default: the lowest
-    4 mm of the foot's collision shapes, else of its visual ones."""
-    zero: dict[Name, Angle] = {}
-    """Joint angles at which the legs are straight and the soles flat, where not zero [rad]."""
-    head: Pair | None = None
-    """Pan and tilt joint of the head."""
-    shoulders: Pair | None = None
-    """Left and right shoulder pitch joint, which swing while walking."""
-    posture: dict[Name, Angle] = {}
-    """Angles of the joints other than legs and head while walking [rad]."""
-    srdf: Name | None = None
-    """SRDF file with a group state that completes `posture`; relative to the description."""
-    state: Name | None = None
-    """Name of that group state."""
-    camera: Camera | None = None
-    """Camera of the model, or where to mount one; default: the only camera of a body, or in front
-    of the head or the upper trunk."""
-    vertical_fov_deg: Annotated[float, Interval(ge=10.0, le=120.0)] | None = None
-    """Vertical field of view of the camera; default: that of the scenario [deg]."""
-    radius: Annotated[float, Interval(ge=0.01, le=2.0)] | None = None
-    """Radius of the walking robot for navigation; default: from its shapes in the ready posture
-    [m]."""
-    servo: Servo | None = None
-    """Position servos of the model, or by rule; default: own if the model has them."""
-    effort: dict[Name, Positive] = {}
-    """Maximum torque by joint, where the model is silent or wrong [N m]."""
-    range: dict[Name, Limits] = {}
-    """Lower and upper limit by joint, where the model is silent or wrong [rad]."""
-    speed: dict[Name, Positive] = {}
-    """Maximum speed by joint, where the model is silent or wrong [rad/s]."""
-    rigid: tuple[Name, ...] = ()
-    """Joints to fix at their angle in the ready posture."""
-    packages: dict[Name, Name] = {}
-    """Folder of each package named in a ``package://`` path of a URDF file."""
-    head_rate: Rate | None = None
-    """Maximum rate of the head joints; default: from their speed limits [rad/s]."""
-    head_acceleration: Rate | None = None
-    """Maximum angular acceleration of the head joints [rad/s²]."""
-    about: About | None = None
-    """Facts of a shipped robot."""
-    calibration: Calibration | None = None
-    """Properties measured by ``hsr8 robot calibrate``."""
+    model: Annotated[
+        Name, doc("MJCF or URDF file; a relative path is searched as `docs/robots.md` lists.")
+    ]
+    feet: Annotated[Pair, doc("Bodies or links of the left and the right foot.")]
+    robot_descriptions: Annotated[
+        Annotated[str, Field(pattern=r"^[a-z0-9_]+$")] | None,
+        doc(
+            "Module of the package `robot_descriptions` that fetches the model where it is missing."
+        ),
+    ] = None
+    base: Annotated[
+        Name | None,
+        doc("Body of the pelvis; default: the body with the free joint, or the root link."),
+    ] = None
+    sole: Annotated[
+        Sole | None,
+        doc(
+            "Rectangle of the left sole, or the names of the left and the right geom; default: "
+            "the lowest 4 mm of the foot's collision shapes, else of its visual ones."
+        ),
+    ] = None
+    zero: Annotated[
+        dict[Name, Angle],
+        doc(
+            "Joint angles at which the legs are straight and the soles flat, where not zero [rad]."
+        ),
+    ] = {}
+    head: Annotated[Pair | None, doc("Pan and tilt joint of the head.")] = None
+    shoulders: Annotated[
+        Pair | None, doc("Left and right shoulder pitch joint, which swing while walking.")
+    ] = None
+    posture: Annotated[
+        dict[Name, Angle], doc("Angles of the joints other than legs and head while walking [rad].")
+    ] = {}
+    srdf: Annotated[
+        Name | None,
+        doc("SRDF file with a group state that completes `posture`; relative to the description."),
+    ] = None
+    state: Annotated[Name | None, doc("Name of that group state.")] = None
+    camera: Annotated[
+        Camera | None,
+        doc(
+            "Camera of the model, or where to mount one; default: the only camera of a body, or "
+            "in front of the head or the upper trunk."
+        ),
+    ] = None
+    vertical_fov_deg: Annotated[
+        Annotated[float, Interval(ge=10.0, le=120.0)] | None,
+        doc("Vertical field of view of the camera; default: that of the scenario [deg]."),
+    ] = None
+    radius: Annotated[
+        Annotated[float, Interval(ge=0.01, le=2.0)] | None,
+        doc(
+            "Radius of the walking robot for navigation; default: from its shapes in the ready "
+            "posture [m]."
+        ),
+    ] = None
+    servo: Annotated[
+        Servo | None,
+        doc("Position servos of the model, or by rule; default: own if the model has them."),
+    ] = None
+    effort: Annotated[
+        dict[Name, Positive],
+        doc("Maximum torque by joint, where the model is silent or wrong [N m]."),
+    ] = {}
+    range: Annotated[
+        dict[Name, Limits],
+        doc("Lower and upper limit by joint, where the model is silent or wrong [rad]."),
+    ] = {}
+    speed: Annotated[
+        dict[Name, Positive],
+        doc("Maximum speed by joint, where the model is silent or wrong [rad/s]."),
+    ] = {}
+    rigid: Annotated[
+        tuple[Name, ...], doc("Joints to fix at their angle in the ready posture.")
+    ] = ()
+    packages: Annotated[
+        dict[Name, Name],
+        doc("Folder of each package named in a ``package://`` path of a URDF file."),
+    ] = {}
+    head_rate: Annotated[
+        Rate | None,
+        doc("Maximum rate of the head joints; default: from their speed limits [rad/s]."),
+    ] = None
+    head_acceleration: Annotated[
+        Rate | None, doc("Maximum angular acceleration of the head joints [rad/s²].")
+    ] = None
+    about: Annotated[About | None, doc("Facts of a shipped robot.")] = None
+    calibration: Annotated[
+        Calibration | None, doc("Properties measured by ``hsr8 robot calibrate``.")
+    ] = None
 
     @model_validator(mode="after")
     def _consistent(self) -> "RobotDescription":

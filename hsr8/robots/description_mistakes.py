@@ -7,7 +7,7 @@ from typing import Any, get_args
 from pydantic import BaseModel, ValidationError
 from pydantic_core import ErrorDetails
 
-from hsr8.docstrings import docstrings
+from hsr8.keys import texts
 from hsr8.suggestion import suggestion
 
 NAME, NAMES, TABLE = "a name", "a list of two names", "a table"
@@ -88,11 +88,11 @@ def _misplaced(path: KeyPath, kind: type[BaseModel]) -> str:
 
 
 def _meaning(path: KeyPath, kind: type[BaseModel]) -> str:
-    """Return the docstring of the innermost key that has one."""
+    """Return the text of the innermost key that has one."""
     for depth in range(len(path), 0, -1):
         table = _table(path[: depth - 1], kind)
         if table is not None and path[depth - 1] in table.model_fields:
-            return docstrings(table)[str(path[depth - 1])].replace("\n", " ").rstrip(".")
+            return texts(table)[str(path[depth - 1])].rstrip(".")
     return ""
 
 

@@ -2,7 +2,7 @@
 
 from typing import Annotated
 
-from annotated_types import Interval, Len
+from annotated_types import Interval, Len, doc
 from pydantic import AfterValidator, model_validator
 
 from hsr8.scenario.section import Section, ordered
@@ -20,33 +20,42 @@ class Footsteps(Section):
     """Explicit footsteps, all alike: the command state of the walking pattern."""
 
     # Times of the pendulum, √(height / g), hence √m.
-    single_support: Annotated[float, Interval(gt=0.0, le=2.0), "m^0.5"] = 0.27
-    """Duration of the single support [s]."""
-    double_support: Annotated[float, Interval(gt=0.0, le=2.0), "m^0.5"] = 0.07
-    """Duration of the preceding double support [s]."""
-    forward: Annotated[float, Interval(ge=-2.0, le=2.0), "m"] = 0.0
-    """Advance of the stance centre per footstep [m]."""
-    side: Annotated[float, Interval(gt=0.0, le=2.0), "m"] = 0.084
-    """Distance between the feet at landing [m]."""
-    direction: Annotated[float, Interval(ge=-1.5, le=1.5)] = 0.0
-    """Yaw of the landing foot relative to the support foot, counter-clockwise positive [rad]."""
-    swing_height: Annotated[float, Interval(gt=0.0, le=1.0), "m"] = 0.025
-    """Maximum height of the swing foot [m]."""
+    single_support: Annotated[
+        float, Interval(gt=0.0, le=2.0), "m^0.5", doc("Duration of the single support [s].")
+    ] = 0.27
+    double_support: Annotated[
+        float,
+        Interval(gt=0.0, le=2.0),
+        "m^0.5",
+        doc("Duration of the preceding double support [s]."),
+    ] = 0.07
+    forward: Annotated[
+        float, Interval(ge=-2.0, le=2.0), "m", doc("Advance of the stance centre per footstep [m].")
+    ] = 0.0
+    side: Annotated[
+        float, Interval(gt=0.0, le=2.0), "m", doc("Distance between the feet at landing [m].")
+    ] = 0.084
+    direction: Annotated[
+        float,
+        Interval(ge=-1.5, le=1.5),
+        doc(
+            "Yaw of the landing foot relative to the support foot, counter-clockwise positive "
+            "[rad]."
+        ),
+    ] = 0.0
+    swing_height: Annotated[
+        float, Interval(gt=0.0, le=1.0), "m", doc("Maximum height of the swing foot [m].")
+    ] = 0.025
 
 
 class Stretch(Section):
     """Constant velocity, or footsteps all alike, for a time."""
 
-    duration: Annotated[float, Interval(gt=0.0, le=7200.0), "s"]
-    """Duration [s]."""
-    vx: Velocity = 0.0
-    """Forward velocity [m/s]."""
-    vy: Velocity = 0.0
-    """Lateral velocity, to the left positive [m/s]."""
-    wz: TurnRate = 0.0
-    """Turn rate, counter-clockwise positive [rad/s]."""
-    footstep: Footsteps | None = None
-    """Explicit footsteps, instead of a velocity."""
+    duration: Annotated[float, Interval(gt=0.0, le=7200.0), "s", doc("Duration [s].")]
+    vx: Annotated[Velocity, doc("Forward velocity [m/s].")] = 0.0
+    vy: Annotated[Velocity, doc("Lateral velocity, to the left positive [m/s].")] = 0.0
+    wz: Annotated[TurnRate, doc("Turn rate, counter-clockwise positive [rad/s].")] = 0.0
+    footstep: Annotated[Footsteps | None, doc("Explicit footsteps, instead of a velocity.")] = None
 
     @model_validator(mode="after")
     def _one_of_both(self) -> "Stretch":
@@ -58,16 +67,14 @@ class Stretch(Section):
 class RandomCommands(Section):
     """Velocities drawn from the seed, each held for a drawn time."""
 
-    vx: VelocityRange = (-0.4, 0.4)
-    """Minimum and maximum forward velocity [m/s]."""
-    vy: VelocityRange = (-0.15, 0.15)
-    """Minimum and maximum lateral velocity [m/s]."""
-    wz: TurnRange = (-2.0, 2.0)
-    """Minimum and maximum turn rate [rad/s]."""
-    interval: SecondsRange = (0.5, 2.0)
-    """Minimum and maximum hold time of a velocity [s]."""
-    stop_fraction: Fraction = 0.15
-    """Probability that a drawn velocity is zero [1]."""
+    vx: Annotated[VelocityRange, doc("Minimum and maximum forward velocity [m/s].")] = (-0.4, 0.4)
+    vy: Annotated[VelocityRange, doc("Minimum and maximum lateral velocity [m/s].")] = (-0.15, 0.15)
+    wz: Annotated[TurnRange, doc("Minimum and maximum turn rate [rad/s].")] = (-2.0, 2.0)
+    interval: Annotated[SecondsRange, doc("Minimum and maximum hold time of a velocity [s].")] = (
+        0.5,
+        2.0,
+    )
+    stop_fraction: Annotated[Fraction, doc("Probability that a drawn velocity is zero [1].")] = 0.15
 
 
 class Command(Section):
@@ -76,18 +83,20 @@ class Command(Section):
     A constant velocity or footstep takes precedence over `random`, which does over `stretch`.
     """
 
-    vx: Velocity | None = None
-    """Forward velocity for the whole run [m/s]."""
-    vy: Velocity | None = None
-    """Lateral velocity for the whole run, to the left positive [m/s]."""
-    wz: TurnRate | None = None
-    """Turn rate for the whole run, counter-clockwise positive [rad/s]."""
-    footstep: Footsteps | None = None
-    """Explicit footsteps for the whole run."""
-    random: RandomCommands | None = None
-    """Velocities drawn from the seed."""
-    stretch: Annotated[tuple[Stretch, ...], Len(0, 1000)] = ()
-    """Consecutive velocities or footsteps; after the last one the robot stands."""
+    vx: Annotated[Velocity | None, doc("Forward velocity for the whole run [m/s].")] = None
+    vy: Annotated[
+        Velocity | None, doc("Lateral velocity for the whole run, to the left positive [m/s].")
+    ] = None
+    wz: Annotated[
+        TurnRate | None, doc("Turn rate for the whole run, counter-clockwise positive [rad/s].")
+    ] = None
+    footstep: Annotated[Footsteps | None, doc("Explicit footsteps for the whole run.")] = None
+    random: Annotated[RandomCommands | None, doc("Velocities drawn from the seed.")] = None
+    stretch: Annotated[
+        tuple[Stretch, ...],
+        Len(0, 1000),
+        doc("Consecutive velocities or footsteps; after the last one the robot stands."),
+    ] = ()
 
     @model_validator(mode="after")
     def _one_of_both(self) -> "Command":

@@ -1,14 +1,17 @@
-"""Table ``[constants]``: parameters of the libraries that are not public keys, for studies."""
+"""Table ``[constants]``: parameters of the libraries that are not public keys.
+
+Studies change them: ``constants.navigation.gaze.risk.exponent = 2.0``.
+"""
 
 from collections.abc import Iterator
-from dataclasses import asdict, is_dataclass
+from dataclasses import asdict
 from functools import cache
-from typing import Any, get_type_hints
+from typing import Any
 
 from hsr8.robots.scale import DEFAULT_ROBOT
 from hsr8.scenario.presets import PROFILES, followers, under
 from hsr8.scenario.problem import Problem
-from hsr8.scenario.public_keys import LIBRARIES, PUBLIC
+from hsr8.scenario.reference import LIBRARIES, parameters, public_keys
 from hsr8.scenario.schema import Scenario
 from hsr8.suggestion import suggestion
 
@@ -28,7 +31,7 @@ def misplaced(data: Table) -> Iterator[Problem]:
         return
     for key in _flat(given):
         path = (CONSTANTS, *key.split("."))
-        if key in PUBLIC:
+        if key in public_keys():
             yield Problem(path, f"a setting, not a constant; expected {key}")
         elif key not in constant_names():
             yield Problem(path, f"unknown constant{suggestion(key, constant_names())}")
@@ -37,8 +40,7 @@ def misplaced(data: Table) -> Iterator[Problem]:
 @cache
 def constant_names() -> tuple[str, ...]:
     """Return the dotted names of all constants."""
-    names = (n for library in LIBRARIES for n in _parameters(_annotation(library), library))
-    return tuple(name for name in names if name not in PUBLIC)
+    return tuple(name for name, text in parameters().items() if not text)
 
 
 def with_constants(data: Table) -> Table:
@@ -54,8 +56,8 @@ def with_constants(data: Table) -> Table:
 def placed(table: Table) -> Table:
     """Return tables of the libraries with their constants moved to ``[constants]``."""
     values = _flat({name: table[name] for name in LIBRARIES if name in table})
-    settings = _nested({key: value for key, value in values.items() if key in PUBLIC})
-    constants = _nested({key: value for key, value in values.items() if key not in PUBLIC})
+    settings = _nested({key: value for key, value in values.items() if key in public_keys()})
+    constants = _nested({key: value for key, value in values.items() if key not in public_keys()})
     return {**table, **settings, **({CONSTANTS: constants} if constants else {})}
 
 
@@ -66,12 +68,12 @@ def separated(data: Table) -> Table:
     """
     libraries, settings, constants = {name: data[name] for name in LIBRARIES}, dict(data), {}
     values, usual = _flat(libraries), _usual(data["navigation"]["profile"]) | _flat(followers(data))
-    settings |= _nested({key: value for key, value in values.items() if key in PUBLIC})
+    settings |= _nested({key: value for key, value in values.items() if key in public_keys()})
     scales = data["robot"]["model"] != DEFAULT_ROBOT
     constants = {
         key: value
         for key, value in values.items()
-        if key not in PUBLIC and (scales or value != _plain(usual[key]))
+        if key not in public_keys() and (scales or value != _plain(usual[key]))
     }
     return {**settings, CONSTANTS: _nested(constants)} if constants else settings
 
@@ -108,16 +110,3 @@ def _nested(flat: Table) -> Table:
 def _plain(value: Any) -> Any:
     """Tuples as lists, as JSON has them."""
     return [_plain(v) for v in value] if isinstance(value, list | tuple) else value
-
-
-def _annotation(library: str) -> Any:
-    return Scenario.model_fields[library].annotation
-
-
-def _parameters(annotation: Any, name: str) -> Iterator[str]:
-    """Dotted names of the parameters of a dataclass."""
-    if not is_dataclass(annotation):
-        yield name
-        return
-    for key, hint in get_type_hints(annotation).items():
-        yield from _parameters(hint, f"{name}.{key}")

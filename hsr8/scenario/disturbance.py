@@ -2,7 +2,7 @@
 
 from typing import Annotated
 
-from annotated_types import Interval, Len
+from annotated_types import Interval, Len, doc
 from pydantic import AfterValidator
 
 from hsr8.robots.description import TRUNK
@@ -19,25 +19,33 @@ DegreesRange = Annotated[tuple[Degrees, Degrees], AfterValidator(ordered)]
 class RandomPushes(Section):
     """Consecutive pushes drawn from the seed."""
 
-    start: Annotated[float, Interval(ge=0.0, le=7200.0), "s"] = 3.0
-    """Earliest time of the first push [s]."""
-    interval: SecondsRange = (2.0, 4.0)
-    """Minimum and maximum time between pushes [s]."""
-    impulse: ImpulseRange = (0.2, 0.8)
-    """Minimum and maximum impulse: force times duration [N s]."""
-    duration: PushDuration = 0.05
-    """Duration of a push, rounded to control ticks of 5 ms [s]."""
-    direction_deg: DegreesRange = (-180.0, 180.0)
-    """Range of directions of the force from the robot's heading, counter-clockwise [deg]."""
-    body: PushedBody = TRUNK
-    """Body that the force acts on; "trunk" is that which carries the arms or the head."""
+    start: Annotated[
+        float, Interval(ge=0.0, le=7200.0), "s", doc("Earliest time of the first push [s].")
+    ] = 3.0
+    interval: Annotated[SecondsRange, doc("Minimum and maximum time between pushes [s].")] = (
+        2.0,
+        4.0,
+    )
+    impulse: Annotated[
+        ImpulseRange, doc("Minimum and maximum impulse: force times duration [N s].")
+    ] = (0.2, 0.8)
+    duration: Annotated[
+        PushDuration, doc("Duration of a push, rounded to control ticks of 5 ms [s].")
+    ] = 0.05
+    direction_deg: Annotated[
+        DegreesRange,
+        doc("Range of directions of the force from the robot's heading, counter-clockwise [deg]."),
+    ] = (-180.0, 180.0)
+    body: Annotated[
+        PushedBody,
+        doc('Body that the force acts on; "trunk" is that which carries the arms or the head.'),
+    ] = TRUNK
 
 
 class Disturbance(Section):
     """Random disturbances; require the full body."""
 
-    random: RandomPushes | None = None
-    """Pushes drawn from the seed."""
+    random: Annotated[RandomPushes | None, doc("Pushes drawn from the seed.")] = None
 
     @property
     def empty(self) -> bool:

@@ -3,7 +3,7 @@
 from collections.abc import Sequence
 from typing import Annotated, Literal
 
-from annotated_types import Interval, Len
+from annotated_types import Interval, Len, doc
 from pydantic import Field, model_validator
 
 from hsr8.robots.description import TRUNK
@@ -37,10 +37,11 @@ def ticks(seconds: float) -> int:
 class _Fault(Section):
     kind: str
     """Kind of fault."""
-    start: StartTime = 0.0
-    """Start, rounded to control ticks of 5 ms [s]."""
-    duration: FaultDuration | None = None
-    """Duration, rounded to control ticks of 5 ms; default: until the end of the run [s]."""
+    start: Annotated[StartTime, doc("Start, rounded to control ticks of 5 ms [s].")] = 0.0
+    duration: Annotated[
+        FaultDuration | None,
+        doc("Duration, rounded to control ticks of 5 ms; default: until the end of the run [s]."),
+    ] = None
 
     def acts(self, tick: int) -> bool:
         """Whether the fault is active in control tick `tick`."""
@@ -69,8 +70,9 @@ class _Fault(Section):
 class JointFault(_Fault):
     """Fault of some joints."""
 
-    joint: Joint = "legs"
-    """A joint of the robot, or left_leg, right_leg, legs or all."""
+    joint: Annotated[Joint, doc("A joint of the robot, or left_leg, right_leg, legs or all.")] = (
+        "legs"
+    )
 
     def joints(self, names: Sequence[str]) -> list[int]:
         """Return the indices of the joints in the `names` of all joints of the robot.
@@ -84,8 +86,7 @@ class JointFault(_Fault):
 
 
 class _FootFault(_Fault):
-    foot: Foot = "both"
-    """Foot with the fault."""
+    foot: Annotated[Foot, doc("Foot with the fault.")] = "both"
 
     @property
     def feet(self) -> list[int]:
@@ -103,60 +104,59 @@ class Lighting(_Fault):
     """The light intensity changes; requires rendered images."""
 
     kind: Literal["lighting"]
-    magnitude: Annotated[float, Interval(ge=0.05, le=4.0)]
-    """Light intensity relative to `world.brightness` [1]."""
+    magnitude: Annotated[
+        float, Interval(ge=0.05, le=4.0), doc("Light intensity relative to `world.brightness` [1].")
+    ]
 
 
 class CameraDrops(_Fault):
     """Images are lost at random."""
 
     kind: Literal["camera-drops"]
-    magnitude: Fraction
-    """Fraction of lost images [1]."""
+    magnitude: Annotated[Fraction, doc("Fraction of lost images [1].")]
 
 
 class MissedDetections(_Fault):
     """Obstacles and beacons in view are not detected, at random."""
 
     kind: Literal["missed-detections"]
-    magnitude: Fraction
-    """Probability of a miss per object and image [1]."""
+    magnitude: Annotated[Fraction, doc("Probability of a miss per object and image [1].")]
 
 
 class FalseDetections(_Fault):
     """Images show objects that do not exist."""
 
     kind: Literal["false-detections"]
-    magnitude: Annotated[float, Interval(ge=0.0, le=20.0)]
-    """Mean number of false objects per image [1]."""
+    magnitude: Annotated[
+        float, Interval(ge=0.0, le=20.0), doc("Mean number of false objects per image [1].")
+    ]
 
 
 class CameraLatency(_Fault):
     """Images arrive later; an image overtaken by a newer one is lost."""
 
     kind: Literal["camera-latency"]
-    magnitude: Annotated[float, Interval(ge=0.0, le=0.5)]
-    """Delay added to `camera.latency_ms`, rounded up to camera periods [s]."""
+    magnitude: Annotated[
+        float,
+        Interval(ge=0.0, le=0.5),
+        doc("Delay added to `camera.latency_ms`, rounded up to camera periods [s]."),
+    ]
 
 
 class AttitudeBias(_Fault):
     """The attitude estimate of the IMU has a constant error."""
 
     kind: Literal["attitude-bias"]
-    magnitude: Angle
-    """Error of the angle [rad]."""
-    axis: Literal["roll", "pitch"] = "pitch"
-    """Axis of the error."""
+    magnitude: Annotated[Angle, doc("Error of the angle [rad].")]
+    axis: Annotated[Literal["roll", "pitch"], doc("Axis of the error.")] = "pitch"
 
 
 class GyroBias(_Fault):
     """The gyroscope has a constant error; a yaw error accumulates in the heading of the IMU."""
 
     kind: Literal["gyro-bias"]
-    magnitude: Annotated[float, Interval(ge=-1.0, le=1.0)]
-    """Error of the turn rate [rad/s]."""
-    axis: Literal["roll", "pitch", "yaw"] = "yaw"
-    """Axis of the error."""
+    magnitude: Annotated[float, Interval(ge=-1.0, le=1.0), doc("Error of the turn rate [rad/s].")]
+    axis: Annotated[Literal["roll", "pitch", "yaw"], doc("Axis of the error.")] = "yaw"
 
 
 class ImuFrozen(_Fault):
@@ -169,8 +169,7 @@ class EncoderOffset(JointFault):
     """Joint encoders have a constant error."""
 
     kind: Literal["encoder-offset"]
-    magnitude: Angle
-    """Error of the joint angle [rad]."""
+    magnitude: Annotated[Angle, doc("Error of the joint angle [rad].")]
 
 
 class EncoderFrozen(JointFault):
@@ -189,60 +188,72 @@ class FootGain(_FootFault):
     """The force sensors of a foot have a wrong gain."""
 
     kind: Literal["foot-gain"]
-    magnitude: Annotated[float, Interval(ge=0.0, le=10.0)]
-    """Measured force divided by true force [1]."""
+    magnitude: Annotated[
+        float, Interval(ge=0.0, le=10.0), doc("Measured force divided by true force [1].")
+    ]
 
 
 class ServoWeak(JointFault):
     """Servos lose torque; requires the full body."""
 
     kind: Literal["servo-weak"]
-    magnitude: Fraction
-    """Remaining fraction of the maximum torque [1]."""
+    magnitude: Annotated[Fraction, doc("Remaining fraction of the maximum torque [1].")]
 
 
 class ServoStuck(JointFault):
     """Servos hold their last setpoint."""
 
     kind: Literal["servo-stuck"]
-    joint: Joint
-    """A joint of the robot, or left_leg, right_leg, legs or all."""
+    joint: Annotated[Joint, doc("A joint of the robot, or left_leg, right_leg, legs or all.")]
 
 
 class ServoDelay(JointFault):
     """Servos receive their setpoints late."""
 
     kind: Literal["servo-delay"]
-    magnitude: Annotated[float, Interval(ge=0.0, le=0.1)]
-    """Delay, rounded to control ticks of 5 ms [s]."""
+    magnitude: Annotated[
+        float, Interval(ge=0.0, le=0.1), doc("Delay, rounded to control ticks of 5 ms [s].")
+    ]
 
 
 class Push(_Fault):
     """A constant horizontal force acts on one body; requires the full body."""
 
     kind: Literal["push"]
-    duration: PushDuration = 0.05
-    """Duration, rounded to control ticks of 5 ms [s]."""
-    magnitude: Impulse
-    """Impulse: force times duration [N s]."""
-    direction_deg: Degrees = 90.0
-    """Direction of the force from the robot's heading at the start; 90 is to the left [deg]."""
-    body: PushedBody = TRUNK
-    """Body that the force acts on; "trunk" is that which carries the arms or the head."""
-    point: tuple[Offset, Offset, Offset] = (0.0, 0.0, 0.0)
-    """Point of application relative to the body's centre of mass, in body axes [m]."""
+    duration: Annotated[PushDuration, doc("Duration, rounded to control ticks of 5 ms [s].")] = 0.05
+    magnitude: Annotated[Impulse, doc("Impulse: force times duration [N s].")]
+    direction_deg: Annotated[
+        Degrees,
+        doc(
+            "Direction of the force from the robot's heading at the start; 90 is to the left [deg]."
+        ),
+    ] = 90.0
+    body: Annotated[
+        PushedBody,
+        doc('Body that the force acts on; "trunk" is that which carries the arms or the head.'),
+    ] = TRUNK
+    point: Annotated[
+        tuple[Offset, Offset, Offset],
+        doc("Point of application relative to the body's centre of mass, in body axes [m]."),
+    ] = (0.0, 0.0, 0.0)
 
 
 class LowFriction(_Fault):
     """The friction of the soles is reduced; requires the full body."""
 
     kind: Literal["low-friction"]
-    magnitude: Annotated[float, Interval(ge=0.01, le=2.0)]
-    """Friction coefficient of the soles; normally 0.8 [1]."""
-    position: Point | None = None
-    """Centre of the slippery patch in W; default: everywhere [m]."""
-    radius: Annotated[float, Interval(gt=0.0, le=100.0), "m"] | None = None
-    """Radius of the patch; default: 0.3 world.scale [m]."""
+    magnitude: Annotated[
+        float,
+        Interval(ge=0.01, le=2.0),
+        doc("Friction coefficient of the soles; normally 0.8 [1]."),
+    ]
+    position: Annotated[
+        Point | None, doc("Centre of the slippery patch in W; default: everywhere [m].")
+    ] = None
+    radius: Annotated[
+        Annotated[float, Interval(gt=0.0, le=100.0), "m"] | None,
+        doc("Radius of the patch; default: 0.3 world.scale [m]."),
+    ] = None
 
     @model_validator(mode="after")
     def _placed(self) -> "LowFriction":
@@ -259,20 +270,20 @@ class Bump(_Fault):
     """A low disc lies on the floor, invisible to the camera; requires the full body."""
 
     kind: Literal["bump"]
-    magnitude: Annotated[float, Interval(ge=0.001, le=0.5), "m"]
-    """Height [m]."""
-    position: Point
-    """Centre in W [m]."""
-    radius: Annotated[float, Interval(ge=0.01, le=2.0), "m"] = 0.1
-    """Radius [m]."""
+    magnitude: Annotated[float, Interval(ge=0.001, le=0.5), "m", doc("Height [m].")]
+    position: Annotated[Point, doc("Centre in W [m].")]
+    radius: Annotated[float, Interval(ge=0.01, le=2.0), "m", doc("Radius [m].")] = 0.1
 
 
 class MoverAppears(_Fault):
     """A moving obstacle exists only while the fault is active."""
 
     kind: Literal["mover-appears"]
-    mover: Annotated[int, Interval(ge=0, le=255)] = 0
-    """Index of the moving obstacle, from 0; obstacles placed by hand come first [1]."""
+    mover: Annotated[
+        int,
+        Interval(ge=0, le=255),
+        doc("Index of the moving obstacle, from 0; obstacles placed by hand come first [1]."),
+    ] = 0
 
 
 CameraFault = (

@@ -24,7 +24,6 @@ from hsr8.scenario.key_lines import Path, depth, lines_of
 from hsr8.scenario.plugin import KINDS, located_plugins
 from hsr8.scenario.presets import expand_presets, followers, merged, under
 from hsr8.scenario.problem import Problem, dotted, problems_of
-from hsr8.scenario.renamed import renamed
 from hsr8.scenario.robot import located
 from hsr8.scenario.scaling import is_complete, scaled, with_scaled_defaults
 from hsr8.scenario.schema import Scenario
@@ -184,7 +183,7 @@ class _Sources:
         """
         try:
             draft = self._draft(RobotDefaults())
-            if draft.robot != DEFAULT_ROBOT and not draft.misnamed():
+            if draft.robot != DEFAULT_ROBOT and not draft.misplaced_keys():
                 draft = self._for_robot(draft, name)
             return draft.finish(name), draft
         except RecursionError:
@@ -239,9 +238,9 @@ class _Draft:
         """Whether all quantities are given."""
         return is_complete(self._tables())
 
-    def misnamed(self) -> list[Problem]:
-        """Return the renamed and misplaced keys."""
-        return _first(renamed(self.data)) or _first(misplaced(self.data))
+    def misplaced_keys(self) -> list[Problem]:
+        """Return the keys of the libraries that are not where they belong."""
+        return _first(misplaced(self.data))
 
     def add(self, layer: _Layer) -> None:
         """Merge a layer over the present tables."""
@@ -264,7 +263,7 @@ class _Draft:
         return scenario
 
     def _validated(self) -> tuple[Scenario | None, list[Problem]]:
-        if problems := self.misnamed():
+        if problems := self.misplaced_keys():
             return None, problems
         data = self._tables()
         if self.scale != RobotScale():

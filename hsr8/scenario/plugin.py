@@ -5,6 +5,7 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Annotated, Any
 
+from annotated_types import doc
 from pydantic import Field, PrivateAttr
 
 from hsr8.scenario.section import Section
@@ -17,12 +18,18 @@ Reference = Annotated[str, Field(pattern=r"^$|^.+\.py:[A-Za-z_][A-Za-z0-9_]*$")]
 class Plugin(Section):
     """User-defined planner, gaze and walker, each a class in a Python file."""
 
-    planner: Reference = ""
-    """FILE.py:CLASS with a method `plan`; replaces `navigation.planner`; empty: none."""
-    gaze: Reference = ""
-    """FILE.py:CLASS with a method `choose`; replaces `navigation.gaze`; empty: none."""
-    walker: Reference = ""
-    """FILE.py:CLASS with a method `step`; replaces the walking engine; empty: none."""
+    planner: Annotated[
+        Reference,
+        doc("FILE.py:CLASS with a method `plan`; replaces `navigation.planner`; empty: none."),
+    ] = ""
+    gaze: Annotated[
+        Reference,
+        doc("FILE.py:CLASS with a method `choose`; replaces `navigation.gaze`; empty: none."),
+    ] = ""
+    walker: Annotated[
+        Reference,
+        doc("FILE.py:CLASS with a method `step`; replaces the walking engine; empty: none."),
+    ] = ""
 
     _untrusted: dict[str, str] = PrivateAttr(default_factory=dict)
 

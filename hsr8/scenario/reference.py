@@ -1,17 +1,24 @@
-"""JSON Schema of a scenario file, and the reference page made from it."""
+"""Public keys of a scenario file: JSON Schema, and the reference page made from it.
+
+A parameter of walking, vision, belief or navigation is a public key if its annotation has a text,
+see `hsr8.keys`; all others are constants.
+"""
 
 from collections.abc import Iterator
 from dataclasses import is_dataclass
 from functools import cache
 from typing import Any, get_args, get_type_hints
 
-from hsr8.docstrings import docstrings
+from hsr8.keys import texts
 from hsr8.scenario.key_lines import Path, holds
-from hsr8.scenario.public_keys import LIBRARIES, PUBLIC
 from hsr8.scenario.schema import Scenario
 from hsr8.scenario.section import Section
 
 Node = dict[str, Any]
+
+LIBRARIES = ("walking", "vision", "belief", "navigation")
+EXPERIMENTAL = "Experimental. "
+"""Beginning of the text of a key that selects a variant under study."""
 
 _BOUNDS = {"exclusiveMinimum": ">", "minimum": "≥", "exclusiveMaximum": "<", "maximum": "≤"}
 _OWN = {
@@ -29,6 +36,28 @@ _OWN = {
 
 
 @cache
+def public_keys() -> dict[str, str]:
+    """Return the text of every public key of the libraries by its dotted name."""
+    return {name: text for name, text in parameters().items() if text}
+
+
+@cache
+def parameters() -> dict[str, str]:
+    """Return the text of every parameter of the libraries, empty for constants, by dotted name."""
+    libraries = ((Scenario.model_fields[name].annotation, name) for name in LIBRARIES)
+    return {key: text for kind, name in libraries for key, text in _within(kind, name)}
+
+
+def _within(kind: Any, name: str) -> Iterator[tuple[str, str]]:
+    """Names and texts of the parameters in a class."""
+    for key, hint in get_type_hints(kind).items():
+        if is_dataclass(hint):
+            yield from _within(hint, f"{name}.{key}")
+        else:
+            yield f"{name}.{key}", texts(kind).get(key, "")
+
+
+@cache
 def json_schema() -> Node:
     """JSON Schema of a scenario file, with the public keys only."""
     schema = Scenario.model_json_schema()
@@ -36,7 +65,7 @@ def json_schema() -> Node:
     nodes = {"Scenario": schema, **schema["$defs"]}
     for section in set(_sections_in(Scenario)):
         properties = nodes[section.__name__]["properties"]
-        for key, text in docstrings(section).items():
+        for key, text in texts(section).items():
             properties[key]["description"] = text
     for name in LIBRARIES:
         _remove_constants(schema["$defs"], schema["properties"][name], name)
@@ -62,7 +91,7 @@ def _sections_in(annotation: Any) -> Iterator[type]:
 def _remove_constants(definitions: Node, node: Node, path: str) -> bool:
     """Remove keys that are not public from a table; return whether any remain."""
     if "$ref" not in node:
-        return path in PUBLIC
+        return path in public_keys()
     node.pop("default", None)
     name = node["$ref"].rpartition("/")[2]
     properties = definitions[name]["properties"]

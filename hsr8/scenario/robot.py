@@ -5,7 +5,7 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Annotated, Any, Literal
 
-from annotated_types import Interval, Len
+from annotated_types import Interval, Len, doc
 
 from hsr8.scenario.section import Radius, Section
 from hsr8.scenario.world import Start
@@ -20,32 +20,38 @@ WalkingSpeed = Annotated[float, Interval(ge=0.01, le=5.0), "m/s"]
 class SpeedEnvelope(Section):
     """Speed limits of navigation."""
 
-    vx: WalkingSpeed = NOMINAL_SPEED
-    """Maximum forward speed [m/s]."""
-    vx_backward: WalkingSpeed = 0.10
-    """Maximum backward speed [m/s]."""
-    vy: WalkingSpeed = 0.08
-    """Maximum sideways speed [m/s]."""
-    wz: Annotated[float, Interval(ge=0.01, le=10.0), "rad/s"] = 0.8
-    """Maximum turn rate [rad/s]."""
-    acceleration: Annotated[float, Interval(ge=0.005, le=20.0), "m/s²"] = 0.3
-    """Maximum acceleration [m/s²]."""
+    vx: Annotated[WalkingSpeed, doc("Maximum forward speed [m/s].")] = NOMINAL_SPEED
+    vx_backward: Annotated[WalkingSpeed, doc("Maximum backward speed [m/s].")] = 0.10
+    vy: Annotated[WalkingSpeed, doc("Maximum sideways speed [m/s].")] = 0.08
+    wz: Annotated[float, Interval(ge=0.01, le=10.0), "rad/s", doc("Maximum turn rate [rad/s].")] = (
+        0.8
+    )
+    acceleration: Annotated[
+        float, Interval(ge=0.005, le=20.0), "m/s²", doc("Maximum acceleration [m/s²].")
+    ] = 0.3
 
 
 class Robot(Section):
     """Body, initial pose and speed limits."""
 
-    model: Annotated[str, Len(1, 1000)] = "hsr8"
-    """Robot: a shipped name or the file of a description, next to the scenario or in the working
-    folder."""
-    body: Literal["full", "kinematic"] = "full"
-    """full: MuJoCo physics; kinematic: no dynamics, every footstep lands as planned."""
-    radius: Radius = 0.12
-    """Radius of the walking robot, for worlds, their certificates and navigation [m]."""
-    start: Start = Start()
-    """Initial pose."""
-    speed: SpeedEnvelope = SpeedEnvelope()
-    """Speed limits of navigation."""
+    model: Annotated[
+        str,
+        Len(1, 1000),
+        doc(
+            "Robot: a shipped name or the file of a description, next to the scenario or in the "
+            "working folder."
+        ),
+    ] = "hsr8"
+    body: Annotated[
+        Literal["full", "kinematic"],
+        doc("full: MuJoCo physics; kinematic: no dynamics, every footstep lands as planned."),
+    ] = "full"
+    radius: Annotated[
+        Radius,
+        doc("Radius of the walking robot, for worlds, their certificates and navigation [m]."),
+    ] = 0.12
+    start: Annotated[Start, doc("Initial pose.")] = Start()
+    speed: Annotated[SpeedEnvelope, doc("Speed limits of navigation.")] = SpeedEnvelope()
 
 
 def located(table: Mapping[str, Any], folder: Path) -> dict[str, Any]:

@@ -7,10 +7,11 @@ from collections.abc import Callable, Mapping
 from dataclasses import MISSING, fields, is_dataclass
 from functools import cache
 from types import NoneType, UnionType
-from typing import Annotated, Any, Literal, Union, get_args, get_origin, get_type_hints
+from typing import Annotated, Any, Literal, Union, get_args, get_origin
 
 from pydantic_core import PydanticUndefined
 
+from hsr8.keys import hints
 from hsr8.scenario.presets import PROFILES
 from hsr8.scenario.schema import Navigation, Scenario
 from hsr8.scenario.section import Section
@@ -126,7 +127,7 @@ def _entries(values: list[Any] | tuple[Any, ...], kind: Any) -> list[tuple[Any, 
 def _hints(kind: Any) -> dict[str, Any]:
     """Annotations of a section or a parameter class by key; empty for other types."""
     if isinstance(kind, type) and (issubclass(kind, Section) or is_dataclass(kind)):
-        return get_type_hints(kind, include_extras=True)
+        return hints(kind)
     return {}
 
 

@@ -4,7 +4,7 @@ from dataclasses import dataclass
 from operator import index
 from typing import Annotated, Literal, Self, SupportsIndex
 
-from annotated_types import Interval, Len
+from annotated_types import Interval, Len, doc
 from pydantic import Field
 
 from hsr8.errors import ScenarioError
@@ -31,73 +31,82 @@ MAX_SEED = 2**63 - 1  # integers of TOML have 64 bits
 class Navigation(NavigationParameters):
     """Gaze, planner and mission; the profile sets the defaults."""
 
-    profile: Literal["extended", "paper"] = "extended"
-    """extended: all improvements; paper: the printed equations with minimal corrections."""
+    profile: Annotated[
+        Literal["extended", "paper"],
+        doc("extended: all improvements; paper: the printed equations with minimal corrections."),
+    ] = "extended"
 
 
 class Criteria(Section):
     """Criteria of success."""
 
-    max_falls: Annotated[int, Interval(ge=0, le=1000)] = 0
-    """Maximum number of falls [1]."""
-    max_collisions: Annotated[int, Interval(ge=0, le=100_000)] | None = None
-    """Maximum number of collisions; default: any number [1]."""
-    goal_reached: bool = False
-    """Whether the goal must be reached."""
-    max_zmp_outside_ticks: Annotated[int, Interval(ge=0, le=10_000_000)] | None = None
-    """Maximum number of control ticks with the planned ZMP outside the soles [1]."""
-    min_via_points: Annotated[int, Interval(ge=0, le=100_000)] = 0
-    """Minimum number of via points passed [1]."""
+    max_falls: Annotated[int, Interval(ge=0, le=1000), doc("Maximum number of falls [1].")] = 0
+    max_collisions: Annotated[
+        Annotated[int, Interval(ge=0, le=100_000)] | None,
+        doc("Maximum number of collisions; default: any number [1]."),
+    ] = None
+    goal_reached: Annotated[bool, doc("Whether the goal must be reached.")] = False
+    max_zmp_outside_ticks: Annotated[
+        Annotated[int, Interval(ge=0, le=10_000_000)] | None,
+        doc("Maximum number of control ticks with the planned ZMP outside the soles [1]."),
+    ] = None
+    min_via_points: Annotated[
+        int, Interval(ge=0, le=100_000), doc("Minimum number of via points passed [1].")
+    ] = 0
 
 
 class Recorder(Section):
     """Recording of the run."""
 
-    period_ms: PeriodMs = 20
-    """Period of the records, a multiple of the control tick of 5 ms [ms]."""
+    period_ms: Annotated[
+        PeriodMs, doc("Period of the records, a multiple of the control tick of 5 ms [ms].")
+    ] = 20
 
 
 class Scenario(Section):
     """World, robot, mission and criteria of success."""
 
-    name: Annotated[str, Len(1, 64), Field(pattern=r"^[\p{L}\p{N}][\p{L}\p{M}\p{N}._-]*$")]
-    """Name of the run folders, letters and digits of any script; default: the name of the file."""
-    description: Annotated[str, Len(0, 2000)] = ""
-    """Description in one or two sentences."""
-    seed: Annotated[int, Interval(ge=0, le=MAX_SEED)] = 0
-    """Seed of the world and of all noise [1]."""
-    duration: Annotated[float, Interval(gt=0.0, le=7200.0), "s"] = 240.0
-    """Maximum simulated time [s]."""
-    world: World = World()
-    """Field, obstacles, beacons and light."""
-    mission: Mission
-    """Via points and goal."""
-    command: Command = Command()
-    """Velocities or footsteps of a mission of kind "walk"."""
-    disturbance: Disturbance = Disturbance()
-    """Random pushes."""
-    fault: Annotated[tuple[Fault, ...], Len(0, 64)] = ()
-    """Faults of sensors, servos and the environment."""
-    robot: Robot = Robot()
-    """Body, initial pose and speed limits."""
-    camera: Camera = Camera()
-    """Head camera."""
-    sensors: SensorNoise = SensorNoise()
-    """Noise of encoders, IMU and foot force sensors."""
-    walking: WalkingParameters = WalkingParameters()
-    """Walking engine; defaults scale with the size of the robot."""
-    vision: VisionParameters = VisionParameters()
-    """Obstacle and beacon detector."""
-    belief: BeliefParameters = BeliefParameters()
-    """Localization, obstacle tracks and local map."""
-    navigation: Navigation = Navigation()
-    """Gaze and motion planning."""
-    plugin: Plugin = Plugin()
-    """User-defined planner and gaze."""
-    criteria: Criteria = Criteria()
-    """Criteria of success."""
-    recorder: Recorder = Recorder()
-    """Recording of the run."""
+    name: Annotated[
+        str,
+        Len(1, 64),
+        Field(pattern=r"^[\p{L}\p{N}][\p{L}\p{M}\p{N}._-]*$"),
+        doc(
+            "Name of the run folders, letters and digits of any script; default: the name of the "
+            "file."
+        ),
+    ]
+    description: Annotated[str, Len(0, 2000), doc("Description in one or two sentences.")] = ""
+    seed: Annotated[
+        int, Interval(ge=0, le=MAX_SEED), doc("Seed of the world and of all noise [1].")
+    ] = 0
+    duration: Annotated[
+        float, Interval(gt=0.0, le=7200.0), "s", doc("Maximum simulated time [s].")
+    ] = 240.0
+    world: Annotated[World, doc("Field, obstacles, beacons and light.")] = World()
+    mission: Annotated[Mission, doc("Via points and goal.")]
+    command: Annotated[Command, doc('Velocities or footsteps of a mission of kind "walk".')] = (
+        Command()
+    )
+    disturbance: Annotated[Disturbance, doc("Random pushes.")] = Disturbance()
+    fault: Annotated[
+        tuple[Fault, ...], Len(0, 64), doc("Faults of sensors, servos and the environment.")
+    ] = ()
+    robot: Annotated[Robot, doc("Body, initial pose and speed limits.")] = Robot()
+    camera: Annotated[Camera, doc("Head camera.")] = Camera()
+    sensors: Annotated[SensorNoise, doc("Noise of encoders, IMU and foot force sensors.")] = (
+        SensorNoise()
+    )
+    walking: Annotated[
+        WalkingParameters, doc("Walking engine; defaults scale with the size of the robot.")
+    ] = WalkingParameters()
+    vision: Annotated[VisionParameters, doc("Obstacle and beacon detector.")] = VisionParameters()
+    belief: Annotated[BeliefParameters, doc("Localization, obstacle tracks and local map.")] = (
+        BeliefParameters()
+    )
+    navigation: Annotated[Navigation, doc("Gaze and motion planning.")] = Navigation()
+    plugin: Annotated[Plugin, doc("User-defined planner and gaze.")] = Plugin()
+    criteria: Annotated[Criteria, doc("Criteria of success.")] = Criteria()
+    recorder: Annotated[Recorder, doc("Recording of the run.")] = Recorder()
 
     def with_seed(self, seed: SupportsIndex) -> Self:
         """Return the scenario with another seed.

@@ -3,7 +3,7 @@
 from math import ceil, hypot
 from typing import Annotated, Literal
 
-from annotated_types import Interval, Len
+from annotated_types import Interval, Len, doc
 from pydantic import AfterValidator, Field
 
 from hsr8.scenario.section import (
@@ -32,68 +32,59 @@ GAP_RATIO = 5.0 / 6.0  # default gap in a wall, relative to the diameter of the 
 class StaticObstacle(Section):
     """Static obstacle: a cylinder."""
 
-    position: Point
-    """Axis of the cylinder in W, x and y [m]."""
-    radius: Radius = 0.08
-    """Radius [m]."""
-    color: Color = "red"
-    """Colour; independent of size and motion."""
+    position: Annotated[Point, doc("Axis of the cylinder in W, x and y [m].")]
+    radius: Annotated[Radius, doc("Radius [m].")] = 0.08
+    color: Annotated[Color, doc("Colour; independent of size and motion.")] = "red"
 
 
 class _Mover(Section):
-    radius: Radius = 0.08
-    """Radius [m]."""
-    color: Color = "blue"
-    """Colour; independent of size and motion."""
-    speed: Speed = 0.10
-    """Constant speed along the path [m/s]."""
+    radius: Annotated[Radius, doc("Radius [m].")] = 0.08
+    color: Annotated[Color, doc("Colour; independent of size and motion.")] = "blue"
+    speed: Annotated[Speed, doc("Constant speed along the path [m/s].")] = 0.10
 
 
 class ShuttleMover(_Mover):
     """Back and forth between two points."""
 
     motion: Literal["shuttle"]
-    start: Point
-    """Initial position in W [m]."""
-    end: Point
-    """Turning point in W [m]."""
+    start: Annotated[Point, doc("Initial position in W [m].")]
+    end: Annotated[Point, doc("Turning point in W [m].")]
 
 
 class LineMover(_Mover):
     """Straight ahead."""
 
     motion: Literal["line"]
-    start: Point
-    """Initial position in W [m]."""
-    heading_deg: Degrees
-    """Direction of motion, counter-clockwise from x of W [deg]."""
+    start: Annotated[Point, doc("Initial position in W [m].")]
+    heading_deg: Annotated[
+        Degrees, doc("Direction of motion, counter-clockwise from x of W [deg].")
+    ]
 
 
 class CircleMover(_Mover):
     """Around a circle."""
 
     motion: Literal["circle"]
-    centre: Point
-    """Centre of the circle in W [m]."""
-    path_radius: Annotated[float, Interval(gt=0.0, le=50.0), "m"]
-    """Radius of the circle [m]."""
-    angle_deg: Degrees = 0.0
-    """Initial angle on the circle, counter-clockwise from x of W [deg]."""
-    clockwise: bool = False
-    """Whether the motion is clockwise."""
+    centre: Annotated[Point, doc("Centre of the circle in W [m].")]
+    path_radius: Annotated[float, Interval(gt=0.0, le=50.0), "m", doc("Radius of the circle [m].")]
+    angle_deg: Annotated[
+        Degrees, doc("Initial angle on the circle, counter-clockwise from x of W [deg].")
+    ] = 0.0
+    clockwise: Annotated[bool, doc("Whether the motion is clockwise.")] = False
 
 
 class Wall(Section):
     """Wall: a row of cylinders with gaps too narrow for the robot."""
 
-    start: Point
-    """Axis of the first cylinder in W [m]."""
-    end: Point
-    """Axis of the last cylinder in W [m]."""
-    radius: Radius = 0.12
-    """Radius of a cylinder [m]."""
-    gap: Annotated[float, Interval(ge=0.0, le=4.0), "m"] | None = None
-    """Maximum gap between neighbouring cylinders; default: 5/6 of the robot's diameter [m]."""
+    start: Annotated[Point, doc("Axis of the first cylinder in W [m].")]
+    end: Annotated[Point, doc("Axis of the last cylinder in W [m].")]
+    radius: Annotated[Radius, doc("Radius of a cylinder [m].")] = 0.12
+    gap: Annotated[
+        Annotated[float, Interval(ge=0.0, le=4.0), "m"] | None,
+        doc(
+            "Maximum gap between neighbouring cylinders; default: 5/6 of the robot's diameter [m]."
+        ),
+    ] = None
 
     def intervals(self, robot_radius: float) -> int:
         """Number of intervals between the cylinders, for a robot of some radius [m]."""
@@ -115,42 +106,69 @@ class Encounters(Section):
     reacts to the robot.
     """
 
-    n: Count = 0
-    """Number of these moving obstacles, distributed over the nominal walk [1]."""
-    speed_ratio: RatioRange = (0.4, 1.0)
-    """Minimum and maximum speed relative to `robot.speed.vx` [1]."""
-    bearing_deg: BearingRange = (0.0, 90.0)
-    """Range of the bearing of approach: 0 ahead, 180 behind, on either side [deg]."""
-    pace: Annotated[float, Interval(gt=0.0, le=1.0)] = 0.75
-    """Speed of the nominal walk relative to `robot.speed.vx` [1]."""
+    n: Annotated[
+        Count, doc("Number of these moving obstacles, distributed over the nominal walk [1].")
+    ] = 0
+    speed_ratio: Annotated[
+        RatioRange, doc("Minimum and maximum speed relative to `robot.speed.vx` [1].")
+    ] = (0.4, 1.0)
+    bearing_deg: Annotated[
+        BearingRange,
+        doc("Range of the bearing of approach: 0 ahead, 180 behind, on either side [deg]."),
+    ] = (0.0, 90.0)
+    pace: Annotated[
+        float,
+        Interval(gt=0.0, le=1.0),
+        doc("Speed of the nominal walk relative to `robot.speed.vx` [1]."),
+    ] = 0.75
 
 
 class TrackMover(Section):
     """Along recorded tracks: one mover for each id of a file that enters the field."""
 
     motion: Literal["track"]
-    file: Annotated[str, Len(1, 1000)]
-    """CSV file with the columns t [s], x [m], y [m] and id, next to the scenario or in the working
-    folder."""
-    data: Annotated[str, Len(0, 8_000_000)] = ""
-    """Content of the file, which saved scenarios have; default: read from the file."""
-    radius: Radius = 0.08
-    """Radius [m]."""
-    color: Color | None = None
-    """Colour; default: all colours in turn."""
-    scale: Annotated[float, Interval(ge=0.001, le=1000.0), "m"] | None = None
-    """Length in the world per length in the file; default: 1 [1]."""
-    time_scale: Annotated[float, Interval(ge=0.001, le=1000.0), "s"] | None = None
-    """Time in the world per time in the file; default: 1 [1]."""
-    offset: Point = (0.0, 0.0)
-    """Position of the origin of the file in W [m]."""
-    start: RecordedTime | None = None
-    """Time in the file at the start of the run; default: that of the first sample [s]."""
-    latest_start: RecordedTime | None = None
-    """The seed draws the start between `start` and this time in the file; default: `start` [s]."""
-    end: Literal["leave", "stay", "repeat"] = "leave"
-    """Before and after its samples, a mover is absent (leave), or waits and stays there (stay).
-    repeat: as leave, and the recording begins again after its end."""
+    file: Annotated[
+        str,
+        Len(1, 1000),
+        doc(
+            "CSV file with the columns t [s], x [m], y [m] and id, next to the scenario or in the "
+            "working folder."
+        ),
+    ]
+    data: Annotated[
+        str,
+        Len(0, 8_000_000),
+        doc("Content of the file, which saved scenarios have; default: read from the file."),
+    ] = ""
+    radius: Annotated[Radius, doc("Radius [m].")] = 0.08
+    color: Annotated[Color | None, doc("Colour; default: all colours in turn.")] = None
+    scale: Annotated[
+        Annotated[float, Interval(ge=0.001, le=1000.0), "m"] | None,
+        doc("Length in the world per length in the file; default: 1 [1]."),
+    ] = None
+    time_scale: Annotated[
+        Annotated[float, Interval(ge=0.001, le=1000.0), "s"] | None,
+        doc("Time in the world per time in the file; default: 1 [1]."),
+    ] = None
+    offset: Annotated[Point, doc("Position of the origin of the file in W [m].")] = (0.0, 0.0)
+    start: Annotated[
+        RecordedTime | None,
+        doc("Time in the file at the start of the run; default: that of the first sample [s]."),
+    ] = None
+    latest_start: Annotated[
+        RecordedTime | None,
+        doc(
+            "The seed draws the start between `start` and this time in the file; default: `start` "
+            "[s]."
+        ),
+    ] = None
+    end: Annotated[
+        Literal["leave", "stay", "repeat"],
+        doc(
+            "Before and after its samples, a mover is absent (leave), or waits and stays there "
+            "(stay). repeat: as leave, and the recording begins again after its end."
+        ),
+    ] = "leave"
 
 
 Mover = Annotated[
@@ -161,43 +179,66 @@ Mover = Annotated[
 class World(Section):
     """Field, obstacles, beacons and light; drawn obstacles are added to those placed by hand."""
 
-    size: tuple[Side, Side] = (5.0, 5.0)
-    """Size of the field along x and y of W, centred on the origin [m]."""
-    scale: Annotated[float, Interval(ge=0.05, le=20.0), "m"] = 1.0
-    """Size of obstacles' heights, beacons, lines and distances relative to those for HSR-VIII
-    [1]."""
-    n_static: Count = 12
-    """Number of drawn static obstacles [1]."""
-    n_moving: Count = 4
-    """Number of drawn moving obstacles [1]."""
-    radius: RadiusRange = (0.05, 0.12)
-    """Minimum and maximum radius of a drawn obstacle [m]."""
-    speed_ratio: RatioRange = (0.3, 0.7)
-    """Minimum and maximum speed of a drawn moving obstacle relative to `robot.speed.vx` [1]."""
-    motions: Annotated[tuple[Literal["shuttle", "circle", "wander"], ...], Len(1, 3)] = ("shuttle",)
-    """Motions of drawn moving obstacles, with equal probability."""
-    lane: LengthRange = (0.8, 1.8)
-    """Minimum and maximum length (shuttle), diameter (circle) or extent (wander) of a path [m]."""
-    encounters: Encounters = Encounters()
-    """Moving obstacles on collision courses."""
-    beacons: bool = True
-    """Whether the field has six beacons: two-colour landmarks at known places."""
-    beacon_displacement: Annotated[float, Interval(ge=-10.0, le=10.0), "m"] = 0.0
-    """Displacement of the first beacon from its known place, along the border [m]."""
-    brightness: Annotated[float, Interval(ge=0.1, le=2.0)] = 1.0
-    """Relative intensity of all lights [1]."""
-    obstacle: Annotated[tuple[StaticObstacle, ...], Len(0, 64)] = ()
-    """Static obstacles placed by hand."""
-    wall: Annotated[tuple[Wall, ...], Len(0, 16)] = ()
-    """Walls placed by hand."""
-    mover: Annotated[tuple[Mover, ...], Len(0, 64)] = ()
-    """Moving obstacles placed by hand."""
+    size: Annotated[
+        tuple[Side, Side], doc("Size of the field along x and y of W, centred on the origin [m].")
+    ] = (5.0, 5.0)
+    scale: Annotated[
+        float,
+        Interval(ge=0.05, le=20.0),
+        "m",
+        doc(
+            "Size of obstacles' heights, beacons, lines and distances relative to those for "
+            "HSR-VIII [1]."
+        ),
+    ] = 1.0
+    n_static: Annotated[Count, doc("Number of drawn static obstacles [1].")] = 12
+    n_moving: Annotated[Count, doc("Number of drawn moving obstacles [1].")] = 4
+    radius: Annotated[RadiusRange, doc("Minimum and maximum radius of a drawn obstacle [m].")] = (
+        0.05,
+        0.12,
+    )
+    speed_ratio: Annotated[
+        RatioRange,
+        doc(
+            "Minimum and maximum speed of a drawn moving obstacle relative to `robot.speed.vx` [1]."
+        ),
+    ] = (0.3, 0.7)
+    motions: Annotated[
+        tuple[Literal["shuttle", "circle", "wander"], ...],
+        Len(1, 3),
+        doc("Motions of drawn moving obstacles, with equal probability."),
+    ] = ("shuttle",)
+    lane: Annotated[
+        LengthRange,
+        doc(
+            "Minimum and maximum length (shuttle), diameter (circle) or extent (wander) of a path "
+            "[m]."
+        ),
+    ] = (0.8, 1.8)
+    encounters: Annotated[Encounters, doc("Moving obstacles on collision courses.")] = Encounters()
+    beacons: Annotated[
+        bool, doc("Whether the field has six beacons: two-colour landmarks at known places.")
+    ] = True
+    beacon_displacement: Annotated[
+        float,
+        Interval(ge=-10.0, le=10.0),
+        "m",
+        doc("Displacement of the first beacon from its known place, along the border [m]."),
+    ] = 0.0
+    brightness: Annotated[
+        float, Interval(ge=0.1, le=2.0), doc("Relative intensity of all lights [1].")
+    ] = 1.0
+    obstacle: Annotated[
+        tuple[StaticObstacle, ...], Len(0, 64), doc("Static obstacles placed by hand.")
+    ] = ()
+    wall: Annotated[tuple[Wall, ...], Len(0, 16), doc("Walls placed by hand.")] = ()
+    mover: Annotated[tuple[Mover, ...], Len(0, 64), doc("Moving obstacles placed by hand.")] = ()
 
 
 class Start(Section):
     """Initial pose of the robot; drawn by default."""
 
-    position: Point | None = None
-    """Position in W; default: drawn [m]."""
-    heading_deg: Degrees | None = None
-    """Heading, counter-clockwise from x of W; default: drawn [deg]."""
+    position: Annotated[Point | None, doc("Position in W; default: drawn [m].")] = None
+    heading_deg: Annotated[
+        Degrees | None, doc("Heading, counter-clockwise from x of W; default: drawn [deg].")
+    ] = None

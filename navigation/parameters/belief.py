@@ -4,7 +4,7 @@ from dataclasses import dataclass, field
 from typing import Annotated, Literal
 
 import numpy as np
-from annotated_types import Interval
+from annotated_types import Interval, doc
 from numpy.typing import NDArray
 
 from navigation.parameters.bounds import NonNegative, Positive
@@ -16,8 +16,13 @@ Array = NDArray[np.float64]
 class LocalizationParameters:
     """Kalman filter of the robot's pose."""
 
-    landmarks: Literal["known", "mapped"] = "known"
-    """known: beacons at known positions; mapped: static obstacles, mapped while walking (SLAM)."""
+    landmarks: Annotated[
+        Literal["known", "mapped"],
+        doc(
+            "known: beacons at known positions; mapped: static obstacles, mapped while walking "
+            "(SLAM)."
+        ),
+    ] = "known"
     # process noise of the position on top of the odometry's
     drift: Annotated[float, "m/s^0.5"] = 0.0001
     # the same of the heading [rad/√s]
@@ -86,11 +91,11 @@ class TrackingParameters:
     static_diffusion: Annotated[float, "m²/s"] = 5e-7  # random walk of a static obstacle
     # of each component of a mover's initial velocity
     velocity_sigma: Annotated[float, "m/s"] = 0.07
-    max_speed: Annotated[Positive, "m/s"] = 0.2
-    """Maximum speed of an obstacle [m/s]."""
+    max_speed: Annotated[Positive, "m/s", doc("Maximum speed of an obstacle [m/s].")] = 0.2
     reach_sigmas: float = 3.0  # radius of the reachable disc at the last detection [sigma]
-    reversal_rate: Annotated[NonNegative, "1/s"] = 1.0 / 12.0
-    """Rate at which a mover reverses its direction [1/s]."""
+    reversal_rate: Annotated[
+        NonNegative, "1/s", doc("Rate at which a mover reverses its direction [1/s].")
+    ] = 1.0 / 12.0
     start_rate: Annotated[float, "1/s"] = 0.01  # rate at which a static obstacle starts to move
     stop_rate: Annotated[float, "1/s"] = 0.01  # rate at which a mover stops
     correlation_time: float = 0.03  # of the errors of successive detections of one obstacle [s]
@@ -122,8 +127,9 @@ class TrackingParameters:
     path_width: Annotated[float, "m"] = 0.15
     reach_factor: float = 1.2  # range of a lost mover / (speed x time)
     lost_time: Annotated[float, "s"] = 0.35  # unseen time after which a track becomes particles
-    particles: Annotated[int, Interval(ge=2, le=1000)] = 16
-    """Number of particles per lost track [1]."""
+    particles: Annotated[
+        int, Interval(ge=2, le=1000), doc("Number of particles per lost track [1].")
+    ] = 16
     detection_probability: float = 0.8  # of an obstacle in clear view, per `detection_time`
     detection_time: float = 0.1  # interval between independent missed detections [s]
     min_effective_fraction: float = 0.35  # effective sample size / particles: below, resample
@@ -131,8 +137,9 @@ class TrackingParameters:
     velocity_jitter: Annotated[float, "m/s"] = 0.01  # roughening of resampled velocities
     min_existence: float = 0.05  # probability of the missed detections: below, redistribute
     candidates_per_particle: int = 4  # positions sampled per particle when redistributed
-    forget_time: Annotated[Positive, "s"] = 25.0
-    """Unseen time after which a track that may move is deleted [s]."""
+    forget_time: Annotated[
+        Positive, "s", doc("Unseen time after which a track that may move is deleted [s].")
+    ] = 25.0
     # the same for a track of fewer than `min_moving_hits`
     tentative_time: Annotated[float, "s"] = 12.0
     # distance within which a detection is certain in clear view
@@ -154,13 +161,12 @@ class TrackingParameters:
 class LocalMapParameters:
     """Confidence and occupancy grid around the robot."""
 
-    cell: Annotated[Positive, "m"] = 0.10
-    """Side of a cell [m]."""
-    size: Annotated[Positive, "m"] = 6.0
-    """Side of the map [m]."""
+    cell: Annotated[Positive, "m", doc("Side of a cell [m].")] = 0.10
+    size: Annotated[Positive, "m", doc("Side of the map [m].")] = 6.0
     attenuation: Annotated[float, "1/s"] = -0.03  # rate xi_lm of the confidence of unseen cells
-    range: Annotated[Positive, "m"] = 2.5
-    """Distance within which the floor counts as seen [m]."""
+    range: Annotated[Positive, "m", doc("Distance within which the floor counts as seen [m].")] = (
+        2.5
+    )
     free_rate: float = -6.0  # rate of the log odds of a cell seen empty [1/s]
     occupied_rate: float = 15.0  # rate of the log odds of a cell below a detection [1/s]
     max_look_time: float = 0.2  # maximum time credited to one frame [s]
@@ -171,13 +177,16 @@ class LocalMapParameters:
 class BeliefParameters:
     """All parameters of the belief."""
 
-    localization: LocalizationParameters = field(default_factory=LocalizationParameters)
-    """Robot pose."""
+    localization: Annotated[LocalizationParameters, doc("Robot pose.")] = field(
+        default_factory=LocalizationParameters
+    )
     mapping: MappingParameters = field(default_factory=MappingParameters)
     """Data association of mapped landmarks (SLAM)."""
     relocalization: RelocalizationParameters = field(default_factory=RelocalizationParameters)
     """Relocalization by the mapped landmarks."""
-    tracking: TrackingParameters = field(default_factory=TrackingParameters)
-    """Obstacle tracks."""
-    local_map: LocalMapParameters = field(default_factory=LocalMapParameters)
-    """Map around the robot."""
+    tracking: Annotated[TrackingParameters, doc("Obstacle tracks.")] = field(
+        default_factory=TrackingParameters
+    )
+    local_map: Annotated[LocalMapParameters, doc("Map around the robot.")] = field(
+        default_factory=LocalMapParameters
+    )

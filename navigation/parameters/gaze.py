@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 from math import pi
 from typing import Annotated, Literal
 
-from annotated_types import Ge, Gt, Interval, Le, Lt
+from annotated_types import Ge, Gt, Interval, Le, Lt, doc
 
 from navigation.parameters.bounds import NonNegative, Positive
 from navigation.parameters.risk import RiskParameters, UndetectedParameters
@@ -31,12 +31,20 @@ GazeMode = Literal[
 class EvaluationParameters:
     """Partial evaluations (1)-(4)."""
 
-    d_nm: Annotated[Positive, "m"] = 0.30
-    """Minimum distance of the sample points of the local map [m]."""
-    d_fm: Annotated[float, Ge(0.01), Le(50.0), "m"] = 1.30
-    """Maximum distance of the sample points of the local map [m]."""
-    map_ratio: Literal["printed", "fraction"] = "fraction"
-    """psi_lm: N_lp/N_cp as printed, or the fraction N_lp/(N_lp + N_cp)."""
+    d_nm: Annotated[
+        Positive, "m", doc("Minimum distance of the sample points of the local map [m].")
+    ] = 0.30
+    d_fm: Annotated[
+        float,
+        Ge(0.01),
+        Le(50.0),
+        "m",
+        doc("Maximum distance of the sample points of the local map [m]."),
+    ] = 1.30
+    map_ratio: Annotated[
+        Literal["printed", "fraction"],
+        doc("Experimental. psi_lm: N_lp/N_cp as printed, or the fraction N_lp/(N_lp + N_cp)."),
+    ] = "fraction"
 
     ring_step: Annotated[float, "m"] = 0.20  # distance of the sample points along a ray
     ray_step: float = pi / 18.0  # angle between the rays of sample points [rad]
@@ -67,50 +75,77 @@ class InformationParameters:
 class GazeParameters:
     """Gaze map (5)-(6) and the timing of the gaze."""
 
-    mode: GazeMode = "risk"
-    """risk: most risk removed per time, the default; integrated: (1)-(6); psi-lm, psi-sf, psi-ob,
-    psi-way: one evaluation alone; info: greedy information gain. Blind: sweep: sinusoidal pan;
-    triangle: pan at a constant rate; steps: stops from side to side; fixed: straight ahead."""
-    moved_by: Literal["head", "body"] = "head"
-    """Part that turns the camera: the head, or the body of a robot with a fixed camera."""
-    w_lm: NonNegative = 0.09
-    """Weight of the local map in (6) [1]."""
-    w_way: NonNegative = 0.23
-    """Weight of the waypoint in (6) [1]."""
-    w_sf: NonNegative = 0.23
-    """Weight of self-localization in (6) [1]."""
-    w_ob: NonNegative = 0.45
-    """Weight of obstacles in (6) [1]."""
-    step: Annotated[float, Ge(0.01), Le(7.0)] = pi / 18.0
-    """Resolution of the gaze map [rad]."""
-    box_fraction: Annotated[float, Gt(0.0), Le(0.5)] = 0.45
-    """Half width of the box of a vote as a fraction of the field of view [1]."""
-    obstacle_votes: Literal["mean", "sum"] = "sum"
-    """Votes of the obstacles in (6): divided by their number as printed, or summed."""
-    map_votes: Literal["mean", "each"] = "each"
-    """Vote of the local map: at the mean under-confident point as printed, or at each."""
-    candidates: Literal["obstacles", "beacons"] = "beacons"
-    """Candidates for self-localization: obstacles and beacons, or beacons alone."""
-    switch_ratio: Annotated[float, Ge(1.0), Le(100.0)] = 1.1
-    """Gain in the gaze map that moves the gaze of a mode with votes [1]."""
-    max_pan: Annotated[float, Ge(0.01), Le(7.0)] = pi / 2.0
-    """Maximum pan to either side [rad]."""
-    min_tilt: Annotated[float, Ge(-2.0), Lt(0.0)] = -pi / 3.0
-    """Lowest tilt [rad]."""
-    max_tilt: Annotated[float, Ge(0.0), Le(2.0)] = pi / 9.0
-    """Highest tilt [rad]."""
-    dwell: NonNegative = 0.1
-    """Dwell: minimum time between the arrival of the head and the next gaze [s]."""
-    fixed_tilt: Annotated[float, Ge(-2.0), Le(2.0)] = -0.45
-    """Tilt of the blind gazes [rad]."""
-    sweep_amplitude: NonNegative = 1.2
-    """Pan amplitude of the sweeps [rad]."""
-    sweep_period: Annotated[Positive, "s"] = 4.0
-    """Period of sine and triangle sweep [s]."""
-    sweep_stops: Annotated[int, Interval(ge=2, le=100)] = 4
-    """Number of stops of the step sweep [1]."""
-    sweep_frames: Annotated[int, Interval(ge=1, le=100)] = 2
-    """Number of sharp frames at each of its stops [1]."""
+    mode: Annotated[
+        GazeMode,
+        doc(
+            "risk: most risk removed per time, the default; integrated: (1)-(6); psi-lm, psi-sf, "
+            "psi-ob, psi-way: one evaluation alone; info: greedy information gain. Blind: sweep: "
+            "sinusoidal pan; triangle: pan at a constant rate; steps: stops from side to side; "
+            "fixed: straight ahead."
+        ),
+    ] = "risk"
+    moved_by: Annotated[
+        Literal["head", "body"],
+        doc("Part that turns the camera: the head, or the body of a robot with a fixed camera."),
+    ] = "head"
+    w_lm: Annotated[NonNegative, doc("Weight of the local map in (6) [1].")] = 0.09
+    w_way: Annotated[NonNegative, doc("Weight of the waypoint in (6) [1].")] = 0.23
+    w_sf: Annotated[NonNegative, doc("Weight of self-localization in (6) [1].")] = 0.23
+    w_ob: Annotated[NonNegative, doc("Weight of obstacles in (6) [1].")] = 0.45
+    step: Annotated[float, Ge(0.01), Le(7.0), doc("Resolution of the gaze map [rad].")] = pi / 18.0
+    box_fraction: Annotated[
+        float,
+        Gt(0.0),
+        Le(0.5),
+        doc(
+            "Experimental. Half width of the box of a vote as a fraction of the field of view [1]."
+        ),
+    ] = 0.45
+    obstacle_votes: Annotated[
+        Literal["mean", "sum"],
+        doc(
+            "Experimental. Votes of the obstacles in (6): divided by their number as printed, or "
+            "summed."
+        ),
+    ] = "sum"
+    map_votes: Annotated[
+        Literal["mean", "each"],
+        doc(
+            "Experimental. Vote of the local map: at the mean under-confident point as printed, "
+            "or at each."
+        ),
+    ] = "each"
+    candidates: Annotated[
+        Literal["obstacles", "beacons"],
+        doc(
+            "Experimental. Candidates for self-localization: obstacles and beacons, or beacons "
+            "alone."
+        ),
+    ] = "beacons"
+    switch_ratio: Annotated[
+        float,
+        Ge(1.0),
+        Le(100.0),
+        doc("Gain in the gaze map that moves the gaze of a mode with votes [1]."),
+    ] = 1.1
+    max_pan: Annotated[float, Ge(0.01), Le(7.0), doc("Maximum pan to either side [rad].")] = (
+        pi / 2.0
+    )
+    min_tilt: Annotated[float, Ge(-2.0), Lt(0.0), doc("Lowest tilt [rad].")] = -pi / 3.0
+    max_tilt: Annotated[float, Ge(0.0), Le(2.0), doc("Highest tilt [rad].")] = pi / 9.0
+    dwell: Annotated[
+        NonNegative,
+        doc("Dwell: minimum time between the arrival of the head and the next gaze [s]."),
+    ] = 0.1
+    fixed_tilt: Annotated[float, Ge(-2.0), Le(2.0), doc("Tilt of the blind gazes [rad].")] = -0.45
+    sweep_amplitude: Annotated[NonNegative, doc("Pan amplitude of the sweeps [rad].")] = 1.2
+    sweep_period: Annotated[Positive, "s", doc("Period of sine and triangle sweep [s].")] = 4.0
+    sweep_stops: Annotated[
+        int, Interval(ge=2, le=100), doc("Number of stops of the step sweep [1].")
+    ] = 4
+    sweep_frames: Annotated[
+        int, Interval(ge=1, le=100), doc("Number of sharp frames at each of its stops [1].")
+    ] = 2
 
     arrival_tolerance: float = 0.06  # distance from the target at which a saccade ends [rad]
     max_saccade_time: float = 0.6  # time until the next decision if the head does not arrive [s]

@@ -6,7 +6,7 @@ Public keys of a scenario have bounds and a docstring; all other fields are cons
 from dataclasses import dataclass
 from typing import Annotated, Literal
 
-from annotated_types import Gt, Lt
+from annotated_types import Gt, Lt, doc
 
 from navigation.parameters.bounds import NonNegative, Positive
 
@@ -15,36 +15,48 @@ from navigation.parameters.bounds import NonNegative, Positive
 class UnivectorParameters:
     """Univector field (7)-(10)."""
 
-    s_robot: Annotated[Positive, "m"] = 0.12
-    """Radius of the robot [m]."""
-    margin: Annotated[NonNegative, "m"] = 0.03
-    """Margin added to the robot's radius in S_r [m]."""
-    eta_vo: Annotated[NonNegative, "s"] = 0.5
-    """Gain of the extended radius on the speed of the obstacle [s]."""
-    eta_imp: Annotated[NonNegative, "m"] = 0.05
-    """Gain of the extended radius on the partial evaluations [m]."""
-    d_con: Annotated[Positive, "m"] = 0.80
-    """Distance within which the field bends towards the arrival heading [m]."""
-    arrival: Literal["hard", "ramped", "nposture"] = "ramped"
-    """(8): switched at d_con as printed, ramped in, or Kim's posture field."""
-    d_e: Annotated[Positive, "m"] = 0.20
-    """Radius offset of the spiral (9) [m]."""
-    d_b: Annotated[Positive, "m"] = 0.25
-    """Width of the outer band of (9) [m]."""
-    k_r: Annotated[Positive, "m"] = 0.30
-    """Curvature of the outer spiral (9) [m]."""
-    inside: Literal["zero", "outward"] = "outward"
-    """Field inside the extended radius: zero as printed, or straight outward."""
-    blend: Literal["weights", "distance"] = "distance"
-    """(10): fixed weights as printed, or weights by distance."""
-    w_muf: NonNegative = 0.75
-    """Weight of move-to-goal for fixed weights [1]."""
-    w_auf: NonNegative = 0.25
-    """Weight of avoid-obstacle for fixed weights [1]."""
-    grouping: bool = False
-    """Whether obstacles with gaps too narrow for the robot are passed on one side."""
-    side_memory: bool = False
-    """Whether the passing side of an obstacle is kept while it is near."""
+    s_robot: Annotated[Positive, "m", doc("Radius of the robot [m].")] = 0.12
+    margin: Annotated[NonNegative, "m", doc("Margin added to the robot's radius in S_r [m].")] = (
+        0.03
+    )
+    eta_vo: Annotated[
+        NonNegative, "s", doc("Gain of the extended radius on the speed of the obstacle [s].")
+    ] = 0.5
+    eta_imp: Annotated[
+        NonNegative, "m", doc("Gain of the extended radius on the partial evaluations [m].")
+    ] = 0.05
+    d_con: Annotated[
+        Positive, "m", doc("Distance within which the field bends towards the arrival heading [m].")
+    ] = 0.80
+    arrival: Annotated[
+        Literal["hard", "ramped", "nposture"],
+        doc("Experimental. (8): switched at d_con as printed, ramped in, or Kim's posture field."),
+    ] = "ramped"
+    d_e: Annotated[Positive, "m", doc("Radius offset of the spiral (9) [m].")] = 0.20
+    d_b: Annotated[Positive, "m", doc("Width of the outer band of (9) [m].")] = 0.25
+    k_r: Annotated[Positive, "m", doc("Curvature of the outer spiral (9) [m].")] = 0.30
+    inside: Annotated[
+        Literal["zero", "outward"],
+        doc(
+            "Experimental. Field inside the extended radius: zero as printed, or straight outward."
+        ),
+    ] = "outward"
+    blend: Annotated[
+        Literal["weights", "distance"],
+        doc("Experimental. (10): fixed weights as printed, or weights by distance."),
+    ] = "distance"
+    w_muf: Annotated[NonNegative, doc("Weight of move-to-goal for fixed weights [1].")] = 0.75
+    w_auf: Annotated[NonNegative, doc("Weight of avoid-obstacle for fixed weights [1].")] = 0.25
+    grouping: Annotated[
+        bool,
+        doc(
+            "Experimental. Whether obstacles with gaps too narrow for the robot are passed on one "
+            "side."
+        ),
+    ] = False
+    side_memory: Annotated[
+        bool, doc("Experimental. Whether the passing side of an obstacle is kept while it is near.")
+    ] = False
 
     omega_soe: float = 1.0  # weight of speed and uncertainty in (7) [1]
     k_alpha: float = 1.0  # arrival gain on the bearing of the destination [1]
@@ -72,20 +84,35 @@ class UnivectorParameters:
 class MovingObstacleParameters:
     """Dynamic virtual obstacle (11) and velocity modification."""
 
-    virtual_obstacle: Literal["off", "printed", "uncapped"] = "uncapped"
-    """(11): off, as printed, or uncapped with a remembered side."""
-    xi: Annotated[float, Gt(0.0), Lt(1.0)] = 0.6
-    """Convexity of the dynamic virtual obstacle [1]."""
-    velocity_modification: Literal["off", "closed", "sampled"] = "sampled"
-    """Velocity modification: off, roots of the quadratic, or sampled speeds."""
-    radius: Literal["extended", "physical"] = "physical"
-    """Radius in velocity modification: S_oe, or the physical radii and a margin."""
-    margin: Annotated[NonNegative, "m"] = 0.05
-    """Margin added to the physical radii [m]."""
-    horizon: Annotated[Positive, "s"] = 6.0
-    """Maximum time to collision in velocity modification [s]."""
-    wait_in_band: bool = True
-    """Whether a robot inside the collision band may brake, which only delays the collision."""
+    virtual_obstacle: Annotated[
+        Literal["off", "printed", "uncapped"],
+        doc("Experimental. (11): off, as printed, or uncapped with a remembered side."),
+    ] = "uncapped"
+    xi: Annotated[
+        float, Gt(0.0), Lt(1.0), doc("Convexity of the dynamic virtual obstacle [1].")
+    ] = 0.6
+    velocity_modification: Annotated[
+        Literal["off", "closed", "sampled"],
+        doc("Experimental. Velocity modification: off, roots of the quadratic, or sampled speeds."),
+    ] = "sampled"
+    radius: Annotated[
+        Literal["extended", "physical"],
+        doc(
+            "Experimental. Radius in velocity modification: S_oe, or the physical radii and a "
+            "margin."
+        ),
+    ] = "physical"
+    margin: Annotated[NonNegative, "m", doc("Margin added to the physical radii [m].")] = 0.05
+    horizon: Annotated[
+        Positive, "s", doc("Maximum time to collision in velocity modification [s].")
+    ] = 6.0
+    wait_in_band: Annotated[
+        bool,
+        doc(
+            "Experimental. Whether a robot inside the collision band may brake, which only delays "
+            "the collision."
+        ),
+    ] = True
 
     omega_dist: float = 12.0  # length of the virtual path in (11) as printed [1]
     path_time: Annotated[float, "s"] = 6.0  # length of the uncapped virtual path per relative speed
@@ -103,8 +130,7 @@ class MovingObstacleParameters:
 class UnseenGroundParameters:
     """Speed limit towards ground that was not seen recently."""
 
-    enabled: bool = True
-    """Whether unseen ground limits the speed."""
+    enabled: Annotated[bool, doc("Experimental. Whether unseen ground limits the speed.")] = True
 
     confidence: float = 0.3  # confidence below which ground counts as unseen [1]
     # nearest ground checked; a look 20 deg down shows none nearer
@@ -119,12 +145,18 @@ class UnseenGroundParameters:
 class SafetyFilterParameters:
     """Safety filter: time to collision of rolled-out footsteps."""
 
-    enabled: bool = True
-    """Whether the safety filter is used."""
-    reachable: bool = False
-    """Whether an unseen mover also counts as its reachable set."""
-    margin: Annotated[NonNegative, "m"] = 0.045
-    """Distance to the bodies of obstacles, for a stepping foot beyond `univector.s_robot` [m]."""
+    enabled: Annotated[bool, doc("Experimental. Whether the safety filter is used.")] = True
+    reachable: Annotated[
+        bool, doc("Experimental. Whether an unseen mover also counts as its reachable set.")
+    ] = False
+    margin: Annotated[
+        NonNegative,
+        "m",
+        doc(
+            "Distance to the bodies of obstacles, for a stepping foot beyond `univector.s_robot` "
+            "[m]."
+        ),
+    ] = 0.045
 
     headings: int = 24  # number of candidate directions [1]
     speeds: int = 6  # number of candidate speeds per direction [1]
@@ -168,8 +200,7 @@ class LandmarkParameters:
 class WaypointSearchParameters:
     """Waypoints around static obstacles that block the straight path."""
 
-    enabled: bool = False
-    """Whether waypoints are searched for."""
+    enabled: Annotated[bool, doc("Experimental. Whether waypoints are searched for.")] = False
 
     cell: Annotated[float, "m"] = 0.10  # side of a grid cell
     reach: Annotated[float, "m"] = 1.2  # maximum distance of the waypoint

@@ -8,6 +8,8 @@ from dataclasses import dataclass, field
 from math import pi
 from typing import Annotated
 
+from annotated_types import doc
+
 from navigation.parameters.bounds import Positive
 from navigation.parameters.gaze import EvaluationParameters, GazeParameters
 from navigation.parameters.motion import (
@@ -26,12 +28,15 @@ from navigation.parameters.planner import PlannerParameters
 class MissionParameters:
     """Via points and arrival at the goal."""
 
-    r_via: Annotated[Positive, "m"] = 0.15
-    """Distance at which a via point is passed [m]."""
-    r_goal: Annotated[Positive, "m"] = 0.05
-    """Distance at which the goal is reached and the turn to its heading begins [m]."""
-    heading_tolerance: Positive = 0.07
-    """Heading error at which the mission is done [rad]."""
+    r_via: Annotated[Positive, "m", doc("Distance at which a via point is passed [m].")] = 0.15
+    r_goal: Annotated[
+        Positive,
+        "m",
+        doc("Distance at which the goal is reached and the turn to its heading begins [m]."),
+    ] = 0.05
+    heading_tolerance: Annotated[
+        Positive, doc("Heading error at which the mission is done [rad].")
+    ] = 0.07
 
     # distance at which a robot that turns at the goal walks back
     r_release: Annotated[float, "m"] = 0.08

@@ -6,6 +6,8 @@ The constants of the baselines are the result of `scripts/tune_baselines.py`.
 from dataclasses import dataclass, field
 from typing import Annotated, Literal
 
+from annotated_types import doc
+
 from navigation.parameters.bounds import Positive
 
 Method = Literal["univector", "univector-plain", "n-posture", "apf", "orca", "dwa", "mppi"]
@@ -91,10 +93,12 @@ class MppiParameters:
 class PlannerParameters:
     """Planner: the method, and the parameters of the baselines."""
 
-    method: Method = "univector"
-    """Planner: the modified univector field of the profile, or a baseline."""
-    memory: Annotated[Positive, "s"] = 4.0
-    """Time unseen after which a baseline forgets a mover [s]."""
+    method: Annotated[
+        Method, doc("Planner: the modified univector field of the profile, or a baseline.")
+    ] = "univector"
+    memory: Annotated[
+        Positive, "s", doc("Time unseen after which a baseline forgets a mover [s].")
+    ] = 4.0
 
     # maximum position uncertainty a baseline adds to a radius
     max_sigma: Annotated[float, "m"] = 0.06

@@ -5,7 +5,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from hsr8.docstrings import docstrings
+from hsr8.keys import texts
 from hsr8.robots.scale import RobotScale
 from hsr8.scenario.schema import Scenario
 from hsr8.scenario.section import Section
@@ -89,7 +89,7 @@ def sections(annotation):
 
 def test_annotated_units_agree_with_the_documentation():
     for section in set(sections(Scenario)):
-        for key, text in docstrings(section).items():
+        for key, text in texts(section).items():
             name = f"{section.__name__}.{key}"
             if name in UNITS and name not in EXCEPTIONS:
                 assert f"[{UNITS[name]}]" in text, name
