@@ -23,7 +23,6 @@ COURSE = 'mission = {kind = "course"}\n'
             COURSE + "[navigation.evaluation]\nd_nm = 1.5",
             "navigation.evaluation.d_nm: must be at most d_fm = 1.3, got 1.5",
         ),
-        (COURSE + '[camera]\nlens = "wide"', "camera.lens: renamed to camera.preset"),
         (COURSE + '[camera]\nsource = "neck-reach"', 'requires navigation.gaze.mode = "fixed"'),
         (COURSE + "[camera]\nshutter_ms = 80", "is longer than period_ms = 60"),
         (
