@@ -1,6 +1,6 @@
 """Table ``[constants]``: parameters of the libraries that are not public keys.
 
-Studies change them: ``constants.navigation.gaze.risk.exponent = 2.0``.
+Studies change them: ``constants.navigation.gaze.risk.look_time = 0.3``.
 """
 
 from collections.abc import Iterator

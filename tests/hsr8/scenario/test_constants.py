@@ -7,21 +7,21 @@ from hsr8.scenario.constants import constant_names
 from hsr8.scenario.loader import dump, load_scenario, loads
 
 COURSE = 'mission = {kind = "course"}\n'
-EXPONENT = "navigation.gaze.risk.exponent"
+LOOK_TIME = "navigation.gaze.risk.look_time"
 
 
 @pytest.mark.parametrize("profile", ["extended", "paper"])
 def test_a_constant_is_changed_and_written_where_it_differs_from_the_profile(profile):
     usual = load_scenario("course", [f"navigation.profile={profile}"])
     assert "[constants" not in dump(usual)
-    changes = {f"constants.{EXPONENT}": 2.25, "constants.navigation.gaze.undetected.reach": 0.5}
+    changes = {f"constants.{LOOK_TIME}": 2.25, "constants.navigation.gaze.undetected.reach": 0.5}
     changed = load_scenario("course", {"navigation.profile": profile, **changes})
-    assert changed.navigation.gaze.risk.exponent == 2.25
+    assert changed.navigation.gaze.risk.look_time == 2.25
     assert changed.navigation.gaze.undetected.reach == 0.5
     assert changed.navigation.univector == usual.navigation.univector
     text = dump(changed)
     assert "[constants.navigation.gaze.undetected]\nreach = 0.5" in text.replace(
-        "exponent = 2.25\n", ""
+        "look_time = 2.25\n", ""
     )
     assert loads(text) == changed
 
@@ -30,8 +30,8 @@ def test_a_constant_is_changed_and_written_where_it_differs_from_the_profile(pro
     ("text", "wanted"),
     [
         (
-            "[navigation.gaze.risk]\nexponent = 2.0",
-            f"3: {EXPONENT}: a constant, not a setting; for studies, constants.{EXPONENT}",
+            "[navigation.gaze.risk]\nlook_time = 2.0",
+            f"3: {LOOK_TIME}: a constant, not a setting; for studies, constants.{LOOK_TIME}",
         ),
         (
             '[constants]\nnavigation.gaze.mode = "sweep"',
@@ -41,11 +41,11 @@ def test_a_constant_is_changed_and_written_where_it_differs_from_the_profile(pro
         (
             "[constants]\nnavigation.gaze.risk.exponen = 2.0",
             f"3: constants.navigation.gaze.risk.exponen: unknown constant; did you mean "
-            f"'{EXPONENT}'?",
+            f"'{LOOK_TIME}'?",
         ),
         (
-            f'[constants]\n{EXPONENT} = "two"',
-            f'3: constants.{EXPONENT}: must be a valid number, got "two"',
+            f'[constants]\n{LOOK_TIME} = "two"',
+            f'3: constants.{LOOK_TIME}: must be a valid number, got "two"',
         ),
         ("[constants]\ncamera.width = 3", "3: constants.camera.width: unknown constant"),
         ("constants = 3", "2: constants: must be a table"),
