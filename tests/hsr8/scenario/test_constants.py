@@ -39,8 +39,8 @@ def test_a_constant_is_changed_and_written_where_it_differs_from_the_profile(pro
             "expected navigation.gaze.mode",
         ),
         (
-            "[constants]\nnavigation.gaze.risk.exponen = 2.0",
-            f"3: constants.navigation.gaze.risk.exponen: unknown constant; did you mean "
+            "[constants]\nnavigation.gaze.risk.look_tim = 2.0",
+            f"3: constants.navigation.gaze.risk.look_tim: unknown constant; did you mean "
             f"'{LOOK_TIME}'?",
         ),
         (
