@@ -5,13 +5,15 @@ from itertools import pairwise
 from math import atan2, cos, hypot, sin
 from pathlib import Path
 
+from hsr8.recorder.derived import walk_of
 from hsr8.recorder.run.run import Run
 from hsr8.recorder.run.run_reader import open_run
+from hsr8.recorder.table import Table
 from hsr8.render.motion import Motion as TrueMotion
 from hsr8.render.motion import motion_of, rows_at
 from hsr8.render.shown_frame import ShownFrame, shown_frames
 from hsr8.render.walk_panels import INK, LEFT, RIGHT, contacts, outline
-from hsr8.render.walking_table import WalkingTable, walking_of
+from hsr8.robots.loaded import load_robot
 from hsr8.scenario.loader import load_scenario
 from hsr8.scenario.schema import Scenario
 from hsr8.world.field.generator import draw_layout
@@ -20,6 +22,7 @@ from navigation.belief.belief import Motion, Track
 from navigation.belief.tracks import Tracks
 from navigation.motion.extended_radius import extended_radius
 from navigation.partial_evaluation import psi_obstacle
+from walking.body.robot_model import RobotModel
 
 import numpy as np
 from figure_style import (
@@ -61,7 +64,8 @@ class Tour:
         layout: its world.
         frames: belief and decisions.
         motion: of robot and movers.
-        walked: how it walked.
+        walked: records of the run.
+        model: model of the robot.
         height: of the camera [m].
         collisions: times of all collisions (n,) [s].
     """
@@ -71,7 +75,8 @@ class Tour:
     layout: Layout
     frames: tuple[ShownFrame, ...]
     motion: TrueMotion
-    walked: WalkingTable
+    walked: Table
+    model: RobotModel
     height: float
     collisions: Array
 
@@ -87,7 +92,8 @@ def tour(path: Path) -> Tour:
         layout,
         shown_frames(run, run.frames["time"]),
         motion_of(run, len(layout.movers)),
-        walking_of(run),
+        run.records,
+        load_robot(scenario.robot.model).model,
         float(run.frames["capture_position"][0, 2]),
         run.events["time"][run.events["kind"] == "collision"],
     )
@@ -199,9 +205,9 @@ def _snapshot(axes: Axes, shown: Tour, frame: ShownFrame) -> None:
 
 
 def _footprints(axes: Axes, shown: Tour, time: float) -> None:
-    table = shown.walked.window(time - STEPS, time)
-    for foot, color in (("left", LEFT), ("right", RIGHT)):
-        soles = [outline(table, foot, rows) for rows in contacts(table, foot)]
+    walk = walk_of(shown.walked.window(time - STEPS, time), shown.model)
+    for foot, color in enumerate((LEFT, RIGHT)):
+        soles = [outline(walk, foot, rows) for rows in contacts(walk, foot)]
         axes.add_collection(
             PolyCollection(soles, facecolor=color, edgecolor="none", alpha=0.8, zorder=4)
         )

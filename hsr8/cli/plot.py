@@ -37,13 +37,13 @@ def main(options: Plot) -> int:
             "MPLCONFIGDIR: Matplotlib can write neither to the home nor to a temporary folder; "
             "expected MPLCONFIGDIR=DIR with a writable folder"
         ) from error
-    from hsr8.render.walking_table import walking_of  # noqa: PLC0415  loads the robot
+    from hsr8.robots.loaded import load_robot  # noqa: PLC0415  takes seconds
 
-    table = walking_of(run)
+    robot = load_robot(run.scenario().robot.model).model
     title = f"{run.manifest.get('scenario', run.path.name)}, seed {run.seed}"
     if (start, stop) != (0.0, end):
         title += f", {start:g} to {stop:g} s"
-    figure = draw(table.window(start, stop), options.what, title)
+    figure = draw(run.records.window(start, stop), robot, options.what, title)
     with writing("--out", out):
         save(figure, out)
     if options.json:

@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 from hsr8.evaluation.sums import mean, root_mean, total
 from hsr8.evaluation.track_metrics import track_metrics
 from hsr8.evaluation.walk_metrics import walk_metrics
+from hsr8.recorder.derived import truth_at
 from hsr8.recorder.table import Table
 from hsr8.world.field.certificate import Certificate
 from hsr8.world.field.layout import Layout
@@ -142,13 +143,6 @@ class _Arrival:
 
 def _has_goal(layout: Layout) -> bool:
     return len(layout.waypoints) > 0 and not layout.endless
-
-
-def truth_at(frames: Table, records: Table) -> Truth:
-    """Return the columns of the true motion in the record of each frame."""
-    rows = np.searchsorted(records["time"], frames["time"] - 1e-9)
-    columns = ("time", "robot", "obstacle_positions", "obstacle_velocities")
-    return {name: records[name][rows] for name in columns}
 
 
 def _arrival(frames: Table, truth: Truth, layout: Layout, mission: MissionParameters) -> _Arrival:

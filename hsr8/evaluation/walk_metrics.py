@@ -6,7 +6,7 @@ from math import isfinite
 import numpy as np
 from numpy.typing import NDArray
 
-from hsr8.recorder.arc import mean_velocity
+from hsr8.recorder.derived import mean_velocity, strides
 from hsr8.recorder.limit_bits import BITS
 from hsr8.recorder.table import Table
 from navigation.angles import wrap
@@ -15,7 +15,6 @@ from walking.phase import Phase
 Array = NDArray[np.float64]
 
 WARM_UP = 3.0  # velocities count from the first whole stride after this time [s]
-STRIDE = 2  # footsteps after which the gait repeats
 COMPONENTS = ("vx", "vy", "wz")
 REFERENCES = {"commanded": "command", "applied": "applied_velocity"}
 DOWN = [phase.value for phase in Phase if phase.down]
@@ -54,20 +53,20 @@ def stride_velocities(records: Table) -> dict[str, object]:
         Mean velocity, signed and root mean square error; None without a whole stride.
     """
     down = records["fallen"] | np.isin(records["phase"], DOWN)
-    strides = _strides(records, down)
-    if not strides:
+    whole = strides(records, down, WARM_UP)
+    if not whole:
         return {"mean_velocity": None, "velocity_error": None, "velocity_error_rms": None}
     poses = records["robot"].copy()
     poses[~down, 2] = _unwrapped(poses[~down, 2])
     time = records["time"]
     elapsed = np.diff(time)[:, None]
-    begins, ends = np.transpose(strides)
+    begins, ends = np.transpose(whole)
     duration = (time[ends] - time[begins])[:, None]
-    achieved = np.array([mean_velocity(poses[a], poses[b], time[b] - time[a]) for a, b in strides])
+    achieved = np.array([mean_velocity(poses[a], poses[b], time[b] - time[a]) for a, b in whole])
     errors = {}
     for name, column in REFERENCES.items():
         velocity = records[column]
-        moved = [np.cumsum(elapsed[a:b] * velocity[a:b], axis=0)[-1] for a, b in strides]
+        moved = [np.cumsum(elapsed[a:b] * velocity[a:b], axis=0)[-1] for a, b in whole]
         errors[name] = achieved - moved / duration
 
     def weighted(values: Array) -> Array:
@@ -81,29 +80,6 @@ def stride_velocities(records: Table) -> dict[str, object]:
             k: _named(np.sqrt(weighted(error**2))) for k, error in errors.items()
         },
     }
-
-
-def _strides(records: Table, down: NDArray[np.bool_]) -> list[tuple[int, int]]:
-    """Return first and last row of every whole stride on the feet."""
-    time, steps = records["time"].tolist(), records["step_count"].tolist()
-    standing = (records["phase"] == Phase.STANDING.value).tolist()
-    strides: list[tuple[int, int]] = []
-    begin: int | None = None
-    before = 0
-    for row, fallen in enumerate(down.tolist()):
-        if fallen:
-            begin = None
-        elif time[row] < WARM_UP:
-            before = steps[row]
-        elif begin is None:
-            if steps[row] != before or standing[row]:
-                begin, before = row, steps[row]
-        else:
-            still = standing[row] and time[row] - time[begin] >= 1.0 and steps[row] == before
-            if still or steps[row] - before >= STRIDE:
-                strides.append((begin, row))
-                begin, before = row, steps[row]
-    return strides
 
 
 def _unwrapped(angles: Array) -> list[float]:

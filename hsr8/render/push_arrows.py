@@ -1,12 +1,13 @@
 """Pushes of a run as arrows of visible length."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
+from hsr8.recorder.derived import Push
 from hsr8.render.motion import Motion
-from hsr8.render.walking_table import WalkingTable
 
 Array = NDArray[np.float64]
 Arrow = tuple[Array, Array]
@@ -36,30 +37,26 @@ class PushArrow:
 
 
 def push_arrows(
-    table: WalkingTable, motion: Motion, size: float = 1.0, weight: float = 1.0
+    pushes: Sequence[Push], motion: Motion, size: float = 1.0, weight: float = 1.0
 ) -> tuple[PushArrow, ...]:
     """Return the arrows of all pushes of a run.
 
     Args:
-        table: of the run.
-        motion: of the run.
+        pushes: pushes of the run.
+        motion: motion of the run.
         size: height of the robot relative to the default robot [1].
-        weight: of the robot relative to the default robot [1].
+        weight: weight of the robot relative to the default robot [1].
     """
     arrows = []
-    pushed = np.flatnonzero(table["push_impulse"] > 0.0)
-    firsts = np.unique(table["push_begin"][pushed], return_index=True)[1]
-    for row in pushed[firsts].tolist():
-        force = np.array([table[f"push_f{axis}"][row] for axis in "xyz"])
-        point = np.array([table[f"push_{axis}"][row] for axis in "xyz"])
-        newtons = float(np.linalg.norm(force))
+    for push in pushes:
+        newtons = float(np.linalg.norm(push.force))
         length = size * min(MAX_LENGTH, max(MIN_LENGTH, LENGTH * newtons / weight))
         arrows.append(
             PushArrow(
-                begin=float(table["push_begin"][row]),
-                impulse=float(table["push_impulse"][row]),
-                tip=point - GAP * size / newtons * force - motion.qpos[row, :3],
-                vector=length / newtons * force,
+                begin=push.begin,
+                impulse=push.impulse,
+                tip=push.point - GAP * size / newtons * push.force - motion.qpos[push.row, :3],
+                vector=length / newtons * push.force,
             )
         )
     return tuple(arrows)

@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from hsr8.errors import UsageError
+from hsr8.recorder.derived import pushes_of
 from hsr8.recorder.run.run import Run
 from hsr8.render.camera_overlay import CameraOverlay
 from hsr8.render.dashboard import Dashboard, DashboardFrame
@@ -19,7 +20,6 @@ from hsr8.render.scene_renderer import Image, SceneRenderer
 from hsr8.render.shown_frame import ShownFrame, shown_frames
 from hsr8.render.timeline import Timeline
 from hsr8.render.top_down import TRAIL
-from hsr8.render.walking_table import walking_of
 from hsr8.robots.loaded import load_robot
 from hsr8.robots.normal_form import HEAD_CAMERA
 from hsr8.robots.scale import DEFAULT_STATURE
@@ -79,7 +79,7 @@ class RunImages:
         size_ratio = self._robot.stature / DEFAULT_STATURE
         if any(kind == "push" for _, kind in self._events):
             weight = self._robot.model.measures().weight / HSR_VIII.weight
-            self._pushes = push_arrows(walking_of(run), self._motion, size_ratio, weight)
+            self._pushes = push_arrows(pushes_of(run.records), self._motion, size_ratio, weight)
         qpos = self._motion.qpos[self._rows]
         self._follow = FollowCamera(qpos, self._fps, self._speed, size_ratio)
 

@@ -15,8 +15,10 @@ from matplotlib.patches import Patch
 
 from hsr8.errors import UsageError
 from hsr8.files.atomic import draft
+from hsr8.recorder.derived import Walk, walk_of
+from hsr8.recorder.table import Table
 from hsr8.render import walk_panels as panels
-from hsr8.render.walking_table import WalkingTable
+from walking.body.robot_model import RobotModel
 
 What = Literal["walking", "zmp", "footsteps", "velocity", "torques", "tilt"]
 WIDTH = 11.0  # of a figure [inch]
@@ -35,7 +37,7 @@ STYLE: dict[Any, Any] = {
     "savefig.dpi": 150,
     "svg.hashsalt": "hsr8",
 }
-Draw = Callable[[Axes, WalkingTable], None]
+Draw = Callable[[Axes, Walk], None]
 
 
 @dataclass(frozen=True)
@@ -71,25 +73,27 @@ MIN_HEIGHT, MAX_HEIGHT = 1.5, 4.5  # of the view from above [inch]
 AXES_WIDTH = 0.8  # of the axes, a fraction of the figure [1]
 
 
-def draw(table: WalkingTable, what: What, title: str) -> Figure:
+def draw(records: Table, robot: RobotModel, what: What, title: str) -> Figure:
     """Draw a figure.
 
     Args:
-        table: the rows to draw.
+        records: the rows to draw.
+        robot: model of the robot.
         what: one group of panels, or all of them.
         title: of the figure.
 
     Raises:
         UsageError: too few rows.
     """
-    if len(table) < MIN_RECORDS:
-        raise UsageError(f"nothing to plot: only {len(table)} records in that time")
+    if len(records) < MIN_RECORDS:
+        raise UsageError(f"nothing to plot: only {len(records)} records in that time")
     groups = tuple(TIME_PANELS) if what == "walking" else (what,)
     rows = [panel for group in groups for panel in TIME_PANELS.get(group, ())]
-    above = _footsteps_height(table) if what in ("walking", "footsteps") else 0.0
+    walk = walk_of(records, robot)
+    above = _footsteps_height(walk) if what in ("walking", "footsteps") else 0.0
     heights = [panel.height for panel in rows]
     if rows:
-        heights.append(0.16 * (1 + len(table.active_limits())) + 0.12)
+        heights.append(0.16 * (1 + len(panels.active_limits(walk))) + 0.12)
     with rc_context(STYLE):
         figure = Figure(figsize=(WIDTH, above + sum(heights) + 0.9), layout="constrained")
         FigureCanvasAgg(figure)
@@ -100,13 +104,13 @@ def draw(table: WalkingTable, what: What, title: str) -> Figure:
             parts = figure.subfigures(2, 1, height_ratios=ratios, squeeze=False)[:, 0].tolist()
         if above:
             axes = parts[0].subplots()
-            panels.footsteps(axes, table)
+            panels.footsteps(axes, walk)
             axes.legend(loc="center left", bbox_to_anchor=(1.0, 0.5))
         if rows:
             column = parts[1].subplots(
                 len(heights), 1, sharex=True, squeeze=False, height_ratios=heights
             )
-            _draw_over_time(column[:, 0].tolist(), rows, table)
+            _draw_over_time(column[:, 0].tolist(), rows, walk)
     return figure
 
 
@@ -121,22 +125,21 @@ def save(figure: Figure, out: Path) -> None:
         figure.savefig(file, metadata=undated.get(out.suffix.lower()))
 
 
-def _draw_over_time(axes: list[Axes], rows: list[Panel], table: WalkingTable) -> None:
+def _draw_over_time(axes: list[Axes], rows: list[Panel], walk: Walk) -> None:
     for one, panel in zip(axes, rows, strict=False):
-        panel.draw(one, table)
+        panel.draw(one, walk)
         if panel.legend:
             handles = [*one.get_legend_handles_labels()[0], *panel.patches()]
             one.legend(handles=handles, loc="center left", bbox_to_anchor=(1.0, 0.5))
-    panels.lanes(axes[-1], table)
-    axes[-1].legend(handles=panels.lane_legend(table), loc="upper left", bbox_to_anchor=(1.0, 1.15))
-    panels.mark_pushes(axes, table)
-    axes[-1].set_xlim(float(table.time[0]), float(table.time[-1]))
+    panels.lanes(axes[-1], walk)
+    axes[-1].legend(handles=panels.lane_legend(walk), loc="upper left", bbox_to_anchor=(1.0, 1.15))
+    panels.mark_pushes(axes, walk)
+    axes[-1].set_xlim(float(walk.time[0]), float(walk.time[-1]))
     axes[-1].set_xlabel("time [s]")
 
 
-def _footsteps_height(table: WalkingTable) -> float:
+def _footsteps_height(walk: Walk) -> float:
     """Return the height of the view from above at equal scales [inch]."""
-    origin, yaw = table.points("robot")[0], float(table["robot_yaw"][0])
-    path = panels.to_local(table.points("robot"), origin, yaw)
+    path = panels.to_local(walk.pose[:, :2], walk.pose[0, :2], float(walk.pose[0, 2]))
     extent = np.ptp(path, axis=0) + 0.25
     return float(np.clip(AXES_WIDTH * WIDTH * extent[1] / extent[0], MIN_HEIGHT, MAX_HEIGHT))

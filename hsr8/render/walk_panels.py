@@ -9,8 +9,9 @@ from matplotlib.collections import PolyCollection
 from matplotlib.patches import Patch
 from numpy.typing import NDArray
 
-from hsr8.recorder.arc import mean_velocity
-from hsr8.render.walking_table import PHASES, WalkingTable
+from hsr8.recorder.derived import STRIDE, Speedometer, Walk, pushes_of
+from hsr8.recorder.limit_bits import LIMITS
+from walking.command_limits import Limit
 from walking.phase import Phase
 
 Array = NDArray[np.float64]
@@ -19,6 +20,8 @@ Array = NDArray[np.float64]
 BLUE, SKY, GREEN = "#0072B2", "#56B4E9", "#009E73"
 VERMILION, ORANGE, PURPLE, INK = "#D55E00", "#E69F00", "#AA4499", "#222222"
 LEFT, RIGHT = BLUE, VERMILION
+FEET = (LEFT, RIGHT)
+SWINGS = (Phase.RIGHT_SUPPORT, Phase.LEFT_SUPPORT)  # phases in which a foot is in the air
 PUSH = "#CC0044"
 CURVES = (
     ("cop", "ZMP measured", SKY, 0.9, "-"),
@@ -46,32 +49,36 @@ PHASE_NAMES = {
 }
 FOOTHOLD = 0.0005  # a foot lower than this is on the floor [m]
 MIN_SPANS = (0.1, 0.1, 0.4)  # of the shown ranges of vx, vy [m/s] and wz [rad/s]
-STEPS_PER_STRIDE = 2
 ARROW = 0.08  # drawn length of a push [m]
 DEFAULT_STRIDE = 0.7  # window of the velocity without footsteps [s]
 GROUPS = ("hip", "knee", "ankle")
 DASHES = ("-", (0, (4, 1.5)), (0, (1, 1)))
 
 
-def contacts(table: WalkingTable, foot: str) -> list[tuple[int, int]]:
-    """Return first and last row of every planned contact of a foot with the floor."""
-    swings = Phase.RIGHT_SUPPORT if foot == "left" else Phase.LEFT_SUPPORT
-    phase, lying = table["phase"], [k for k, p in enumerate(PHASES) if p.down]
-    swinging = (phase == PHASES.index(swings)) & (table[f"{foot}_z"] >= FOOTHOLD)
+def contacts(walk: Walk, foot: int) -> list[tuple[int, int]]:
+    """Return first and last row of every planned contact of a foot with the floor.
+
+    Args:
+        walk: walking of the run.
+        foot: 0 left, 1 right.
+    """
+    phase, lying = walk.records["phase"], [str(p) for p in Phase if p.down]
+    swinging = (phase == str(SWINGS[foot])) & (walk.feet[:, foot, 2] >= FOOTHOLD)
     down = ~swinging & ~np.isin(phase, lying)
     edges = np.flatnonzero(np.diff(np.concatenate([[0], down.astype(int), [0]])))
     return [(a, b - 1) for a, b in edges.reshape(-1, 2).tolist() if b - a > 1]
 
 
-def outline(table: WalkingTable, foot: str, rows: tuple[int, int]) -> Array:
-    """Return the corners of a sole in W (4, 2) [m] during a contact."""
-    chosen = slice(rows[0], rows[1] + 1)
-    x, y = np.median(table.points(foot)[chosen], axis=0).tolist()
-    yaw = float(np.median(np.unwrap(table[f"{foot}_yaw"][chosen])))
-    centre, half_length, half_width = table.sole
+def outline(walk: Walk, foot: int, rows: tuple[int, int]) -> Array:
+    """Return the corners of a sole in W (4, 2) [m] during a contact; arguments as of `contacts`."""
+    poses, sole = walk.feet[rows[0] : rows[1] + 1, foot], walk.model.sole
+    x, y = np.median(poses[:, :2], axis=0).tolist()
+    yaw = float(np.median(np.unwrap(poses[:, 3])))
     c, s = cos(yaw), sin(yaw)
-    corners = [(centre + u * half_length, v * half_width) for u, v in ((1, 1), (1, -1), (-1, -1))]
-    corners.append((centre - half_length, half_width))
+    corners = [
+        (sole.centre + u * sole.half_length, v * sole.half_width)
+        for u, v in ((1, 1), (1, -1), (-1, -1), (-1, 1))
+    ]
     return np.array([[x + c * u - s * v, y + s * u + c * v] for u, v in corners])
 
 
@@ -86,12 +93,12 @@ class WalkingFrame:
     """Frame of the robot without sway: its pose averaged over one stride.
 
     Args:
-        table: of the run.
+        walk: walking of the run.
     """
 
-    def __init__(self, table: WalkingTable) -> None:
-        poses = _poses(table)
-        width = min(_stride_rows(table), len(table))
+    def __init__(self, walk: Walk) -> None:
+        poses = walk.pose
+        width = min(_stride_rows(walk), len(walk))
         # Extrapolate both ends at constant velocity, so that the average does not lag.
         before, after = width // 2, width - 1 - width // 2
         first = poses[0] - (poses[min(width, len(poses) - 1)] - poses[0]) * _ramp(before, width)
@@ -116,29 +123,29 @@ class WalkingFrame:
         return np.column_stack([c * dx + s * dy, c * dy - s * dx])
 
 
-def along(axes: Axes, table: WalkingTable, axis: int) -> None:
+def along(axes: Axes, walk: Walk, axis: int) -> None:
     """Draw ZMP, CoM, DCM and soles along one axis of the robot over time.
 
     Args:
         axes: to draw into.
-        table: of the run.
+        walk: walking of the run.
         axis: 0 forward, 1 left.
     """
-    frame = WalkingFrame(table)
-    for foot, color in (("left", LEFT), ("right", RIGHT)):
+    frame = WalkingFrame(walk)
+    for foot, color in enumerate(FEET):
         bands = []
-        for first, last in contacts(table, foot):
-            sole = outline(table, foot, (first, last))
+        for first, last in contacts(walk, foot):
+            sole = outline(walk, foot, (first, last))
             rows = slice(first, last + 1)
             corners = np.array([frame.to_local(corner, rows)[:, axis] for corner in sole])
-            upper = np.column_stack([table.time[rows], corners.max(axis=0)])
-            lower = np.column_stack([table.time[rows], corners.min(axis=0)])
+            upper = np.column_stack([walk.time[rows], corners.max(axis=0)])
+            lower = np.column_stack([walk.time[rows], corners.min(axis=0)])
             bands.append(np.vstack([upper, lower[::-1]]))
         axes.add_collection(PolyCollection(bands, color=color, alpha=0.16, lw=0))
     for name, label, color, width, dash in CURVES:
         axes.plot(
-            table.time,
-            frame.to_local(table.points(name))[:, axis],
+            walk.time,
+            frame.to_local(getattr(walk, name))[:, axis],
             color=color,
             lw=width,
             ls=dash,
@@ -157,22 +164,21 @@ def sole_legend() -> list[Patch]:
     ]
 
 
-def footsteps(axes: Axes, table: WalkingTable) -> None:
+def footsteps(axes: Axes, walk: Walk) -> None:
     """Draw footsteps and the paths of ZMP and CoM from above."""
-    origin, yaw = table.points("robot")[0], float(table["robot_yaw"][0])
-    for foot, color in (("left", LEFT), ("right", RIGHT)):
-        intervals = contacts(table, foot)
-        soles = [to_local(outline(table, foot, rows), origin, yaw) for rows in intervals]
+    origin, yaw = walk.pose[0, :2], float(walk.pose[0, 2])
+    for foot, color in enumerate(FEET):
+        intervals = contacts(walk, foot)
+        soles = [to_local(outline(walk, foot, rows), origin, yaw) for rows in intervals]
         axes.add_collection(PolyCollection(soles, fc=color, alpha=0.25, lw=0))
         axes.add_collection(PolyCollection(soles, fc="none", ec=color, lw=0.7))
     for name, label, color, width, dash in CURVES:
         if name in ("zmp", "cop", "com"):
-            x, y = to_local(table.points(name), origin, yaw).T
+            x, y = to_local(getattr(walk, name), origin, yaw).T
             axes.plot(x, y, color=color, lw=width, ls=dash, label=label)
-    for row in _push_rows(table):
-        at = to_local(np.array([[table["push_x"][row], table["push_y"][row]]]), origin, yaw)[0]
-        force = np.array([[table["push_fx"][row], table["push_fy"][row]]])
-        arrow = to_local(force, np.zeros(2), yaw)[0]
+    for push in pushes_of(walk.records):
+        at = to_local(push.point[None, :2], origin, yaw)[0]
+        arrow = to_local(push.force[None, :2], np.zeros(2), yaw)[0]
         arrow *= ARROW / np.hypot(*arrow)
         axes.update_datalim([at - arrow])
         axes.annotate(
@@ -187,42 +193,34 @@ def footsteps(axes: Axes, table: WalkingTable) -> None:
     axes.set_ylabel("left [m]")
 
 
-def velocity(axes: Axes, table: WalkingTable, component: int) -> None:
+def velocity(axes: Axes, walk: Walk, component: int) -> None:
     """Draw the commanded, applied and achieved velocity; component 0 vx, 1 vy, 2 wz."""
-    name = ("vx", "vy", "wz")[component]
-    axes.plot(table.time, table[f"commanded_{name}"], color=INK, lw=0.9, ls="--", label="commanded")
-    axes.plot(table.time, table[f"applied_{name}"], color=ORANGE, lw=1.3, label="applied")
-    time, achieved = achieved_velocity(table)
+    for name, label, color, width, dash in (
+        ("command", "commanded", INK, 0.9, "--"),
+        ("applied_velocity", "applied", ORANGE, 1.3, "-"),
+    ):
+        values = walk.records[name][:, component]
+        axes.plot(walk.time, values, color=color, lw=width, ls=dash, label=label)
+    time, achieved = achieved_velocity(walk)
     if len(time):
         axes.plot(time, achieved[:, component], color=BLUE, lw=1.3, label="achieved")
     _at_least(axes, MIN_SPANS[component])
     axes.set_ylabel(("vx\n[m/s]", "vy\n[m/s]", "wz\n[rad/s]")[component])
 
 
-def achieved_velocity(table: WalkingTable) -> tuple[Array, Array]:
+def achieved_velocity(walk: Walk) -> tuple[Array, Array]:
     """Return the middle of each stride (n,) [s] and the velocity over it (n, 3)."""
-    width = _stride_rows(table)
-    poses = _poses(table)
-    period = float(np.median(np.diff(table.time)))
-    starts = range(max(0, len(table) - width))
-    rates = [mean_velocity(poses[k], poses[k + width], width * period) for k in starts]
-    middle = np.array([0.5 * (table.time[k] + table.time[k + width]) for k in starts])
-    return middle, np.array(rates).reshape(-1, 3)
+    measured = [*Speedometer().add(walk.records)]
+    return np.array([time for time, _ in measured]), np.reshape([v for _, v in measured], (-1, 3))
 
 
-def _poses(table: WalkingTable) -> Array:
-    """Return the true poses with unwrapped heading (n, 3)."""
-    yaw = np.unwrap(table["robot_yaw"])
-    return np.column_stack([table["robot_x"], table["robot_y"], yaw])
-
-
-def _stride_rows(table: WalkingTable) -> int:
+def _stride_rows(walk: Walk) -> int:
     """Return the number of rows per stride."""
-    period = float(np.median(np.diff(table.time)))
-    changes = table.time[np.flatnonzero(np.diff(table["steps"]) > 0)]
+    period = float(np.median(np.diff(walk.time)))
+    changes = walk.time[np.flatnonzero(np.diff(walk.records["step_count"]) > 0)]
     stride = DEFAULT_STRIDE
-    if len(changes) > STEPS_PER_STRIDE:
-        stride = STEPS_PER_STRIDE * float(np.median(np.diff(changes)))
+    if len(changes) > STRIDE:
+        stride = STRIDE * float(np.median(np.diff(changes)))
     return max(1, round(stride / period))
 
 
@@ -238,15 +236,15 @@ def _at_least(axes: Axes, span: float) -> None:
     axes.set_ylim(low - 0.5 * missing, high + 0.5 * missing)
 
 
-def torque(axes: Axes, table: WalkingTable, group: str) -> None:
+def torque(axes: Axes, walk: Walk, group: str) -> None:
     """Draw the torques of one group of leg joints and their limits."""
+    names, effort = walk.model.names, walk.model.tree.effort
     limit_max = 0.0
-    names = tuple(table.torque_limit)
-    for joint, dash in zip(table.groups[group], DASHES, strict=False):
-        for name, color in ((names[joint], LEFT), (names[6 + joint], RIGHT)):
-            torques, label = table[f"torque_{name}"], name.replace("_", " ")
-            axes.plot(table.time, torques, color=color, lw=0.9, ls=dash, label=label)
-            limit_max = max(limit_max, table.torque_limit[name])
+    for joint, dash in zip(walk.model.leg_groups()[group], DASHES, strict=False):
+        for k, color in ((joint, LEFT), (6 + joint, RIGHT)):
+            torques, label = walk.records["joint_torque"][:, k], names[k].replace("_", " ")
+            axes.plot(walk.time, torques, color=color, lw=0.9, ls=dash, label=label)
+            limit_max = max(limit_max, float(effort[k]))
     if isfinite(limit_max):
         for limit in (-limit_max, limit_max):
             axes.axhline(limit, color=PUSH, lw=0.9, ls=(0, (6, 2)))
@@ -254,26 +252,26 @@ def torque(axes: Axes, table: WalkingTable, group: str) -> None:
     axes.set_ylabel(f"{group}\n[N m]")
 
 
-def tilt(axes: Axes, table: WalkingTable) -> None:
+def tilt(axes: Axes, walk: Walk) -> None:
     """Draw the measured roll and pitch of the trunk."""
     for name, color in (("roll", BLUE), ("pitch", ORANGE)):
-        axes.plot(table.time, np.degrees(table[name]), color=color, lw=1.0, label=name)
-    most = max(2.0, 1.15 * degrees(float(np.abs([table["roll"], table["pitch"]]).max())))
+        axes.plot(walk.time, np.degrees(walk.records[name]), color=color, lw=1.0, label=name)
+    most = max(
+        2.0, 1.15 * degrees(float(np.abs([walk.records["roll"], walk.records["pitch"]]).max()))
+    )
     axes.set_ylim(-most, most)
     axes.set_ylabel("trunk tilt\n[deg]")
 
 
-def lanes(axes: Axes, table: WalkingTable) -> None:
+def lanes(axes: Axes, walk: Walk) -> None:
     """Draw the gait phase and the active limits of the command over time."""
-    end = table.time[-1] + float(np.median(np.diff(table.time)))
-    phase = table["phase"].astype(int)
-    for index, color in enumerate(LANES[p] for p in PHASES):
-        axes.broken_barh(
-            _runs(table.time, phase == index, end), (0.0, 0.8), color=color, alpha=0.75, lw=0
-        )
+    end = walk.time[-1] + float(np.median(np.diff(walk.time)))
+    for phase in Phase:
+        runs = _runs(walk.time, walk.records["phase"] == str(phase), end)
+        axes.broken_barh(runs, (0.0, 0.8), color=LANES[phase], alpha=0.75, lw=0)
     names = ["gait phase"]
-    for limit, rows in table.active_limits().items():
-        axes.broken_barh(_runs(table.time, rows, end), (len(names), 0.8), color=INK, lw=0)
+    for limit, rows in active_limits(walk).items():
+        axes.broken_barh(_runs(walk.time, rows, end), (len(names), 0.8), color=INK, lw=0)
         names.append(str(limit))
     axes.set_yticks([k + 0.4 for k in range(len(names))], names, fontsize="x-small")
     axes.set_ylim(len(names), -0.2)
@@ -281,29 +279,28 @@ def lanes(axes: Axes, table: WalkingTable) -> None:
     axes.grid(visible=False)
 
 
-def lane_legend(table: WalkingTable) -> list[Patch]:
+def lane_legend(walk: Walk) -> list[Patch]:
     """Return the legend of the gait phases, with falls only if there are any."""
-    present = {PHASES[int(index)] for index in np.unique(table["phase"])}
+    present = {*walk.records["phase"]}
     return [
         Patch(color=LANES[p], alpha=0.75, lw=0, label=text)
         for p, text in PHASE_NAMES.items()
-        if p in present or not p.down
+        if str(p) in present or not p.down
     ]
 
 
-def mark_pushes(panels: Sequence[Axes], table: WalkingTable) -> None:
+def mark_pushes(panels: Sequence[Axes], walk: Walk) -> None:
     """Draw a line for every push into all panels over time."""
-    for row in _push_rows(table):
+    for push in pushes_of(walk.records):
         for axes in panels:
-            axes.axvline(table["push_begin"][row], color=PUSH, lw=0.8, alpha=0.8, zorder=0)
+            axes.axvline(push.begin, color=PUSH, lw=0.8, alpha=0.8, zorder=0)
 
 
-def _push_rows(table: WalkingTable) -> list[int]:
-    """Return the first row of every push."""
-    begins = np.where(table["push_impulse"] > 0.0, table["push_begin"], np.nan)
-    new = ~np.isnan(begins) & (begins != np.concatenate([[np.nan], begins[:-1]]))
-    rows: list[int] = np.flatnonzero(new).tolist()
-    return rows
+def active_limits(walk: Walk) -> dict[Limit, NDArray[np.bool_]]:
+    """Return the rows (n,) in which each limit was active, without limits that never were."""
+    mask = walk.records["limits"]
+    active = {limit: (mask >> k) & 1 == 1 for k, limit in enumerate(LIMITS)}
+    return {limit: rows for limit, rows in active.items() if rows.any()}
 
 
 def _runs(time: Array, chosen: NDArray[np.bool_], end: float) -> list[tuple[float, float]]:

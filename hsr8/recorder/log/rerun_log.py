@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from hsr8.files.writing import failure
 from hsr8.recorder import palette
+from hsr8.recorder.derived import WorldFrame
 from hsr8.recorder.log.belief_layer import BeliefLayer
 from hsr8.recorder.log.blueprint import RobotView, blueprint
 from hsr8.recorder.log.camera_layer import CameraLayer
@@ -23,7 +24,6 @@ from hsr8.recorder.log_level import RATES, LogLevel
 from hsr8.recorder.recorder import Tables
 from hsr8.recorder.table import Table
 from hsr8.recorder.throttle import Throttle
-from hsr8.recorder.world_frame import WorldFrame
 from hsr8.robots.loaded import LoadedRobot
 from hsr8.robots.scale import DEFAULT_ROBOT, DEFAULT_STATURE
 from hsr8.robots.shown import visual_model

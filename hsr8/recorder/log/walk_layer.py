@@ -1,6 +1,5 @@
 """Walking: ZMP, CoM, DCM and soles on the floor and over time, torques, pushes."""
 
-from collections import deque
 from collections.abc import Sequence
 
 import numpy as np
@@ -8,13 +7,11 @@ import rerun as rr
 from numpy.typing import NDArray
 
 from hsr8.recorder import palette
-from hsr8.recorder.arc import mean_velocity
+from hsr8.recorder.derived import Speedometer, WorldFrame, loaded_cop
 from hsr8.recorder.limit_bits import LIMITS, limit_bits
 from hsr8.recorder.log.channel import BlockStream, Channel
 from hsr8.recorder.log.plot_layer import BLUE, GREEN, GREY, ORANGE, RED, SAND, VIOLET, Curves, Lane
 from hsr8.recorder.table import Table
-from hsr8.recorder.world_frame import LIGHT, WorldFrame
-from navigation.angles import wrap
 from walking.body.robot_model import RobotModel
 from walking.command_limits import Limit
 from walking.robot_measures import HSR_VIII
@@ -35,8 +32,6 @@ FLOOR = 0.006  # height of drawings on the floor [m]
 PIN = 0.16  # height of the pins that mark points on the floor [m]
 ARROW = 0.025  # drawn length of a push per newton [m/N]
 GAP = 0.07  # between the tip of an arrow and the point of action [m]
-STRIDE = 2  # footsteps over which the achieved velocity is measured
-IDLE_WINDOW = 1.0  # of the achieved velocity without footsteps [s]
 ROUTINE = Limit.LANDING_FROZEN  # active at the end of every step, not logged
 SIDES = ((BLUE, SAND, GREEN, GREY), (ORANGE, RED, VIOLET, GREY))  # of left and right leg
 
@@ -92,7 +87,7 @@ class WalkLayer:
         self._tilt = Curves(stream, "/plots/tilt", (("roll [deg]", BLUE), ("pitch [deg]", ORANGE)))
         self._phase = Lane(stream, "/state/gait", GAIT)
         self._limits = Channel(stream, "/command_limits", rr.TextLog)
-        self._meter = _Speedometer()
+        self._meter = Speedometer()
         self._interval: tuple[str, int] | None = None
         self._active = 0  # limits, one bit each
         self._pushed = False
@@ -101,8 +96,7 @@ class WalkLayer:
         """Take records at the rate of the plots."""
         times, frame = records["time"].tolist(), WorldFrame(records)
         planned, com, dcm = (frame.point(records[name]) for name in ("zmp", "com", "measured_dcm"))
-        loaded = records["foot_load"].sum(axis=1, keepdims=True) > LIGHT
-        measured = np.where(loaded, records["cop"], np.nan)
+        measured = loaded_cop(records)
         corners = [len(area) for area in records["support"]]
         rows = np.repeat(np.arange(len(times)), corners)
         support = frame.point(np.concatenate(records["support"]), rows)
@@ -124,13 +118,9 @@ class WalkLayer:
 
     def watch(self, records: Table) -> None:
         """Take every record, for footsteps and pushes shorter than the period of the plots."""
-        columns = (records["time"], records["robot"], records["step_count"])
-        for time, robot, steps in zip(*(column.tolist() for column in columns), strict=True):
-            measured = self._meter.add(time, robot, steps)
-            if measured is not None:
-                middle, velocity = measured
-                for curves, value in zip(self._achieved, velocity, strict=True):
-                    curves.add([middle], np.array([[value]]))
+        for middle, velocity in self._meter.add(records):
+            for curves, value in zip(self._achieved, velocity.tolist(), strict=True):
+                curves.add([middle], np.array([[value]]))
         pushes = records["pushes"]
         vectors = self._arrow * pushes["force"]
         reach = 1.0 + self._gap / np.maximum(np.linalg.norm(vectors, axis=1, keepdims=True), 1e-9)
@@ -202,37 +192,6 @@ class WalkLayer:
             line = f"{text}: commanded {commanded}, applied {applied}"
             level = "WARN" if names else "INFO"
             self._limits.add(float(records["time"][row]), text=[line], level=[level])
-
-
-class _Speedometer:
-    """Mean velocity over one stride, once per footstep."""
-
-    def __init__(self) -> None:
-        self._marks: deque[tuple[float, Array]] = deque(maxlen=STRIDE + 1)
-        self._steps = 0
-        self._yaw = 0.0
-
-    def add(self, time: float, robot: list[float], steps: int) -> tuple[float, list[float]] | None:
-        """Return the middle of the stride [s] and the velocity, if a stride ends.
-
-        Args:
-            time: of the record [s].
-            robot: true pose.
-            steps: completed steps.
-        """
-        x, y, yaw = robot
-        self._yaw += wrap(yaw - self._yaw)
-        idle = not self._marks or time - self._marks[-1][0] >= IDLE_WINDOW - 1e-9
-        if steps == self._steps and not idle:
-            return None
-        self._steps = steps
-        pose = np.array([x, y, self._yaw])
-        self._marks.append((time, pose))
-        first, start = self._marks[0] if not idle else self._marks[max(0, len(self._marks) - 2)]
-        elapsed = time - first
-        if elapsed <= 0.0:
-            return None
-        return first + 0.5 * elapsed, mean_velocity(start, pose, elapsed).tolist()
 
 
 def _described(velocity: Array) -> str:

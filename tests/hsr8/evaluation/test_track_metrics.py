@@ -3,8 +3,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from hsr8.evaluation.metrics import truth_at
 from hsr8.evaluation.track_metrics import owners, track_metrics
+from hsr8.recorder.derived import truth_at
 from navigation.belief.belief import Motion
 
 DT = 0.06

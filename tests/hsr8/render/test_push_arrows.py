@@ -1,27 +1,25 @@
 import numpy as np
 import pytest
 
+from hsr8.recorder.derived import Push
 from hsr8.render.motion import Motion
 from hsr8.render.push_arrows import GAP, SHOWN, arrows_at, push_arrows
-from hsr8.render.walking_table import COLUMNS, WalkingTable
 
 
 @pytest.fixture
 def run():
     """Two pushes that follow at once, the robot being 1 m up along x."""
-    time = 0.02 * np.arange(100)
-    columns = {name: np.zeros(100) for name in COLUMNS}
-    columns["push_fx"][10:13], columns["push_fy"][13:15] = 10.0, -5.0
-    columns["push_begin"][10:13], columns["push_impulse"][10:13] = 0.19, 0.5
-    columns["push_begin"][13:15], columns["push_impulse"][13:15] = 0.245, 0.2
-    columns["push_x"][10:15], columns["push_z"][10:15] = 1.0, 0.3
+    point = np.array([1.0, 0.0, 0.3])
+    pushes = (
+        Push(10, 0.19, 0.5, point, np.array([10.0, 0.0, 0.0])),
+        Push(13, 0.245, 0.2, point, np.array([0.0, -5.0, 0.0])),
+    )
     qpos = np.zeros((100, 33))
     qpos[:, 0] = 1.0
-    table = WalkingTable(time, columns, (0.01, 0.05, 0.03), {}, {})
-    return table, Motion(time, qpos, np.zeros((100, 0, 2)))
+    return pushes, Motion(0.02 * np.arange(100), qpos, np.zeros((100, 0, 2)))
 
 
-def test_pushes_are_distinguished_and_have_their_impulse(run):
+def test_arrows_end_before_the_point_of_the_force(run):
     first, second = push_arrows(*run)
     assert (first.begin, second.begin) == pytest.approx((0.19, 0.245))
     assert (first.impulse, second.impulse) == pytest.approx((0.5, 0.2))
