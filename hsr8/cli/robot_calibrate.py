@@ -51,13 +51,13 @@ def main(options: RobotCalibrate) -> int:
         if not options.quiet:
             print(f"trial {number:3d}   {line}", file=sys.stderr, flush=True)
 
-    measured = asdict(calibrate(robot, report))
+    measured, warnings = calibrate(robot, report)
     result = Calibration.model_validate(
         {
             "date": datetime.now(UTC).date().isoformat(),
             "version": VERSION,
             "command": shlex.join(["hsr8", "robot", "calibrate", options.robot]),
-            **measured,
+            **asdict(measured),
         }
     )
     text = source.read_text("utf-8")
@@ -67,12 +67,13 @@ def main(options: RobotCalibrate) -> int:
         atomic.write_text(target, with_calibration(text, result))
     values = result.model_dump()
     if options.json:
-        print(atomic.dumps({"robot": robot.name, "file": str(target), "calibration": values}))
+        result_of = {"robot": robot.name, "file": str(target), "calibration": values}
+        print(atomic.dumps({**result_of, "warnings": warnings}))
     elif not options.quiet:
         flat = {**values.pop("speed"), **values}
         named = {f"{key}_{UNITS[key]}" if key in UNITS else key: v for key, v in flat.items()}
         Console(highlight=False).print(tables.facts(named, robot.name))
-        print(f"description {target}")
+        print("\n".join([*warnings, f"description {target}"]))
     return 0
 
 

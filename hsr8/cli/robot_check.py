@@ -29,7 +29,7 @@ def main(options: RobotCheck) -> int:
             print(f"{result.direction:<12}{_outcome(result)}", file=sys.stderr, flush=True)
 
     walks, joints = check_robot(robot, report)
-    failures = reasons(walks, joints)
+    failures = reasons(robot, walks, joints)
     if options.json:
         result = {"robot": robot.name, "passed": not failures, "reasons": failures}
         lists = {"walks": list(map(asdict, walks)), "joints": list(map(asdict, joints))}

@@ -13,10 +13,8 @@ from hsr8.files import atomic
 from hsr8.render.png import write_png
 from hsr8.render.portrait import portrait
 from hsr8.robots.description_file import description_text
-from hsr8.robots.facts import facts
-from hsr8.robots.inspection import Inspection, inspect
+from hsr8.robots.inspection import Inspection, facts, inspect, load_inspected
 from hsr8.robots.loaded import LoadedRobot
-from hsr8.robots.trial_load import load_inspected
 
 
 def main(options: RobotInspect) -> int:
@@ -84,7 +82,7 @@ def _show(
     """Print the findings, and the numbers of the robot unless it is refused."""
     findings = [asdict(finding) for finding in inspection.findings]
     numbers = None if robot is None else facts(robot)
-    notes = [] if robot is None else list(robot.notes)
+    notes = list(inspection.notes if robot is None else robot.notes)
     if options.json:
         result = {"model": str(inspection.model), "findings": findings, "robot": numbers}
         print(atomic.dumps({**result, "notes": notes, "refusal": refusal and str(refusal)}))

@@ -8,8 +8,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from hsr8.robots.normal_form import COLLISION_GROUP
-from hsr8.robots.posed import Posed
 from hsr8.robots.roles import Roles
+from hsr8.robots.skeleton import Posed
 
 Array = NDArray[np.float64]
 

@@ -29,7 +29,7 @@ def defaults_of(model: str) -> RobotDefaults:
     if model == DEFAULT_ROBOT:
         return RobotDefaults()
     robot = load_robot(model)
-    speed = _speed(robot)
+    speed = {**navigation_speed(robot), "acceleration": _acceleration(robot)}
     measures = robot.model.measures()
     scale = RobotScale(
         length=measures.leg / HSR_VIII.leg,
@@ -51,16 +51,28 @@ def defaults_of(model: str) -> RobotDefaults:
     return RobotDefaults(scale, table)
 
 
-def _speed(robot: LoadedRobot) -> dict[str, float]:
-    """Return the speed limits of navigation: similar to HSR-VIII, within the envelope."""
-    measures, limits = robot.model.measures(), robot.parameters.limits
-    length, time = measures.leg / HSR_VIII.leg, measures.time / HSR_VIII.time
+def navigation_speed(robot: LoadedRobot) -> dict[str, float]:
+    """Return the speed limits of navigation: similar to HSR-VIII, within the robot's envelope."""
     calibration = robot.description.calibration
-    envelope = limits if calibration is None else calibration.speed
-    similar = {k: v / time if k == "wz" else v * length / time for k, v in SPEED.items()}
-    speed = {k: min(v, USED * getattr(envelope, k)) for k, v in similar.items()}
-    acceleration = ACCELERATION * length / time**2 * speed["vx"] / similar["vx"]
-    return {key: _rounded(value) for key, value in {**speed, "acceleration": acceleration}.items()}
+    envelope = robot.parameters.limits if calibration is None else calibration.speed
+    similar = _similar_speed(robot)
+    return {k: _rounded(min(v, USED * getattr(envelope, k))) for k, v in similar.items()}
+
+
+def _similar_speed(robot: LoadedRobot) -> dict[str, float]:
+    measures = robot.model.measures()
+    length, time = measures.leg / HSR_VIII.leg, measures.time / HSR_VIII.time
+    return {k: v / time if k == "wz" else v * length / time for k, v in SPEED.items()}
+
+
+def _acceleration(robot: LoadedRobot) -> float:
+    """Return the acceleration of navigation [m/s²]."""
+    measures, calibration = robot.model.measures(), robot.description.calibration
+    envelope = robot.parameters.limits if calibration is None else calibration.speed
+    length, time = measures.leg / HSR_VIII.leg, measures.time / HSR_VIII.time
+    similar = _similar_speed(robot)["vx"]
+    fraction = min(similar, USED * envelope.vx) / similar
+    return _rounded(ACCELERATION * length / time**2 * fraction)
 
 
 def _walking(robot: LoadedRobot) -> dict[str, Any]:

@@ -212,7 +212,10 @@ class RobotDescription(Table):
         Name | None,
         doc("SRDF file with a group state that completes `posture`; relative to the description."),
     ] = None
-    state: Annotated[Name | None, doc("Name of that group state.")] = None
+    state: Annotated[
+        Name | None,
+        doc("Name of that group state; without `srdf`, of a keyframe of an MJCF file."),
+    ] = None
     camera: Annotated[
         Camera | None,
         doc(
@@ -235,6 +238,10 @@ class RobotDescription(Table):
         Servo | None,
         doc("Position servos of the model, or by rule; default: own if the model has them."),
     ] = None
+    linkage: Annotated[
+        Literal["serial"] | None,
+        doc("Drive the joints of legs with rods, couplings, gears or several motors directly."),
+    ] = None
     effort: Annotated[
         dict[Name, Positive],
         doc("Maximum torque by joint, where the model is silent or wrong [N m]."),
@@ -250,6 +257,9 @@ class RobotDescription(Table):
     rigid: Annotated[
         tuple[Name, ...], doc("Joints to fix at their angle in the ready posture.")
     ] = ()
+    repair_inertia: Annotated[
+        bool, doc("Whether an impossible inertia is replaced by that of a ball of equal mass.")
+    ] = False
     packages: Annotated[
         dict[Name, Name],
         doc("Folder of each package named in a ``package://`` path of a URDF file."),
@@ -268,9 +278,8 @@ class RobotDescription(Table):
 
     @model_validator(mode="after")
     def _consistent(self) -> "RobotDescription":
-        for key, other in (("srdf", "state"), ("state", "srdf")):
-            if getattr(self, key) is not None and getattr(self, other) is None:
-                raise ValueError(f"{other}: missing, got {key} alone; expected both or neither")
+        if self.srdf is not None and self.state is None:
+            raise ValueError("state: missing, got srdf alone; expected both")
         for key in ("head_rate", "head_acceleration"):
             if getattr(self, key) is not None and self.head is None:
                 raise ValueError(f"{key}: the description has no head; expected the key head")

@@ -9,8 +9,19 @@ import mujoco
 import numpy as np
 from numpy.typing import NDArray
 
-from hsr8.robots.limbs import Limb, Stance, find_stance, foot_joint, size_of, turned_back
-from hsr8.robots.roles import LEG_JOINTS
+from hsr8.robots.limbs import (
+    Limb,
+    Stance,
+    find_stance,
+    foot_joint,
+    no_stance,
+    not_hinged,
+    side_vote,
+    size_of,
+    toe_vote,
+    turned_back,
+)
+from hsr8.robots.prepare import LEG_JOINTS
 from hsr8.robots.skeleton import PARALLEL, Skeleton, root_of, skeleton_of
 
 Array = NDArray[np.float64]
@@ -19,12 +30,11 @@ Pair = tuple[str, str]
 
 MAX_HEAD = 0.2  # mass of a head in masses of the robot [1]
 MID_PLANE = 0.03  # distance of the yaw axis of a neck from the mid plane, in sizes of the robot [1]
+MID_HEAD = 0.08  # distance of the mass of a head from that plane [1]
 SHOULDER = 0.15  # extent of a shoulder, in sizes of the robot [1]
 MIN_LIMITS = 0.3  # difference of the limits of a knee that shows where it bends [rad]
-MIN_TOE = 0.01  # centre of mass of a foot forward of its ankle, in sizes of the robot [1]
 SIDEWAYS = 0.7  # minimum cosine between an arm that is to be lowered and the left [1]
 SPREAD = 0.25  # angle of hanging arms from the vertical [rad]
-SIDES = ("lr", "gd", "id", "sd", "ed", "hm", "zy")  # first letters of left and right
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -87,9 +97,6 @@ def guess(model: mujoco.MjModel) -> Guess:
     skeleton = skeleton_of(model, root_of(model))
     roles = guess_roles(skeleton, tuple(_views(model, skeleton)))
     base = Finding("base", skeleton.root, "certain", "has the free joint")
-    if not skeleton.free:
-        reason = f"body {skeleton.root!r} has no free joint: add <freejoint/> to it"
-        base = Finding("base", "", "missing", reason)
     return replace(roles, findings=(base, *roles.findings))
 
 
@@ -102,11 +109,8 @@ def guess_roles(skeleton: Skeleton, cameras: Sequence[CameraView] = ()) -> Guess
     """
     stance = find_stance(skeleton)
     if stance is None:
-        reason = (
-            "no two mirrored chains with three pitching joints end lowest, below their hips, at "
-            "zero angles"
-        )
-        return Guess(skeleton.root, findings=(Finding("feet", "", "missing", reason),))
+        missing = Finding("feet", "", "missing", no_stance(skeleton))
+        return Guess(skeleton.root, findings=(missing,))
     stance, forward = _facing(stance)
     feet, legs, feet_finding = _feet(stance)
     head, head_finding = _head(stance)
@@ -139,7 +143,7 @@ def _facing(stance: Stance) -> tuple[Stance, Finding]:
     votes = {
         "knees bend forward": (3, _knee_vote(stance)),
         "names of left and right": (3, _name_vote(stance)),
-        "feet are longer in front": (1, _toe_vote(stance)),
+        "feet are longer in front": (1, toe_vote(stance.skeleton, *_to_feet(stance))),
         "x of the root": (1, int(np.sign(round(float(stance.rotation[0, 0]))))),
     }
     total = sum(weight * vote for weight, vote in votes.values())
@@ -159,12 +163,17 @@ def _facing(stance: Stance) -> tuple[Stance, Finding]:
     return stance, Finding("forward", part, sureness, reason)
 
 
+def _to_feet(stance: Stance) -> list[tuple[int, ...]]:
+    """Return the joints of both legs down to the foot, without toes."""
+    last = foot_joint(stance.skeleton, stance.legs.left)
+    return [leg[: last + 1] for leg in (stance.legs.left, stance.legs.right)]
+
+
 def _knee_vote(stance: Stance) -> int:
     """Return 1 if the ranges let the knees bend forward, -1 if backward, else 0."""
     skeleton, bend = stance.skeleton, 0.0
-    for leg in (stance.legs.left, stance.legs.right):
-        last = foot_joint(skeleton, leg)
-        pitching = [j for j in leg[: last + 1][-LEG_JOINTS:] if skeleton.is_pitch(j)]
+    for leg in _to_feet(stance):
+        pitching = [j for j in leg[-LEG_JOINTS:] if skeleton.is_pitch(j)]
         lower, upper = skeleton.ranges[pitching[1]] * np.sign(skeleton.axes[pitching[1], 1])
         if np.isfinite(lower) and np.isfinite(upper) and abs(lower + upper) > MIN_LIMITS:
             bend += lower + upper
@@ -172,37 +181,23 @@ def _knee_vote(stance: Stance) -> int:
 
 
 def _name_vote(stance: Stance) -> int:
-    """Return 1 if the names of a leg differ as left and right do, -1 if as right and left."""
-    skeleton = stance.skeleton
-    for names in (skeleton.bodies, skeleton.joints):
-        left, right = (names[leg[-1]].lower() for leg in (stance.legs.left, stance.legs.right))
-        letters = next((a + b for a, b in zip(left, right, strict=False) if a != b), "")
-        if letters in SIDES:
-            return 1
-        if letters[::-1] in SIDES:
-            return -1
-    return 0
-
-
-def _toe_vote(stance: Stance) -> int:
-    """Return 1 if the masses of the feet are forward of the ankles, -1 if behind, else 0."""
-    skeleton, forward = stance.skeleton, 0.0
-    for leg in (stance.legs.left, stance.legs.right):
-        ankle = [j for j in leg if skeleton.is_pitch(j)][-1]
-        forward += 0.5 * float(skeleton.coms[leg[-1], 0] - skeleton.anchors[ankle, 0])
-    return int(np.sign(forward)) if abs(forward) > MIN_TOE * size_of(skeleton) else 0
+    """Return 1 if the names of the legs differ as left and right do, -1 if as right and left."""
+    left, right = (leg[-1] for leg in (stance.legs.left, stance.legs.right))
+    names = stance.skeleton.bodies, stance.skeleton.joints
+    return next((vote for part in names if (vote := side_vote(part[left], part[right]))), 0)
 
 
 def _feet(stance: Stance) -> tuple[Pair | None, tuple[tuple[str, ...], tuple[str, ...]], Finding]:
     skeleton = stance.skeleton
-    last = foot_joint(skeleton, stance.legs.left)
-    left, right = (leg[: last + 1] for leg in (stance.legs.left, stance.legs.right))
+    left, right = _to_feet(stance)
     names = [", ".join(skeleton.joints[j] for j in leg) for leg in (left, right)]
     if len(left) < LEG_JOINTS:
         reason = (
             f"the legs have {len(left)} hinge joints, {names[0]} and {names[1]}; hsr8 needs "
             f"{LEG_JOINTS}: three at the hip, a knee, two at the ankle"
         )
+        if skeleton.others:
+            reason = not_hinged(skeleton.others[0])
         return None, ((), ()), Finding("feet", "", "missing", reason)
     six = left[-LEG_JOINTS:], right[-LEG_JOINTS:]
     feet = skeleton.bodies[left[-1]], skeleton.bodies[right[-1]]
@@ -211,22 +206,30 @@ def _feet(stance: Stance) -> tuple[Pair | None, tuple[tuple[str, ...], tuple[str
     reason = f"mirrored chains of {len(left)} joints that end lowest"
     if pitching != 3:
         reason += f", of which {pitching} pitch; expected 3"
-    if toes := [skeleton.joints[j] for j in stance.legs.left[last + 1 :]]:
+    if toes := [skeleton.joints[j] for j in stance.legs.left[len(left) :]]:
         reason += f", without the toes beyond {toes[0]}"
     legs = tuple(skeleton.joints[j] for j in six[0]), tuple(skeleton.joints[j] for j in six[1])
     return feet, legs, Finding("feet", ", ".join(feet), sureness, reason)
 
 
 def _head(stance: Stance) -> tuple[tuple[int, int] | None, Finding]:
-    """Return the pan and the tilt joint: on the mid plane, above the hips, of a light part."""
+    """Return the pan and the tilt joint: on the mid plane, above the hips, of a light part.
+
+    The part carries no limbs, and its mass is on the mid plane, as a trunk and an arm do not.
+    """
     skeleton, plane = stance.skeleton, stance.legs.plane
     size, hip = size_of(skeleton), float(skeleton.anchors[stance.legs.left[0], 2])
+    limbs = {limb.left[0] for limb in stance.limbs if len(limb.left) > 1}
 
     def fits(joint: int) -> bool:
         light = skeleton.mass_below(joint) < MAX_HEAD * skeleton.total_mass
-        return light and bool(skeleton.anchors[joint, 2] > hip)
+        carries = any(joint in skeleton.chain(limb) for limb in limbs)
+        return light and not carries and bool(skeleton.anchors[joint, 2] > hip)
 
-    upper = [j for j in range(len(skeleton.joints)) if fits(j)]
+    def central(joint: int) -> bool:
+        return bool(abs(skeleton.com_below(joint)[1] - plane) < MID_HEAD * size)
+
+    upper = [j for j in range(len(skeleton.joints)) if fits(j) and central(j)]
     pans = [
         j
         for j in upper

@@ -1,30 +1,34 @@
-"""Inspection of a robot's model file: guessed roles, and the description that follows."""
+"""Inspection of a model file: guessed roles, the description that follows, and its robot."""
 
+from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from pathlib import Path
+from typing import Any
 
 import mujoco
+import numpy as np
 
 from hsr8.errors import ModelError
 from hsr8.robots.description import (
     MODEL_SUFFIXES,
     RobotDescription,
-    SoleRectangle,
     checked,
     read_description,
 )
-from hsr8.robots.flat_feet import flat_feet
-from hsr8.robots.guess import Finding, Guess, guess, guess_roles
-from hsr8.robots.key_mistake import reading_keys
+from hsr8.robots.guess import Finding, Guess, guess
+from hsr8.robots.key_mistake import KeyMistake, RepairableError
+from hsr8.robots.loaded import LoadedRobot, RawRobot, build_robot, read_robot
 from hsr8.robots.locate import find_description, find_model
-from hsr8.robots.mjcf import read_mjcf
-from hsr8.robots.models import reading_models
-from hsr8.robots.read_model import read_model
-from hsr8.robots.urdf import convert
-from hsr8.robots.urdf_file import read_urdf
-from hsr8.robots.urdf_skeleton import skeleton_of_urdf
+from hsr8.robots.prepare import Prepared, prepare
+from hsr8.robots.read import compile_spec, read_spec
+from hsr8.robots.roles import find_roles
+from hsr8.robots.self_collision import SelfCollision
+from hsr8.robots.skeleton import HINGE, Skeleton, root_of, skeleton_of
+from hsr8.robots.soles import flat_feet
+from walking.body.robot_model import MAX_STIFFENING
 
-UNKNOWN_SOLE = SoleRectangle(front=0.1, back=-0.1, left=0.05, right=-0.05, height=-0.05)
+SPREADS = (0.15, 0.3, 0.5)  # angles of the arms from the trunk that are tried [rad]
+SIDEWAYS = 0.7  # minimum cosine between forward and the axis of a joint that spreads an arm [1]
 
 
 @dataclass(frozen=True, slots=True)
@@ -36,6 +40,7 @@ class Inspection:
         file: of the description, or the model without one.
         description: stated or guessed; None where no feet were found.
         findings: guesses, one per role.
+        notes: on the model file, a line each.
         stated: whether the description exists.
     """
 
@@ -43,6 +48,7 @@ class Inspection:
     file: Path
     description: RobotDescription | None
     findings: tuple[Finding, ...]
+    notes: tuple[str, ...]
     stated: bool
 
     def require_description(self) -> RobotDescription:
@@ -69,49 +75,162 @@ def inspect(name_or_file: str) -> Inspection:
     file = find_description(name_or_file).absolute()
     if file.suffix.lower() not in MODEL_SUFFIXES:
         description = read_description(file)
+        raw = read_robot(description, file)
+        findings = guess(raw.model).findings
         model_file = find_model(description, file)
-        with reading_keys(file):
-            raw = read_model(model_file, description, file.parent)
-        with reading_models(str(model_file)):
-            guessed = guess(raw.spec.compile())
-        return Inspection(model_file, file, description, guessed.findings, stated=True)
-    guessed, model = _guess_in(file)
-    findings = guessed.findings
+        return Inspection(model_file, file, description, findings, raw.notes, stated=True)
+    source, keys, repairs = read_spec(file, {}), dict[str, Any](), list[Finding]()
+    try:
+        prepared = prepare(source, None, posture={})
+    except RepairableError as error:
+        source, keys, repairs = read_spec(file, {}), error.keys, list(_repairs(error, file))
+        prepared = prepare(source, None, posture={}, **keys)
+    model, notes = compile_spec(source, source.spec)
+    guessed = guess(model)
+    findings = (*guessed.findings, *repairs)
+    notes = [*source.notes, *prepared.notes, *notes]
     if guessed.feet is None:
-        return Inspection(file, file, None, findings, stated=False)
-    description = checked({"model": str(file), **guessed.keys()}, str(file))
-    zero = _flat_feet(file, description, guessed, model)
+        return Inspection(file, file, None, findings, tuple(notes), stated=False)
+    description = checked({"model": str(file), **guessed.keys(), **keys}, str(file))
+    zero = _flat_feet(model, description, guessed, prepared)
     if zero:
         angles = ", ".join(f"{name} {angle:g}" for name, angle in zero.items())
         reason = "the soles are tilted at zero angles"
         findings = (*findings, Finding("zero", angles, "likely", reason))
         description = description.model_copy(update={"zero": zero})
-    return Inspection(file, file, description, findings, stated=False)
+    return Inspection(file, file, description, findings, tuple(notes), stated=False)
 
 
-def _guess_in(file: Path) -> tuple[Guess, mujoco.MjModel | None]:
-    """Guess the roles in a model file; return the model, too, unless it is a URDF file.
-
-    In a URDF file the base follows from the feet.
-    """
-    if file.suffix.lower() == ".urdf":
-        return replace(guess_roles(skeleton_of_urdf(read_urdf(file))), base=""), None
-    with reading_models(str(file)):
-        model = read_mjcf(file).compile()
-    if not model.njnt:
-        raise ModelError(f"{file}: the model has no joints; expected a robot")
-    return guess(model), model
+def _repairs(error: RepairableError, model: Path) -> Iterator[Finding]:
+    """Yield a finding per key that repairs a fault of a model file."""
+    reason = str(error).removeprefix(f"{model}: ").partition(";")[0]
+    for key, value in error.keys.items():
+        yield Finding(key, str(value).lower(), "likely", reason)
 
 
 def _flat_feet(
-    file: Path, description: RobotDescription, guessed: Guess, model: mujoco.MjModel | None
+    model: mujoco.MjModel, description: RobotDescription, guessed: Guess, prepared: Prepared
 ) -> dict[str, float]:
     """Return the angles of ankles with which the soles are flat, where they are not [rad]."""
-    if model is not None:
-        return flat_feet(model, description.feet, guessed.legs)
-    try:  # whatever the soles are
-        stated = description.model_copy(update={"sole": UNKNOWN_SOLE})
-        converted = convert(file, stated, file.parent)
-    except ModelError:  # loading the robot reports it
+    try:
+        roles = find_roles(model, description, prepared)
+    except KeyMistake:  # loading the robot reports it
         return {}
-    return flat_feet(converted.spec.compile(), converted.feet, guessed.legs)
+    return flat_feet(model, roles.feet, guessed.legs, roles.frame)
+
+
+def facts(robot: LoadedRobot) -> dict[str, Any]:
+    """Return the numbers of a robot; keys end in their units."""
+    measures, parameters, sole = robot.model.measures(), robot.parameters, robot.model.sole
+    return {
+        "mass_kg": robot.model.mass,
+        "leg_m": measures.leg,
+        "hips_m": parameters.pattern.pelvis_height,
+        "joints": sum(joint.type == HINGE for joint in robot.spec.joints),
+        "walking_joints": len(robot.model.names),
+        "sole_m": [2.0 * sole.half_length, 2.0 * sole.half_width],
+        "stance_m": 2.0 * parameters.gait.half_stance,
+        "radius_m": robot.radius,
+        "head": robot.roles.head is not None,
+        "stiffened": robot.model.stiffening,
+        "footstep_time_s": parameters.gait.footstep_time,
+        "swing_height_m": parameters.gait.swing_height,
+        "vx_mps": parameters.limits.vx,
+        "vx_backward_mps": parameters.limits.vx_backward,
+        "vy_mps": parameters.limits.vy,
+        "wz_radps": parameters.limits.wz,
+        "calibrated": robot.description.calibration is not None,
+    }
+
+
+def load_inspected(inspection: Inspection) -> tuple[Inspection, LoadedRobot]:
+    """Load a robot.
+
+    A guessed description is changed where the robot cannot stand with it: arms that touch the body
+    are spread, and servos that are too soft are replaced by the rule.
+
+    Returns:
+        The inspection with its changes, and the robot.
+
+    Raises:
+        ModelError: the robot is refused.
+    """
+    description = inspection.require_description()
+    if inspection.stated:
+        return inspection, build_robot(description, inspection.file)
+    raw = read_robot(description, inspection.file)
+    try:
+        robot = build_robot(description, inspection.file, raw)
+    except RepairableError as error:
+        (finding,) = _repairs(error, inspection.model)
+        return load_inspected(_changed(inspection, finding, error.keys))
+    except SelfCollision as error:
+        inspection, robot = _with_spread_arms(inspection, raw, error)
+    if description.servo is not None or robot.model.stiffening < MAX_STIFFENING:
+        return inspection, robot
+    held = 1.0 / (robot.model.stiffening * robot.model.measures().ankle)
+    reason = f"the ankles of the model have {held:.0%} of the stiffness that holds it upright"
+    inspection = _changed(inspection, Finding("servo", "rule", "likely", reason), {"servo": "rule"})
+    return inspection, build_robot(inspection.require_description(), inspection.file, raw)
+
+
+def _with_spread_arms(
+    inspection: Inspection, raw: RawRobot, refusal: SelfCollision
+) -> tuple[Inspection, LoadedRobot]:
+    """Return the robot with its arms off the body.
+
+    Raises:
+        ModelError: the robot is still refused.
+    """
+    description = inspection.require_description()
+    for posture in _spread_postures(raw, description):
+        angles = ", ".join(f"{name} {angle:g}" for name, angle in posture.items())
+        finding = Finding("posture", angles, "likely", "the arms touch the body at zero angles")
+        tried = _changed(inspection, finding, {"posture": posture})
+        try:
+            return tried, build_robot(tried.require_description(), tried.file, raw)
+        except SelfCollision:
+            continue
+    raise refusal
+
+
+def _spread_postures(raw: RawRobot, description: RobotDescription) -> Iterator[dict[str, float]]:
+    """Yield postures with the arms at several angles from the trunk [rad]."""
+    if description.shoulders is None:
+        return
+    frame = find_roles(raw.model, description, raw.prepared).frame
+    skeleton = skeleton_of(raw.model, root_of(raw.model)).within(frame)
+    left, right = description.shoulders
+    rolls = [_shoulder_roll(skeleton, left, right), _shoulder_roll(skeleton, right, left)]
+    for spread in SPREADS:
+        posture = dict(description.posture)
+        for side, roll in zip((1.0, -1.0), rolls, strict=True):
+            if roll is not None:
+                sign = side * float(np.sign(skeleton.axes[roll, 0]))
+                angle = posture.get(skeleton.joints[roll], 0.0) + sign * spread
+                angle = float(np.clip(angle, *skeleton.ranges[roll]))
+                posture[skeleton.joints[roll]] = round(angle, 4)
+        yield posture
+
+
+def _shoulder_roll(skeleton: Skeleton, shoulder: str, other: str) -> int | None:
+    """Return the joint nearest to the pitch joint of a shoulder that moves its arm sideways."""
+    pitch, opposite = (skeleton.joints.index(name) for name in (shoulder, other))
+    trunk = skeleton.chain(opposite)
+    arm = [
+        j
+        for j in range(len(skeleton.joints))
+        if (pitch in skeleton.chain(j) or j in skeleton.chain(pitch)) and j not in trunk
+    ]
+    rolls = [j for j in arm if abs(skeleton.axes[j, 0]) > SIDEWAYS]
+    origin = skeleton.anchors[pitch]
+    return min(
+        rolls, key=lambda j: float(np.linalg.norm(skeleton.anchors[j] - origin)), default=None
+    )
+
+
+def _changed(inspection: Inspection, finding: Finding, keys: dict[str, Any]) -> Inspection:
+    """Return the inspection with other keys of its description, and the finding for them."""
+    description = inspection.require_description().model_copy(update=keys)
+    others = tuple(f for f in inspection.findings if f.role != finding.role)
+    return replace(inspection, description=description, findings=(*others, finding))

@@ -1,8 +1,10 @@
 """Mistakes in the keys of a robot description."""
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
+from math import ceil, floor, isfinite, log10
 from pathlib import Path
+from typing import Any
 
 from hsr8.errors import ModelError
 from hsr8.robots.description import RobotDescription
@@ -13,6 +15,19 @@ MAX_LISTED = 12  # names in a message
 
 class KeyMistake(ModelError):
     """Wrong value of a key; the message begins with the key, without the file."""
+
+
+class RepairableError(ModelError):
+    """Fault of a model that a key of the description repairs.
+
+    Args:
+        message: with the remedy.
+        keys: of the description, that repair it.
+    """
+
+    def __init__(self, message: str, **keys: Any) -> None:
+        super().__init__(message)
+        self.keys = keys
 
 
 @contextmanager
@@ -29,6 +44,23 @@ def reading_keys(file: Path) -> Iterator[None]:
         yield
     except KeyMistake as mistake:
         raise ModelError(f"{file}: {mistake}") from mistake
+
+
+def at_least(value: float) -> str:
+    """Return a number with three digits, rounded up, so that following a message is enough."""
+    return f"{_rounded(value, ceil):g}"
+
+
+def at_most(value: float) -> str:
+    """Return a number with three digits, rounded down."""
+    return f"{_rounded(value, floor):g}"
+
+
+def _rounded(value: float, rounding: Callable[[float], int]) -> float:
+    if value == 0.0 or not isfinite(value):
+        return value
+    unit = 10.0 ** (floor(log10(abs(value))) - 2)
+    return rounding(value / unit) * unit
 
 
 def joint_error(

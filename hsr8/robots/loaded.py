@@ -1,6 +1,7 @@
 """Loaded robot: its model in normal form, its kinematics, and its walking parameters."""
 
-from dataclasses import dataclass
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
 from functools import lru_cache
 from pathlib import Path
 
@@ -11,18 +12,21 @@ from numpy.typing import NDArray
 from hsr8.errors import ModelError
 from hsr8.robots.arms import arm_spheres, robot_height, robot_radius
 from hsr8.robots.description import TRUNK, RobotDescription, read_description
-from hsr8.robots.key_mistake import KeyMistake, joint_error, reading_keys
-from hsr8.robots.locate import find_description, find_model
+from hsr8.robots.files import package_folders, stamp_of
+from hsr8.robots.key_mistake import KeyMistake, at_least, joint_error, reading_keys
+from hsr8.robots.linkage import drive_serially
+from hsr8.robots.locate import find_description, find_model, model_files
 from hsr8.robots.models import reading_models
 from hsr8.robots.normal_form import normalise
-from hsr8.robots.posed import Posed
-from hsr8.robots.posture import completed_posture
-from hsr8.robots.read_model import read_model
+from hsr8.robots.posture import check_joint_names, completed_posture, stated_posture
+from hsr8.robots.prepare import LEG_JOINTS, Prepared, prepare
+from hsr8.robots.read import compile_spec, read_spec
 from hsr8.robots.refusals import check_roles
-from hsr8.robots.roles import LEG_JOINTS, Roles, find_roles
+from hsr8.robots.roles import Roles, base_note, find_roles, present
 from hsr8.robots.self_collision import exclude_neighbours
 from hsr8.robots.servos import choose_servos
-from hsr8.robots.sole import soles_of
+from hsr8.robots.skeleton import HINGE, Posed
+from hsr8.robots.soles import soles_of
 from hsr8.robots.tree import tree_of
 from walking.body.robot_model import RobotModel
 from walking.parameters import WalkingParameters
@@ -84,6 +88,27 @@ class LoadedRobot:
         return self.roles.trunk if name == TRUNK and self.spec.body(name) is None else name
 
 
+@dataclass(frozen=True, slots=True, eq=False)
+class RawRobot:
+    """Robot as its file has it, before the normal form.
+
+    Attributes:
+        source: model file, which begins the messages about it.
+        prepared: model; copy its specification before a change.
+        model: compiled.
+        posture: angles of the description, its SRDF file or keyframe [rad].
+        speed: maximum speed of the joints that state one [rad/s].
+        notes: derived facts, a line each.
+    """
+
+    source: Path
+    prepared: Prepared
+    model: mujoco.MjModel
+    posture: Mapping[str, float]
+    speed: Mapping[str, float]
+    notes: tuple[str, ...]
+
+
 def load_robot(name_or_file: str) -> LoadedRobot:
     """Return a robot by the name of a shipped description, or by its file.
 
@@ -92,49 +117,128 @@ def load_robot(name_or_file: str) -> LoadedRobot:
             element, the reason and the remedy.
     """
     file = find_description(name_or_file).resolve()
-    return _loaded(file, file.stat().st_mtime_ns)
+    return _loaded(file, stamp_of(model_files(file)))
 
 
 @lru_cache(maxsize=8)
-def _loaded(file: Path, _changed: int) -> LoadedRobot:
+def _loaded(file: Path, _files: tuple[tuple[str, int, int], ...]) -> LoadedRobot:
     return build_robot(read_description(file), file)
 
 
-def build_robot(description: RobotDescription, file: Path) -> LoadedRobot:
+def build_robot(
+    description: RobotDescription, file: Path, raw: RawRobot | None = None
+) -> LoadedRobot:
     """Return the robot of a description.
 
     Args:
         description: of the robot.
         file: of the description, or the model of a guessed one; relative paths begin at its folder.
+        raw: its model, if it has been read.
 
     Raises:
         ModelError: as `load_robot`.
     """
+    raw = raw or read_robot(description, file)
+    with reading_keys(file):
+        return _built(description, file, raw)
+
+
+def read_robot(description: RobotDescription, file: Path) -> RawRobot:
+    """Read the model of a description.
+
+    Args:
+        description: of the robot.
+        file: of the description; relative paths begin at its folder.
+
+    Raises:
+        ModelError: a key is wrong, or the model file is missing or wrong.
+    """
     model_file = find_model(description, file)
     with reading_keys(file):
-        return _built(description, file, model_file)
+        return _read(description, file.parent, model_file)
 
 
-def _built(description: RobotDescription, file: Path, model_file: Path) -> LoadedRobot:
-    source = str(model_file)
-    stated, raw = description, read_model(model_file, description, file.parent)
-    description = raw.description
-    with reading_models(source):
-        model = raw.spec.copy().compile()  # a compiled specification is slow to change
-    roles = find_roles(model, description, source)
-    completed, posture_notes = completed_posture(model, description, stated.posture, roles)
+def _read(description: RobotDescription, folder: Path, model_file: Path) -> RawRobot:
+    packages = package_folders(description.packages, folder)
+    source = read_spec(model_file, packages)
+    spec = source.spec
+    if packages and not source.is_urdf:
+        raise KeyMistake("packages: got an MJCF file, which has none; expected a URDF file")
+    if source.is_urdf and description.servo == "own":
+        raise KeyMistake(
+            "servo: a URDF file has no servos, got 'own'; expected 'rule', the default"
+        )
+    joints = [j.name for j in spec.joints if j.type == HINGE or j.name in description.rigid]
+    check_joint_names(description, joints)
+    _set_ranges(spec, description.range)
+    posture = stated_posture(description, folder, spec)
+    prepared = prepare(
+        source,
+        description.feet,
+        base=description.base,
+        rigid=description.rigid,
+        powered=frozenset(
+            (*description.effort, *(description.head or ()), *(description.shoulders or ()))
+        ),
+        posture={**posture, **description.zero},
+        repair_inertia=description.repair_inertia,
+    )
+    speed, linkage_notes = {**source.speed, **description.speed}, list[str]()
+    if description.linkage is not None:
+        carried, linkage_notes = drive_serially(prepared, description, speed)
+        speed = {**carried, **speed}
+    fresh = spec.copy()  # a compiled specification is slow to change
+    model, notes = compile_spec(source, spec)
+    if notes:  # meshes were left out
+        fresh = spec.copy()
+    return RawRobot(
+        source=model_file,
+        prepared=replace(prepared, spec=fresh),
+        model=model,
+        posture=posture,
+        speed=speed,
+        notes=(*source.notes, *prepared.notes, *linkage_notes, *notes),
+    )
+
+
+def _set_ranges(spec: mujoco.MjSpec, ranges: Mapping[str, tuple[float, float]]) -> None:
+    """Set the limits of joints [rad]."""
+    for name, limits in ranges.items():
+        joint = spec.joint(name)
+        joint.range = np.degrees(limits) if spec.compiler.degree else limits
+        joint.limited = mujoco.mjtLimited.mjLIMITED_TRUE
+
+
+def _built(description: RobotDescription, file: Path, raw: RawRobot) -> LoadedRobot:
+    source, model, prepared = str(raw.source), raw.model, raw.prepared
+    spec = prepared.spec.copy()
+    roles = find_roles(model, description, prepared)
+    completed, notes = completed_posture(
+        model, description, {**raw.posture, **description.posture}, roles
+    )
+    notes = [*raw.notes, *base_note(roles, prepared), *notes]
     description = description.model_copy(update={"posture": completed})
-    zero = Posed.at(model, description.zero)
-    check_roles(model, roles, description, source)
-    soles, sole_notes = soles_of(zero, roles, description.sole)
-    servo_notes = choose_servos(raw.spec, model, roles, description, soles[0].height)
+    ranges, mirror_notes = check_roles(model, roles, description, prepared, source)
+    _set_ranges(spec, ranges)
+    straight = present(model, description.zero)
+    zero = Posed.at(model, straight, base=roles.frame)
+    soles, sole_notes = soles_of(zero, roles, description, prepared)
+    posture = {**completed, **straight}
+    servo_notes = choose_servos(
+        spec,
+        zero,
+        roles,
+        description,
+        posture=posture,
+        speed=raw.speed,
+        sole_height=soles[0].height,
+    )
     with reading_models(source):
-        normal = normalise(raw.spec, zero, roles, soles, description)
+        normal = normalise(spec, zero, roles, soles, description=description, prepared=prepared)
         compiled = normal.spec.copy().compile()
-    _compare(model, compiled, description, source)
-    posture = {**description.posture, **description.zero}
+    _compare(zero, Posed.at(compiled, straight), source)
     tree = tree_of(
-        compiled, roles, normal.parts, posture, effort=description.effort, speed=description.speed
+        compiled, roles, normal.parts, posture, effort=description.effort, speed=raw.speed
     )
     robot = RobotModel(tree)
     parameters, walk_notes = _fitted(robot, description, source)
@@ -146,7 +250,7 @@ def _built(description: RobotDescription, file: Path, model_file: Path) -> Loade
     collision_notes = exclude_neighbours(normal.spec, standing, source)
     return LoadedRobot(
         name=file.stem,
-        file=model_file,
+        file=raw.source,
         description=description,
         roles=roles,
         spec=normal.spec,
@@ -159,8 +263,8 @@ def _built(description: RobotDescription, file: Path, model_file: Path) -> Loade
         height=base,
         stature=robot_height(standing),
         notes=(
-            *raw.notes,
-            *posture_notes,
+            *notes,
+            *mirror_notes,
             *sole_notes,
             *servo_notes,
             *normal.notes,
@@ -241,26 +345,25 @@ def _strength(
             description,
             source,
             f"too weak to carry the robot on one leg, got a maximum torque of {effort:.3g} N m; "
-            f"expected at least {load * effort:.3g}: state effort, if that of the model is wrong",
+            f"expected at least {at_least(load * effort)}: state effort, if that of the model is "
+            "wrong",
         )
     return [f"{load:.0%} of the torque of {name} on one leg"] if load > HEAVY else []
 
 
-def _compare(
-    raw: mujoco.MjModel, normal: mujoco.MjModel, description: RobotDescription, source: str
-) -> None:
+def _compare(before: Posed, after: Posed, source: str) -> None:
     """Check that mass, centre of mass and joints are those of the file.
 
     Raises:
         ModelError: a quantity differs.
     """
-    before, after = Posed.at(raw, description.zero).data, Posed.at(normal, description.zero).data
+    raw, normal = before.model, after.model
     root = int(raw.jnt_bodyid[0])
     _same(source, "mass [kg]", raw.body_subtreemass[root], normal.body_subtreemass[1])
-    _same(source, "centre of mass [m]", before.subtree_com[root], after.subtree_com[1])
+    _same(source, "centre of mass [m]", before.data.subtree_com[root], after.data.subtree_com[1])
     for joint in (raw.joint(j) for j in range(1, raw.njnt)):
-        anchor = after.joint(joint.name).xanchor
-        _same(source, f"place of joint {joint.name!r} [m]", before.xanchor[joint.id], anchor)
+        anchor = after.data.joint(joint.name).xanchor
+        _same(source, f"place of joint {joint.name!r} [m]", before.data.xanchor[joint.id], anchor)
 
 
 def _same(source: str, quantity: str, before: Array | float, after: Array | float) -> None:

@@ -3,7 +3,6 @@
 `docs/robots.md` documents the order in which the folders are searched.
 """
 
-import hashlib
 import importlib
 import os
 import sys
@@ -14,6 +13,7 @@ from pathlib import Path
 
 from hsr8.errors import ModelError
 from hsr8.robots.description import MODEL_SUFFIXES, RobotDescription, read_description
+from hsr8.robots.files import digest_of, files_of
 from hsr8.robots.models import models_dir
 from hsr8.robots.scale import DEFAULT_ROBOT
 from hsr8.suggestion import suggestion
@@ -107,7 +107,7 @@ def installed_model(description: RobotDescription, folder: Path) -> Path | None:
 
 
 def digest(name_or_file: str) -> dict[str, str]:
-    """Return the first 12 digits of the SHA-256 of a robot's files, by its name.
+    """Return the first 12 digits of the SHA-256 of all files of a robot, by its name.
 
     That of the default robot follows from the version of hsr8, and is left out.
 
@@ -117,9 +117,21 @@ def digest(name_or_file: str) -> dict[str, str]:
     if name_or_file == DEFAULT_ROBOT:
         return {}
     file = find_description(name_or_file)
-    model = find_model(read_description(file), file)
-    content = file.read_bytes() + model.read_bytes()
-    return {f"robot {file.stem}": hashlib.sha256(content).hexdigest()[:12]}
+    return {f"robot {file.stem}": digest_of(model_files(file))}
+
+
+def model_files(file: Path) -> Iterator[Path]:
+    """Yield a description and the files of its model: meshes and included files, too.
+
+    Raises:
+        ModelError: the description is wrong, or the model is missing.
+    """
+    yield file
+    description = read_description(file)
+    if description.srdf is not None:
+        yield file.parent / description.srdf
+    packages = {name: file.parent / folder for name, folder in description.packages.items()}
+    yield from files_of(find_model(description, file), packages)
 
 
 def remedy(description: RobotDescription) -> str:

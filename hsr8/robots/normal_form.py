@@ -5,20 +5,23 @@ the soles, an IMU, a camera with its site, and one box per sole; servos are adde
 description asks for it. Lights, keyframes, sensors and the floor of the file are removed.
 """
 
+from collections.abc import Iterator
 from dataclasses import dataclass
-from math import ceil, radians
+from math import radians
 
 import mujoco
 import numpy as np
 from numpy.typing import NDArray
 
 from hsr8.robots.description import CameraMount, RobotDescription
-from hsr8.robots.posed import Posed
-from hsr8.robots.roles import Roles
-from hsr8.robots.sole import Rectangle
+from hsr8.robots.models import models_dir
+from hsr8.robots.prepare import Prepared, rebase
+from hsr8.robots.roles import Roles, pose_of
+from hsr8.robots.servos import physics_step
+from hsr8.robots.skeleton import Posed
+from hsr8.robots.soles import Rectangle
 from hsr8.robots.tree import Parts
 from walking.body.sole import Sole
-from walking.parameters import CONTROL_PERIOD
 
 Array = NDArray[np.float64]
 
@@ -28,10 +31,20 @@ CAMERA_SITE, IMU = "hsr8/camera", "hsr8/imu"
 ACCELEROMETER = "hsr8/accelerometer"
 HEAD_CAMERA = "egocentric"
 PADS = (("fl", 1, 1), ("fr", 1, -1), ("bl", -1, 1), ("br", -1, -1))
-MIN_SUBSTEPS = 2  # physics steps per control period
 THICKNESS = 0.025  # half height of a sole box, relative to the height of the base [1]
 EDGE = 0.001  # by which a force pad extends beyond the sole, where contacts act [m]
 COLLISION_GROUP = 3
+OPTION_KINDS = {
+    "integrator": mujoco.mjtIntegrator,
+    "cone": mujoco.mjtCone,
+    "solver": mujoco.mjtSolver,
+    "jacobian": mujoco.mjtJacobian,
+}
+OPTIONS = (
+    *OPTION_KINDS,
+    *("gravity", "wind", "magnetic", "density", "viscosity", "impratio", "iterations"),
+    *("ls_iterations", "noslip_iterations", "tolerance", "disableflags", "enableflags"),
+)
 UPPER, FIXED_TILT = 0.9, -28.6  # height of a camera on the trunk [1], and its tilt [deg]
 # Bits of contacts: 1 floor and soles, 2 obstacles hit the robot, the rest as in the file.
 SOLE_BIT, BODY_BIT, SHIFT = 1, 2, 2
@@ -63,17 +76,14 @@ def pad(side: int, name: str) -> str:
     return f"hsr8/{'lr'[side]}_pad_{name}"
 
 
-def physics_step(step: float) -> float:
-    """Return the physics step nearest to that of a file which divides the control period [s]."""
-    return CONTROL_PERIOD / max(MIN_SUBSTEPS, ceil(CONTROL_PERIOD / step - 0.5 - 1e-9))
-
-
 def normalise(
     spec: mujoco.MjSpec,
     zero: Posed,
     roles: Roles,
     soles: tuple[Rectangle, Rectangle],
+    *,
     description: RobotDescription,
+    prepared: Prepared,
 ) -> NormalForm:
     """Bring a robot into normal form.
 
@@ -83,13 +93,14 @@ def normalise(
         roles: of the robot's parts.
         soles: of both feet.
         description: of the robot.
+        prepared: its model.
     """
-    notes: list[str] = []
+    notes = list(dropped_options(spec))
     before = float(spec.option.timestep)
     spec.option.timestep = physics_step(before)
     if abs(spec.option.timestep - before) > 1e-9:
         notes.append(f"physics step {1e3 * before:g} ms -> {1e3 * spec.option.timestep:g} ms")
-    camera, note = _camera_pose(zero, roles, description)
+    camera, note = _camera_pose(zero, roles, description, prepared)
     notes.append(note)
     _fix_masses(spec, zero.model)
     _strip(spec, zero.model, roles)
@@ -98,11 +109,14 @@ def normalise(
         for geom in spec.geoms:
             geom.conaffinity = BODY_BIT if geom.group == COLLISION_GROUP else 0
     _set_contacts(spec)
-    sole = Sole(0.0, 0.0, 0.0)
+    sole, replaced = Sole(0.0, 0.0, 0.0), _contact_shapes(spec, roles)
+    if replaced:
+        notes.append(f"contact shapes of the feet replaced by a box each: {replaced} shapes")
     for side in range(2):
         sole = _add_sole(spec, zero, roles, side, soles[side])
-    base = spec.body(roles.base)
-    base.add_site(name=IMU)
+    spec.body(roles.base).add_site(
+        name=IMU, pos=roles.frame.origin, quat=_quaternion(roles.frame.rotation.T)
+    )
     kinds = mujoco.mjtSensor, mujoco.mjtObj
     spec.add_sensor(
         name=ACCELEROMETER,
@@ -111,7 +125,34 @@ def normalise(
         objname=IMU,
     )
     _add_camera(spec, zero, camera)
+    if not roles.frame.is_body:
+        rebase(spec, roles.base, roles.frame)
     return NormalForm(spec, Parts(FEET, sole, CAMERA_SITE), tuple(notes))
+
+
+def dropped_options(spec: mujoco.MjSpec) -> Iterator[str]:
+    """Yield a note on options of the model that the simulator's field replaces."""
+    usual = mujoco.MjSpec().option
+    field = mujoco.MjSpec.from_file(str(models_dir() / "field" / "vision.xml")).option
+    dropped = []
+    for name in OPTIONS:
+        own, default, used = (np.asarray(getattr(o, name)) for o in (spec.option, usual, field))
+        if not np.array_equal(own, default) and not np.array_equal(own, used):
+            kind = OPTION_KINDS.get(name)
+            values = (
+                [kind(int(own)).name.partition("_")[2].lower()]
+                if kind
+                else [f"{v:g}" for v in own.ravel()]
+            )
+            dropped.append(f"{name} {' '.join(values)}")
+    if dropped:
+        yield f"options of the model replaced by those of the simulator: {', '.join(dropped)}"
+
+
+def _contact_shapes(spec: mujoco.MjSpec, roles: Roles) -> int:
+    """Return the number of colliding shapes of the feet."""
+    geoms = [geom for foot in roles.feet for geom in spec.body(foot).geoms]
+    return sum(bool(geom.contype or geom.conaffinity) for geom in geoms)
 
 
 def _fix_masses(spec: mujoco.MjSpec, model: mujoco.MjModel) -> None:
@@ -228,7 +269,7 @@ def _absorb_shapes(body: mujoco.MjsBody) -> tuple[int, int]:
 
 
 def _camera_pose(
-    zero: Posed, roles: Roles, description: RobotDescription
+    zero: Posed, roles: Roles, description: RobotDescription, prepared: Prepared
 ) -> tuple[tuple[str, Array, Array], str]:
     """Return body, position and rotation (right, down, forward) of the camera, and a note."""
     model, data = zero.model, zero.data
@@ -243,11 +284,11 @@ def _camera_pose(
     forward = np.array([np.cos(tilt), 0.0, np.sin(tilt)])
     right = np.array([0.0, -1.0, 0.0])
     rotation = np.column_stack([right, np.cross(forward, right), forward])
-    position = data.xpos[model.body(mount.body).id] + mount.position
+    position = pose_of(zero, prepared, mount.body)[1] + mount.position
     note = (
         f"camera on {mount.body!r}, {position[2]:.2f} m above the base, tilt {mount.tilt_deg:g} deg"
     )
-    return (mount.body, position, rotation), note
+    return (prepared.where(mount.body).body, position, rotation), note
 
 
 def _default_mount(zero: Posed, roles: Roles) -> CameraMount:

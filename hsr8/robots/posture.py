@@ -1,6 +1,6 @@
-"""Posture of the joints that neither walk nor look: from a description and its SRDF file."""
+"""Posture of the joints that neither walk nor look, from a description, SRDF file or keyframe."""
 
-from collections.abc import Collection, Sequence
+from collections.abc import Mapping, Sequence
 from math import isfinite
 from pathlib import Path
 from xml.etree import ElementTree
@@ -11,25 +11,31 @@ import numpy as np
 from hsr8.errors import ModelError
 from hsr8.robots.description import RobotDescription
 from hsr8.robots.key_mistake import KeyMistake, require_name
+from hsr8.robots.prepare import clip_to_range
 from hsr8.robots.roles import Roles
 from hsr8.robots.skeleton import HINGE
 
-LIMIT_MARGIN = 0.02  # distance of a clipped angle from its limit, by the range [1]
+COORDINATES = {0: 7, 1: 4, 2: 1, 3: 1}  # of a free, ball, slide and hinge joint in a keyframe
 
 
-def stated_posture(description: RobotDescription, folder: Path) -> dict[str, float]:
-    """Angles of the posture, those of the SRDF file completed by the key ``posture`` [rad].
+def stated_posture(
+    description: RobotDescription, folder: Path, spec: mujoco.MjSpec
+) -> dict[str, float]:
+    """Angles of the posture: those of the group state or keyframe, changed by `posture` [rad].
 
     Args:
         description: of the robot.
         folder: of the description file, to which the SRDF file is relative.
+        spec: MuJoCo model as read from its file.
 
     Raises:
-        KeyMistake: the SRDF file cannot be read, or has no such group state.
+        KeyMistake: the SRDF file cannot be read, or there is no such state.
         ModelError: an angle of the SRDF file is not a number.
     """
-    if description.srdf is None or description.state is None:
+    if description.state is None:
         return dict(description.posture)
+    if description.srdf is None:
+        return _keyframe(spec, description.state) | description.posture
     file = folder / description.srdf
     try:
         robot = ElementTree.fromstring(file.read_bytes())
@@ -55,26 +61,35 @@ def stated_posture(description: RobotDescription, folder: Path) -> dict[str, flo
     return angles | description.posture
 
 
-def clip_to_range(angle: float, lower: float, upper: float) -> float:
-    """Return an angle that is inside its range; one outside moves in by 2 % of the range [rad]."""
-    if lower <= angle <= upper:
-        return angle
-    margin = LIMIT_MARGIN * (upper - lower)
-    return min(max(angle, lower + margin), upper - margin)
+def _keyframe(spec: mujoco.MjSpec, name: str) -> dict[str, float]:
+    """Return the angles of a keyframe of the model [rad].
+
+    Raises:
+        KeyMistake: the model has no such keyframe.
+    """
+    require_name("state", "keyframe", name, [key.name for key in spec.keys])
+    qpos, at, angles = np.array(spec.key(name).qpos, float), 0, {}
+    for joint in spec.joints:
+        if joint.type == HINGE and at < len(qpos):
+            angles[joint.name] = float(qpos[at])
+        at += COORDINATES[int(joint.type)]
+    return angles
 
 
 def completed_posture(
-    model: mujoco.MjModel, description: RobotDescription, stated: Collection[str], roles: Roles
+    model: mujoco.MjModel, description: RobotDescription, angles: Mapping[str, float], roles: Roles
 ) -> tuple[dict[str, float], list[str]]:
     """Return the posture of the joints that neither walk nor look, within their limits, and notes.
 
     Args:
         model: compiled.
-        description: of the robot in terms of the model, with the angles of its SRDF file.
-        stated: joints of the key `posture`, whose angles remain.
+        description: of the robot; the angles of its key `posture` remain.
+        angles: of `stated_posture` [rad].
         roles: of the robot's parts.
     """
-    posture, notes = dict(description.posture), []
+    names = {model.joint(j).name for j in np.flatnonzero(model.jnt_type == HINGE)}
+    posture, notes = {name: angle for name, angle in angles.items() if name in names}, list[str]()
+    stated = description.posture
     moving = {*roles.legs[0], *roles.legs[1], *(roles.head or ())}
     for name in moving - {*stated}:
         posture.pop(name, None)

@@ -12,53 +12,61 @@ from numpy.typing import NDArray
 
 from hsr8.errors import ModelError
 from hsr8.robots.description import RobotDescription
-from hsr8.robots.key_mistake import KeyMistake, joint_error
-from hsr8.robots.mechanism_checks import check_mechanism
-from hsr8.robots.mirror import mirrored_pairs
-from hsr8.robots.roles import Roles
-from hsr8.robots.skeleton import Skeleton, skeleton_of
+from hsr8.robots.key_mistake import KeyMistake, at_most, joint_error
+from hsr8.robots.limbs import BENT, bent, foot_joint, side_vote, toe_vote
+from hsr8.robots.mechanism import check_mechanism
+from hsr8.robots.prepare import Prepared
+from hsr8.robots.roles import Roles, present
+from hsr8.robots.skeleton import MirroredPair, Skeleton, mirrored_pairs, skeleton_of
 
 Array = NDArray[np.float64]
 
-UPRIGHT = np.cos(np.radians(20.0))  # minimum cosine between the hips above the feet and z [1]
-ABREAST = np.cos(np.radians(10.0))  # minimum cosine between the line of the feet and y [1]
 MAX_SHIFT = 0.01  # of a mirrored joint axis, in lengths of the leg [1]
 MAX_TURN = np.radians(1.0)  # of a mirrored joint axis [rad]
-MAX_RANGE_DIFFERENCE = 0.1  # of mirrored limits [rad]
+MAX_RANGE_DIFFERENCE = 0.1  # of mirrored limits; ranges that differ more are intersected [rad]
 PITCHING = ("hip", "knee", "ankle")
-BENT = (-0.4, 0.8, -0.35)  # pitch of hip, knee and ankle in a bent leg, about the left axis [rad]
+MIN_LIMITS = 0.3  # difference of the limits of a knee that shows where it bends [rad]
 MIN_FREEDOM = 0.01  # singular value of the scaled Jacobian of a bent leg, minimum over maximum [1]
 SLACK = 1e-6  # of limits [rad]
 MAX_CAMERA = 2.0  # distance of a camera from the origin of its body, in lengths of the leg [1]
 
 
 def check_roles(
-    model: mujoco.MjModel, roles: Roles, description: RobotDescription, source: str
-) -> None:
+    model: mujoco.MjModel,
+    roles: Roles,
+    description: RobotDescription,
+    prepared: Prepared,
+    source: str,
+) -> tuple[dict[str, tuple[float, float]], list[str]]:
     """Refuse a robot that cannot walk.
 
     Args:
         model: compiled.
         roles: of its parts.
         description: of the robot.
+        prepared: its model.
         source: model file, which begins the messages about its elements.
+
+    Returns:
+        Ranges of leg joints that must be smaller to be mirror images [rad], and notes on them.
 
     Raises:
         KeyMistake: a key of the description is wrong.
         ModelError: an element of the model is wrong.
     """
     check_mechanism(model, roles, description, source)
-    check = _Checks(model, roles, description, source)
+    check = _Checks(model, roles, description, prepared, source)
     check.ranges()
-    check.base()
-    check.sides()
+    check.toes()
     check.pitching()
+    check.knees()
     check.bending()
-    check.mirror()
+    ranges, notes = check.mirror()
     check.freedom()
     check.head()
     check.shoulders()
     check.camera()
+    return ranges, notes
 
 
 class _Checks:
@@ -67,21 +75,22 @@ class _Checks:
         model: mujoco.MjModel,
         roles: Roles,
         description: RobotDescription,
+        prepared: Prepared,
         source: str,
     ) -> None:
         self._model, self._roles = model, roles
-        self._description, self._source = description, source
+        self._description, self._prepared, self._source = description, prepared, source
+        self._zero = present(model, description.zero)
         self._skeleton = self._posed({})
         left, right = roles.legs
         index = self._skeleton.joints.index
         self._legs = ([index(name) for name in left], [index(name) for name in right])
         hips, feet = ([leg[end] for leg in self._legs] for end in (0, -1))
         self._hips_above_feet = self._skeleton.anchors[hips] - self._skeleton.anchors[feet]
-        self._across = np.subtract(*self._skeleton.coms[feet])
 
     def _posed(self, more: dict[str, float]) -> Skeleton:
         base = self._model.body(self._roles.base).id
-        return skeleton_of(self._model, base, {**self._description.zero, **more})
+        return skeleton_of(self._model, base, {**self._zero, **more}).within(self._roles.frame)
 
     def _range_error(self, joint: str, reason: str) -> ModelError:
         return joint_error(joint, "range", self._description, self._source, reason)
@@ -91,7 +100,7 @@ class _Checks:
         robot, index = self._description, {n: k for k, n in enumerate(self._skeleton.joints)}
         leg = {name for leg in self._roles.legs for name in leg}
         for key, other in ((robot.zero, "zero"), (robot.posture, "posture")):
-            for name, angle in key.items():
+            for name, angle in present(self._model, key).items():
                 lower, upper = self._skeleton.ranges[index[name]]
                 if not lower - SLACK <= angle <= upper + SLACK:
                     raise KeyMistake(
@@ -106,41 +115,33 @@ class _Checks:
                     "joints other than legs and head: leave it out"
                 )
 
-    def base(self) -> None:
-        """The base must have z up and x forward."""
-        base = f"base: body {self._roles.base!r}"
-        up = self._hips_above_feet.mean(axis=0)
-        if np.linalg.norm(self._across) < 1e-6 or np.linalg.norm(up) < 1e-6:
-            raise KeyMistake(
-                "feet: at zero angles the feet are at one point or at the hips; expected straight "
-                "legs: state other angles as zero"
-            )
-        remedy = "turn its frame in the model, or state angles of straight legs as zero"
-        if up[2] < UPRIGHT * np.linalg.norm(up):
-            raise KeyMistake(
-                f"{base}: z is not up at zero angles, got the hips in direction {_text(up)} from "
-                f"the feet; expected (0, 0, 1): {remedy}"
-            )
-        if abs(self._across[1]) < ABREAST * np.linalg.norm(self._across):
-            raise KeyMistake(
-                f"{base}: x is not forward at zero angles, got the left foot in direction "
-                f"{_text(self._across)} from the right one; expected (0, 1, 0): {remedy}"
-            )
+    def toes(self) -> None:
+        """The foot must not be behind a joint of the toes."""
+        skeleton = self._skeleton
+        for side, leg in enumerate(self._legs):
+            above = skeleton.chain(leg[-1])
+            last = foot_joint(skeleton, above)
+            if last < len(above) - 1:
+                toe, foot = skeleton.joints[above[last + 1]], skeleton.bodies[above[last]]
+                raise KeyMistake(
+                    f"feet: {self._description.feet[side]!r} is behind the toe joint {toe!r}; "
+                    f"expected the foot itself, {foot!r}"
+                )
 
-    def sides(self) -> None:
-        """The left foot must be on the left, where the knees bend forward."""
-        if self._across[1] > 0.0:
+    def knees(self) -> None:
+        """The knees must bend forward, where forward follows from the left and the right foot."""
+        skeleton, feet = self._skeleton, self._description.feet
+        bend = [self._bend(leg) for leg in self._legs]
+        names = side_vote(*feet)
+        if not max(bend) < 0.0 and not (max(map(abs, bend)) == 0.0 and names < 0):
             return
         exchanged = "left and right are exchanged; expected the left foot first"
-        backward = f"x of body {self._roles.base!r} points backward; expected x forward"
-        left, right = self._roles.feet
-        where = f"{left!r}, the first, is to the right of {right!r} in the base"
-        bend = [_bend(self._skeleton, leg) for leg in self._legs]
-        if min(bend) > 0.0:
-            raise KeyMistake(f"feet: {where}: {exchanged}")
-        if max(bend) < 0.0:
-            raise KeyMistake(f"base: {where}, and the knees bend backward: {backward}")
-        raise KeyMistake(f"feet: {where}: {exchanged}, or {backward}")
+        backward = "the knees bend backward; expected forward: such legs are not supported"
+        vote = names or toe_vote(skeleton, *self._legs)
+        if vote < 0:
+            raise KeyMistake(f"feet: {feet[0]!r} and {feet[1]!r}: {exchanged}")
+        reason = backward if vote > 0 else f"{backward}; or {exchanged}"
+        raise KeyMistake(f"feet: {feet[0]!r} and {feet[1]!r}: {reason}")
 
     def pitching(self) -> None:
         """A leg must have three joints that pitch at zero angles."""
@@ -153,66 +154,89 @@ class _Checks:
                     f"at zero angles, got {got}; expected hip, knee and ankle"
                 )
 
+    def _bend(self, leg: Sequence[int]) -> float:
+        """Return how the range of a knee bends it, about the left axis: 1, -1, or 0 for both."""
+        knee = [j for j in leg if self._skeleton.is_pitch(j)][1]
+        sign = float(np.sign(self._skeleton.axes[knee, 1]))
+        lower, upper = np.subtract(_about_left(self._skeleton, knee), sign * self._zero_of(knee))
+        one_sided = np.isfinite([lower, upper]).all() and abs(lower + upper) > MIN_LIMITS
+        return float(np.sign(lower + upper)) if one_sided else 0.0
+
     def bending(self) -> None:
         """The ranges must include a bent leg."""
         for leg in self._legs:
             pitching = [j for j in leg if self._skeleton.is_pitch(j)]
             for part, joint, angle in zip(PITCHING, pitching, BENT, strict=True):
                 lower, upper = _about_left(self._skeleton, joint)
-                zero = self._zero(joint) * np.sign(self._skeleton.axes[joint, 1])
+                zero = self._zero_of(joint) * np.sign(self._skeleton.axes[joint, 1])
                 if not lower - SLACK <= zero + angle <= upper + SLACK:
                     name = self._skeleton.joints[joint]
                     raise self._range_error(
                         name,
                         f"the {part} cannot bend, got a range of "
                         f"{lower - zero:.2f} to {upper - zero:.2f} rad about the left axis; "
-                        f"expected {angle:g} in it: are left and right exchanged, x of the base "
-                        "backward, or the limits wrong?",
+                        f"expected {angle:g} in it: state its range, if the limits of the model "
+                        "are wrong",
                     )
 
-    def mirror(self) -> None:
-        """The right leg must be the mirror image of the left one."""
+    def mirror(self) -> tuple[dict[str, tuple[float, float]], list[str]]:
+        """The right leg must be the mirror image of the left one; return their common ranges."""
         size = float(np.linalg.norm(self._hips_above_feet.mean(axis=0)))
-        left_leg, right_leg = self._legs
-        for pair in mirrored_pairs(self._skeleton, left_leg, right_leg):
+        ranges, notes = dict[str, tuple[float, float]](), list[str]()
+        for pair in mirrored_pairs(self._skeleton, *self._legs):
             left, right = (self._skeleton.joints[j] for j in (pair.left, pair.right))
             shift, turn = 1e3 * pair.distance, degrees(pair.angle)
             for wrong, reason in (
                 (
                     pair.distance > MAX_SHIFT * size,
-                    f"axes are {shift:.1f} mm apart; expected at most {1e3 * MAX_SHIFT * size:.1f}",
+                    f"axes are {shift:.3g} mm apart; expected at most "
+                    f"{at_most(1e3 * MAX_SHIFT * size)}",
                 ),
                 (
                     pair.angle > MAX_TURN,
                     f"axes differ by {turn:.1f} deg; expected at most {degrees(MAX_TURN):.0f}",
                 ),
-                (
-                    pair.range > MAX_RANGE_DIFFERENCE,
-                    f"ranges differ by {pair.range:.2f} rad; expected at most "
-                    f"{MAX_RANGE_DIFFERENCE:g}",
-                ),
             ):
                 if wrong:
-                    one, other = (left, right) if left in self._description.range else (right, left)
                     raise self._range_error(
-                        one,
-                        f"not the mirror image of {other!r} in the plane y = 0 of "
-                        f"the base at zero angles: {reason}: correct the model, or state angles "
-                        "at which the legs are alike as zero, or the range",
+                        right,
+                        f"not the mirror image of {left!r} in the plane y = 0 of the base at zero "
+                        f"angles: {reason}: correct the model, or state angles at which the legs "
+                        "are alike as zero",
                     )
+            if pair.range > MAX_RANGE_DIFFERENCE:
+                ranges |= self._common_range(pair, left, right)
+                lower, upper = ranges[left]
+                notes.append(
+                    f"ranges of {left!r} and {right!r} differ by {pair.range:.2f} rad: the common "
+                    f"part is used, {lower:.3g} to {upper:.3g} rad of {left!r}"
+                )
+        return ranges, notes
+
+    def _common_range(
+        self, pair: MirroredPair, left: str, right: str
+    ) -> dict[str, tuple[float, float]]:
+        """Return the common part of the ranges of two mirrored joints, by joint [rad]."""
+        one, other = (self._skeleton.ranges[j] for j in (pair.left, pair.right))
+        image = -one[::-1] if pair.reversed else one
+        lower, upper = max(image[0], other[0]), min(image[1], other[1])
+        if not lower < upper:
+            key = left if left in self._description.range else right
+            raise self._range_error(
+                key,
+                f"the mirrored ranges of {left!r} and {right!r} have nothing in common, got "
+                f"{image[0]:.3g} to {image[1]:.3g} and {other[0]:.3g} to {other[1]:.3g} rad; "
+                "expected equal ones: state range",
+            )
+        mirrored = (-upper, -lower) if pair.reversed else (lower, upper)
+        return {left: mirrored, right: (lower, upper)}
 
     def freedom(self) -> None:
         """A bent leg must be able to move its foot in all six directions."""
-        angles = {}
-        for leg in self._legs:
-            pitching = [j for j in leg if self._skeleton.is_pitch(j)]
-            for joint, angle in zip(pitching, BENT, strict=True):
-                sign = float(np.sign(self._skeleton.axes[joint, 1]))
-                angles[self._skeleton.joints[joint]] = self._zero(joint) + sign * angle
-        bent = self._posed(angles)
+        posed = self._posed(bent(self._skeleton, self._legs, self._zero))
         for leg, names in zip(self._legs, self._roles.legs, strict=True):
-            arms = bent.anchors[leg[-1]] - bent.anchors[leg]
-            axes, size = bent.axes[leg], float(np.linalg.norm(arms[0]))
+            arms = posed.anchors[leg[-1]] - posed.anchors[leg]
+            axes, size = posed.axes[leg], float(np.linalg.norm(arms[0]))
             jacobian = np.hstack([axes, np.cross(axes, arms) / size])
             values = np.linalg.svd(jacobian, compute_uv=False)
             if values[-1] < MIN_FREEDOM * values[0]:
@@ -268,7 +292,8 @@ class _Checks:
         if isinstance(camera, str):
             body = model.body(int(model.cam_bodyid[model.camera(camera).id])).name
         else:
-            body, leg = camera.body, float(np.linalg.norm(self._hips_above_feet[0]))
+            body = self._prepared.where(camera.body).body
+            leg = float(np.linalg.norm(self._hips_above_feet[0]))
             distance = float(np.linalg.norm(camera.position))
             if distance > MAX_CAMERA * leg:
                 raise KeyMistake(
@@ -302,8 +327,8 @@ class _Checks:
                 f"expected {unit} or its opposite: name the joint that does, or leave the key out"
             )
 
-    def _zero(self, joint: int) -> float:
-        return self._description.zero.get(self._skeleton.joints[joint], 0.0)
+    def _zero_of(self, joint: int) -> float:
+        return self._zero.get(self._skeleton.joints[joint], 0.0)
 
 
 def _about_left(skeleton: Skeleton, joint: int) -> tuple[float, float]:
@@ -312,15 +337,6 @@ def _about_left(skeleton: Skeleton, joint: int) -> tuple[float, float]:
     if skeleton.axes[joint, 1] < 0.0:
         lower, upper = -upper, -lower
     return float(lower), float(upper)
-
-
-def _bend(skeleton: Skeleton, leg: Sequence[int]) -> float:
-    """Return the direction in which the ranges bend a knee about the left axis: 1, -1 or 0."""
-    pitching = [j for j in leg if skeleton.is_pitch(j)]
-    if len(pitching) != len(PITCHING):
-        return 0.0
-    lower, upper = _about_left(skeleton, pitching[1])
-    return 0.0 if upper == -lower else float(np.sign(upper + lower))
 
 
 def _text(direction: Array) -> str:

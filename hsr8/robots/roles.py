@@ -2,25 +2,32 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from math import acos, degrees
 
 import mujoco
+import numpy as np
+from numpy.typing import NDArray
 
-from hsr8.errors import ModelError
 from hsr8.robots.description import CameraMount, RobotDescription
 from hsr8.robots.key_mistake import KeyMistake, require_name
-from hsr8.robots.skeleton import FREE, HINGE
+from hsr8.robots.prepare import LEG_JOINTS, Prepared
+from hsr8.robots.skeleton import HINGE, SAME, BaseFrame, Posed
 
+Array = NDArray[np.float64]
 Leg = tuple[str, str, str, str, str, str]
 
-LEG_JOINTS = 6
+EXPECTED = f"{LEG_JOINTS} hinge joints per leg: three at the hip, a knee, two at the ankle"
+MAX_LEFT_ANGLE, MAX_UP_ANGLE = 10.0, 20.0  # from the nearest axis of the base [deg]
+MIN_STANCE = 1e-3  # distance of the feet, and height of the hips [m]
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, eq=False)
 class Roles:
     """Parts of a robot by name in its MuJoCo model.
 
     Attributes:
         base: body with the free joint.
+        frame: of the base, in that body.
         feet: bodies of the left and the right foot.
         legs: six hinge joints of the left and the right leg, hip first.
         head: pan and tilt joint, if the robot has a movable head.
@@ -29,6 +36,7 @@ class Roles:
     """
 
     base: str
+    frame: BaseFrame
     feet: tuple[str, str]
     legs: tuple[Leg, Leg]
     head: tuple[str, str] | None
@@ -36,115 +44,190 @@ class Roles:
     trunk: str
 
 
-def find_roles(model: mujoco.MjModel, description: RobotDescription, source: str) -> Roles:
+def find_roles(model: mujoco.MjModel, description: RobotDescription, prepared: Prepared) -> Roles:
     """Return the roles that a description states or that follow from the kinematic tree.
 
     Args:
-        model: compiled.
-        description: of the robot; its joints are those of the model.
-        source: model file, which begins the messages about it.
+        model: compiled from `prepared`.
+        description: of the robot.
+        prepared: model, in which some links are parts of a body.
 
     Raises:
-        KeyMistake: a name is unknown, or a leg lacks six hinge joints.
-        ModelError: the base is not free.
+        KeyMistake: a name is unknown, a leg lacks six hinge joints, or the robot does not stand on
+            its feet.
     """
-    tree = _Tree(model, description, source)
-    tree.require_names()
-    feet = description.feet
-    base = tree.base(feet)
-    left, right = (tree.leg(foot, base) for foot in feet)
-    if common := [name for name in left if name in right]:
-        left_own, right_own = (tuple(n for n in leg if n not in common) for leg in (left, right))
+    tree = _Tree(model, prepared)
+    _require_camera(model, description, prepared)
+    left, right = (prepared.where(foot).body for foot in description.feet)
+    legs = tree.leg(description.feet[0], left), tree.leg(description.feet[1], right)
+    if common := [name for name in legs[0] if name in legs[1]]:
+        left_own, right_own = (tuple(n for n in leg if n not in common) for leg in legs)
         own = left_own if len(left_own) < len(right_own) else right_own
         raise KeyMistake(
             f"feet: a leg has {_count(own)} that it does not have in common with the other leg, "
-            f"got {', '.join(own) or 'none'}; expected {LEG_JOINTS} hinge joints per leg: three "
-            "at the hip, a knee, two at the ankle"
+            f"got {', '.join(own) or 'none'}; expected {EXPECTED}"
         )
+    for key in ("head", "shoulders"):
+        for name in getattr(description, key) or ():
+            if name in prepared.held:
+                raise KeyMistake(
+                    f"{key}: joint {name!r} cannot move: {prepared.held[name]}; expected a driven "
+                    "joint: leave the key out"
+                )
     head, shoulders = description.head, description.shoulders
     carried = [tree.joint_parent(name) for name in shoulders or head or ()]
-    trunk = tree.common_ancestor(carried) if carried else tree.body(base)
+    trunk = tree.common_ancestor(carried) if carried else model.body(prepared.root).id
     return Roles(
-        base=base,
-        feet=feet,
-        legs=(left, right),
+        base=prepared.root,
+        frame=_base_frame(model, description, prepared, (left, right), legs),
+        feet=(left, right),
+        legs=legs,
         head=head,
         shoulders=shoulders,
         trunk=model.body(trunk).name,
     )
 
 
+def pose_of(posed: Posed, prepared: Prepared, link: str) -> tuple[Array, Array]:
+    """Return rotation (3, 3) and position (3,) [m] of a link of the file."""
+    part = prepared.where(link)
+    body = posed.model.body(part.body).id
+    rotation, position = posed.data.xmat[body].reshape(3, 3), posed.data.xpos[body]
+    return rotation @ part.pose[:3, :3], position + rotation @ part.pose[:3, 3]
+
+
+def _base_frame(
+    model: mujoco.MjModel,
+    description: RobotDescription,
+    prepared: Prepared,
+    feet: tuple[str, str],
+    legs: tuple[Leg, Leg],
+) -> BaseFrame:
+    """Return the frame of the base, whose axes are those of its link nearest to the robot's.
+
+    Left is from the right to the left foot, up from the feet to the hips, at the angles `zero`.
+
+    Raises:
+        KeyMistake: the robot does not stand with its feet side by side below the hips.
+    """
+    posed = Posed.at(model, present(model, description.zero))
+    link, origin = pose_of(posed, prepared, prepared.base)
+    hips, ankles = (
+        [link.T @ posed.data.xanchor[model.joint(leg[end]).id] for leg in legs] for end in (0, -1)
+    )
+    across, upward = ankles[0] - ankles[1], sum(hips) - sum(ankles)
+    if min(float(np.linalg.norm(across)), float(np.linalg.norm(upward))) < MIN_STANCE:
+        raise KeyMistake(
+            f"feet: at zero angles {feet[0]!r} and {feet[1]!r} are at one point or at the hips; "
+            "expected straight legs side by side: state other angles as zero"
+        )
+    left = _axis(across, "from the right to the left foot", prepared.base, MAX_LEFT_ANGLE)
+    up = _axis(upward, "from the feet to the hips", prepared.base, MAX_UP_ANGLE)
+    forward = np.cross(left, up)
+    if not forward.any():
+        raise KeyMistake(
+            "zero: the feet are not side by side below the hips; expected a robot that stands: "
+            "state angles of straight legs as zero"
+        )
+    turn = np.array([forward, left, up])
+    if (turn == np.eye(3)).all() and prepared.base == prepared.root:
+        return SAME
+    return BaseFrame(turn @ link.T, origin)
+
+
+def base_note(roles: Roles, prepared: Prepared) -> list[str]:
+    """Return a note on the directions of the base, where they are not those of its link."""
+    if roles.frame.is_body:
+        return []
+    part = prepared.where(prepared.base)
+    link = np.eye(3) if prepared.base == prepared.root else part.pose[:3, :3]
+    turn = roles.frame.rotation @ link
+    if np.allclose(turn, np.eye(3)):
+        return []
+    names = (_axis_name(turn[row]) for row in (0, 2))
+    return [f"base turned: forward is {next(names)} of {prepared.base!r}, up its {next(names)}"]
+
+
+def present(model: mujoco.MjModel, angles: dict[str, float]) -> dict[str, float]:
+    """Return the angles of the joints that a model has."""
+    names = {model.joint(j).name for j in range(model.njnt)}
+    return {name: angle for name, angle in angles.items() if name in names}
+
+
+def _axis(vector: Array, meaning: str, base: str, max_angle: float) -> Array:
+    """Return the axis of the base nearest to a vector (3,)."""
+    k = int(np.abs(vector).argmax())
+    axis = np.zeros(3)
+    axis[k] = np.sign(vector[k])
+    angle = degrees(acos(min(1.0, float(vector @ axis) / float(np.linalg.norm(vector)))))
+    if angle > max_angle:
+        direction = vector / np.linalg.norm(vector)
+        raise KeyMistake(
+            f"base: at zero angles the direction {meaning} is {angle:.0f} deg from the axes of "
+            f"{base!r}, got ({', '.join(f'{v + 0.0:.2f}' for v in direction)}); expected at most "
+            f"{max_angle:.0f} deg: turn its frame in the model, or state angles of straight legs "
+            "as zero"
+        )
+    return axis
+
+
+def _axis_name(axis: Array) -> str:
+    k = int(np.abs(axis).argmax())
+    return f"{'-' if axis[k] < 0.0 else ''}{'xyz'[k]}"
+
+
+def _require_camera(
+    model: mujoco.MjModel, description: RobotDescription, prepared: Prepared
+) -> None:
+    """Refuse the name of a camera, or of its body, that the model lacks."""
+    if isinstance(description.camera, CameraMount):
+        bodies = [model.body(b).name for b in range(1, model.nbody)]
+        names = [*bodies, *prepared.places]
+        require_name("camera.body", "body", description.camera.body, names)
+    elif description.camera is not None:
+        cameras = [model.camera(i).name for i in range(model.ncam)]
+        require_name("camera", "camera", description.camera, cameras)
+
+
 class _Tree:
-    """Names of a model, and paths between its bodies."""
+    """Paths between the bodies of a model."""
 
-    def __init__(self, model: mujoco.MjModel, description: RobotDescription, source: str) -> None:
-        self._model, self._description, self._source = model, description, source
-        self._bodies = {model.body(b).name: b for b in range(1, model.nbody)}
-        self._joints = {model.joint(j).name: j for j in range(model.njnt)}
+    def __init__(self, model: mujoco.MjModel, prepared: Prepared) -> None:
+        self._model, self._prepared = model, prepared
 
-    def body(self, name: str) -> int:
-        return self._bodies[name]
-
-    def require_names(self) -> None:
-        """Refuse names of bodies and cameras that the model lacks."""
-        robot, bodies = self._description, list(self._bodies)
-        for side, foot in zip(("left", "right"), robot.feet, strict=True):
-            require_name(f"feet: {side} foot", "body", foot, bodies)
-        if robot.base is not None:
-            require_name("base", "body", robot.base, bodies)
-        if isinstance(robot.camera, CameraMount):
-            require_name("camera.body", "body", robot.camera.body, bodies)
-        elif robot.camera is not None:
-            cameras = [self._model.camera(i).name for i in range(self._model.ncam)]
-            require_name("camera", "camera", robot.camera, cameras)
-
-    def base(self, feet: tuple[str, str]) -> str:
-        """Return the name of the body with the free joint above both feet."""
-        free = [[b for b in self._path(self.body(foot)) if self._is_free(b)] for foot in feet]
-        stated = self._description.base
-        if not free[0] or not free[1]:
-            top = self._path(self.body(feet[0]))[-1]
-            fixed = stated or self._model.body(top).name
-            raise ModelError(
-                f"{self._source}: base: body {fixed!r} has no free joint, so the robot is fixed to "
-                "the world; expected a free base: add <freejoint/> to that <body> of the model"
-            )
-        if free[0] != free[1]:
-            raise KeyMistake("feet: belong to two robots; expected both feet below one base")
-        name: str = self._model.body(free[0][0]).name
-        if stated not in (None, name):
-            raise KeyMistake(
-                f"base: body {stated!r} has no free joint; expected {name!r}, which has one"
-            )
-        return name
-
-    def leg(self, foot: str, base: str) -> Leg:
-        """Return the last six hinge joints above a foot."""
+    def leg(self, foot: str, body: str) -> Leg:
+        """Return the last six hinge joints above a foot that is a part of a body."""
         model, names = self._model, list[str]()
-        for body in self._path(self.body(foot)):
-            if body == self.body(base) or len(names) >= LEG_JOINTS:
+        for above in self._path(model.body(body).id):
+            if model.body(above).name == self._prepared.root or len(names) >= LEG_JOINTS:
                 break
-            first = int(model.body_jntadr[body])
-            for j in reversed(range(first, first + int(model.body_jntnum[body]))):
+            first = int(model.body_jntadr[above])
+            for j in reversed(range(first, first + int(model.body_jntnum[above]))):
                 name = model.joint(j).name
                 if model.jnt_type[j] != HINGE and len(names) < LEG_JOINTS:
                     raise KeyMistake(
                         f"feet: joint {name!r} between foot {foot!r} and base is a slide or ball "
-                        f"joint; expected {LEG_JOINTS} hinge joints per leg"
+                        f"joint; expected {EXPECTED}"
                     )
                 names.insert(0, name)
         if len(names) < LEG_JOINTS:
+            held = self._held(foot)
             raise KeyMistake(
-                f"feet: the leg above foot {foot!r} has {_count(names)}, got "
-                f"{', '.join(names) or 'none'}; expected {LEG_JOINTS} hinge joints per leg: three "
-                "at the hip, a knee, two at the ankle"
+                f"feet: the leg above foot {foot!r} has {_count(names)}{held}, got "
+                f"{', '.join(names) or 'none'}; expected {EXPECTED}"
             )
         hip, thigh, calf, shank, ankle, sole = names[-LEG_JOINTS:]
         return hip, thigh, calf, shank, ankle, sole
 
+    def _held(self, foot: str) -> str:
+        """Return which joints of the leg are held, for a message."""
+        held = self._prepared.held_above.get(foot, ())
+        texts = [f"{name}: {self._prepared.held[name]}" for name in held]
+        return f" and {len(held)} that are held ({', '.join(texts)})" if held else ""
+
     def joint_parent(self, joint: str) -> int:
         """Return the body above that of a joint."""
-        return int(self._model.body_parentid[self._model.jnt_bodyid[self._joints[joint]]])
+        return int(self._model.body_parentid[self._model.joint(joint).bodyid[0]])
 
     def common_ancestor(self, bodies: Sequence[int]) -> int:
         """Return the lowest body that carries all `bodies`."""
@@ -158,10 +241,6 @@ class _Tree:
             path.append(body)
             body = int(self._model.body_parentid[body])
         return path
-
-    def _is_free(self, body: int) -> bool:
-        first, n = int(self._model.body_jntadr[body]), int(self._model.body_jntnum[body])
-        return n > 0 and bool(self._model.jnt_type[first] == FREE)
 
 
 def _count(joints: Sequence[str]) -> str:

@@ -3,7 +3,7 @@
 import mujoco
 
 from hsr8.errors import ModelError
-from hsr8.robots.posed import Posed
+from hsr8.robots.skeleton import Posed
 
 TOUCHING = -5e-4  # distance of shapes that overlap [m]
 NEIGHBOURS = 3  # joints between links whose shapes may overlap by the maker's choice
@@ -42,7 +42,7 @@ def exclude_neighbours(spec: mujoco.MjSpec, ready: Posed, source: str) -> list[s
             raise SelfCollision(
                 f"{source}: ready posture: {names[0]!r} and {names[1]!r} overlap by "
                 f"{-1e3 * distance:.1f} mm; expected a posture without self-collision: state "
-                "angles of the arms in posture, or exclude the pair in the model"
+                "angles of the arms in posture, or add <exclude> for the two bodies to <contact>"
             )
         spec.add_exclude(bodyname1=names[0], bodyname2=names[1])
         notes.append(f"overlapping neighbours {names[0]!r} and {names[1]!r} do not collide")

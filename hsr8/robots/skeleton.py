@@ -1,9 +1,9 @@
-"""Skeleton of a robot: its hinge joints as axes in space, at given angles.
+"""Compiled robot in a posture, and its skeleton: the hinge joints as axes in space.
 
 A *group* is a set of bodies that move together with one hinge; the base is the group -1.
 """
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import mujoco
@@ -14,7 +14,71 @@ Array = NDArray[np.float64]
 
 HINGE = int(mujoco.mjtJoint.mjJNT_HINGE)
 FREE = int(mujoco.mjtJoint.mjJNT_FREE)
+BALL = int(mujoco.mjtJoint.mjJNT_BALL)
 PARALLEL = 0.9  # minimum cosine of an axis that counts as a yaw or pitch axis [1]
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class BaseFrame:
+    """Frame of the base: x forward, y to the left, z up.
+
+    Attributes:
+        rotation: its axes in the body with the free joint, as rows (3, 3).
+        origin: its origin in that body (3,) [m].
+    """
+
+    rotation: Array
+    origin: Array
+
+    @property
+    def is_body(self) -> bool:
+        """Whether the frame is that of the body."""
+        return bool((self.rotation == np.eye(3)).all() and not self.origin.any())
+
+
+SAME = BaseFrame(np.eye(3), np.zeros(3))
+"""Base frame of a robot whose body with the free joint has x forward and z up."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Posed:
+    """Compiled robot in a posture.
+
+    Attributes:
+        model: compiled robot.
+        data: its state, with all places computed.
+    """
+
+    model: mujoco.MjModel
+    data: mujoco.MjData
+
+    @classmethod
+    def at(
+        cls,
+        model: mujoco.MjModel,
+        angles: Mapping[str, float],
+        height: float = 0.0,
+        base: BaseFrame = SAME,
+    ) -> "Posed":
+        """Return a robot with its base level at a height [m] above the origin.
+
+        Args:
+            model: compiled robot, its free joint first.
+            angles: of joints; zero by default [rad].
+            height: of the base [m].
+            base: frame of the base.
+        """
+        data = mujoco.MjData(model)
+        data.qpos[:] = 0.0
+        data.qpos[2:4] = height, 1.0
+        data.qpos[model.jnt_qposadr[model.jnt_type == BALL]] = 1.0
+        if not base.is_body:
+            mujoco.mju_mat2Quat(data.qpos[3:7], base.rotation.ravel())
+            data.qpos[:3] -= base.rotation @ base.origin
+        for name, angle in angles.items():
+            data.qpos[model.joint(name).qposadr[0]] = angle
+        mujoco.mj_forward(model, data)
+        return cls(model, data)
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -80,13 +144,15 @@ class Skeleton:
     def _below(self, joint: int) -> list[int]:
         return [j for j in range(len(self.joints)) if joint in self.chain(j)]
 
-    def turned(self, rotation: Array) -> "Skeleton":
-        """Return the skeleton in a frame with the rows of `rotation` (3, 3) as its axes."""
+    def within(self, base: BaseFrame) -> "Skeleton":
+        """Return the skeleton in the frame of the base."""
+        if base.is_body:
+            return self
         return replace(
             self,
-            axes=self.axes @ rotation.T,
-            anchors=self.anchors @ rotation.T,
-            coms=self.coms @ rotation.T,
+            axes=self.axes @ base.rotation.T,
+            anchors=(self.anchors - base.origin) @ base.rotation.T,
+            coms=(self.coms - base.origin) @ base.rotation.T,
         )
 
     def is_pitch(self, joint: int) -> bool:
@@ -178,3 +244,55 @@ def _is_below(model: mujoco.MjModel, body: int, root: int) -> bool:
     while body > root:
         body = int(model.body_parentid[body])
     return body == root
+
+
+@dataclass(frozen=True, slots=True)
+class MirroredPair:
+    """Joints of a left and a right chain, and their differences from mirror images.
+
+    Attributes:
+        left, right: indices of the joints.
+        distance: of the axis of the right joint from the mirrored anchor of the left one [m].
+        angle: between the axes, without their direction [rad].
+        range: maximum difference of the limits [rad].
+        reversed: whether an equal angle of both turns them in opposite directions of the image.
+    """
+
+    left: int
+    right: int
+    distance: float
+    angle: float
+    range: float
+    reversed: bool
+
+
+def mirrored_pairs(
+    skeleton: Skeleton, left: Sequence[int], right: Sequence[int], plane: float = 0.0
+) -> Iterator[MirroredPair]:
+    """Yield the pairs of two chains of equal length.
+
+    An anchor may be anywhere on its axis, and mirrored axes may point either way.
+
+    Args:
+        skeleton: with x forward, y to the left and z up.
+        left: indices of joints.
+        right: indices of their counterparts.
+        plane: y of the plane of symmetry [m].
+    """
+    for a, b in zip(left, right, strict=True):
+        axis = skeleton.axes[a] * [-1.0, 1.0, -1.0]
+        anchor = skeleton.anchors[a] * [1.0, -1.0, 1.0] + [0.0, 2.0 * plane, 0.0]
+        cosine = float(axis @ skeleton.axes[b])
+        limits = skeleton.ranges[a] if cosine > 0.0 else -skeleton.ranges[a][::-1]
+        same = limits == skeleton.ranges[b]
+        differences = np.subtract(limits, skeleton.ranges[b], where=~same, out=np.zeros(2))
+        yield MirroredPair(
+            left=a,
+            right=b,
+            distance=float(
+                np.linalg.norm(np.cross(skeleton.anchors[b] - anchor, skeleton.axes[b]))
+            ),
+            angle=float(np.arccos(min(1.0, abs(cosine)))),
+            range=float(np.abs(differences).max()),
+            reversed=cosine <= 0.0,
+        )

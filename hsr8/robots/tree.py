@@ -7,6 +7,7 @@ import mujoco
 import numpy as np
 from numpy.typing import NDArray
 
+from hsr8.robots.mechanism import TO_JOINT
 from hsr8.robots.roles import Roles
 from walking.body.sole import Sole
 from walking.body.tree import Frame, RobotTree, turn
@@ -172,18 +173,23 @@ class _Builder:
 
 
 def max_torque(model: mujoco.MjModel, joints: Ints, servos: Ints) -> Array:
-    """Return the maximum torque of servos (n,) on joints (n,), infinite without limit [N m]."""
-    servo = np.where(
-        model.actuator_forcelimited[servos], model.actuator_forcerange[servos, 1], np.inf
+    """Return the maximum torque of servos (n,) on joints (n,), infinite without limit [N m].
+
+    Of limits that differ by direction, the smaller one counts.
+    """
+    forces, torques = (
+        np.abs(limits).min(axis=1)
+        for limits in (model.actuator_forcerange[servos], model.jnt_actfrcrange[joints])
     )
-    joint = np.where(model.jnt_actfrclimited[joints], model.jnt_actfrcrange[joints, 1], np.inf)
+    servo = np.where(model.actuator_forcelimited[servos], forces, np.inf)
+    joint = np.where(model.jnt_actfrclimited[joints], torques, np.inf)
     torque: Array = np.minimum(np.abs(model.actuator_gear[servos, 0]) * servo, joint)
     return torque
 
 
 def servos_of(model: mujoco.MjModel) -> dict[int, int]:
     """Return the actuator of each joint that has one; those of tendons move no joint directly."""
-    on_joint = np.flatnonzero(model.actuator_trntype == mujoco.mjtTrn.mjTRN_JOINT)
+    on_joint = np.flatnonzero(np.isin(model.actuator_trntype, TO_JOINT))
     return {int(model.actuator_trnid[a, 0]): int(a) for a in on_joint}
 
 

@@ -21,6 +21,7 @@ RANDOM_SEEDS = range(8)
 MAX_ERROR = 0.05  # of a steady velocity, relative [1]
 MAX_TILT = 8.0  # 99th percentile of the tilt in a steady walk [deg]
 SHRINK = 0.85  # of a speed that failed
+SLOW = 0.5  # of the rehearsed speed, below which a warning names the joint [1]
 SMALLEST = 0.1  # of the rehearsed limit, below which an axis is given up [1]
 STOPS, CORNERS = 0.15, 0.15  # fractions of random commands at rest and at the corners
 HEAD_INTERVAL = 0.4  # between head targets [s]
@@ -42,6 +43,14 @@ class Measured:
     roll_sigma: float
     yaw_sigma: float
     height_sigma: float
+
+
+@dataclass(frozen=True, slots=True)
+class _Limit:
+    """Largest speed along an axis, and the joint that limits it in words."""
+
+    speed: float
+    reason: str
 
 
 def time_scale(parameters: WalkingParameters) -> float:
@@ -90,8 +99,10 @@ def random_head(robot: LoadedRobot, seed: int) -> Callable[[float], HeadTarget]:
     return lambda time: targets[int(time / HEAD_INTERVAL)]
 
 
-def calibrate(robot: LoadedRobot, report: Report = lambda _line: None) -> Measured:
-    """Measure a robot.
+def calibrate(
+    robot: LoadedRobot, report: Report = lambda _line: None
+) -> tuple[Measured, list[str]]:
+    """Measure a robot; return warnings of speeds far below the rehearsed ones, too.
 
     Args:
         robot: with its rehearsed limits.
@@ -99,7 +110,9 @@ def calibrate(robot: LoadedRobot, report: Report = lambda _line: None) -> Measur
     """
     parameters = robot.parameters
     trial, scale = Trial(robot), time_scale(parameters)
-    speed = {axis: _axis_limit(trial, axis, scale, report) for axis in AXES}
+    limits = {axis: _axis_limit(trial, axis, scale, report) for axis in AXES}
+    speed = {axis: limit.speed for axis, limit in limits.items()}
+    reasons = {axis: limit.reason for axis, limit in limits.items()}
     while True:
         trial.parameters = replace(parameters, limits=replace(parameters.limits, **speed))
         walks = list(_random_walks(trial, speed, scale))
@@ -108,9 +121,15 @@ def calibrate(robot: LoadedRobot, report: Report = lambda _line: None) -> Measur
         if not falls:
             break
         speed = {axis: SHRINK * value for axis, value in speed.items()}
+        reasons = dict.fromkeys(AXES, walks[-1].limiting_joint(robot.model))
+    warnings = [
+        f"{axis}: {speed[axis] / top:.0%} of the rehearsed {top:.3g}: {reasons[axis]}"
+        for axis in AXES
+        if speed[axis] < SLOW * (top := float(getattr(parameters.limits, axis)))
+    ]
     noise = _odometry_noise(walks)
     sigmas = np.sqrt(np.mean(np.concatenate([w.camera for w in walks]) ** 2, axis=0)).tolist()
-    return Measured(
+    measured = Measured(
         speed={axis: _digits(value) for axis, value in speed.items()},
         turn_delay=_digits(_turn_delay(trial, speed["wz"], scale)),
         lag=_digits(float(np.mean([_lag(walk) for walk in walks]))),
@@ -121,12 +140,13 @@ def calibrate(robot: LoadedRobot, report: Report = lambda _line: None) -> Measur
         yaw_sigma=_digits(sigmas[2]),
         height_sigma=_digits(sigmas[3]),
     )
+    return measured, warnings
 
 
-def _axis_limit(trial: Trial, axis: str, scale: float, report: Report) -> float:
+def _axis_limit(trial: Trial, axis: str, scale: float, report: Report) -> _Limit:
     """Return the highest speed along an axis that a steady walk holds."""
     top: float = getattr(trial.parameters.limits, axis)
-    speed = float(top)
+    speed, reason = float(top), ""
     while speed > SMALLEST * top:
         command = command_of(axis, speed)
         walk = trial.walk(command, scale * STEADY_TIME)
@@ -136,9 +156,9 @@ def _axis_limit(trial: Trial, axis: str, scale: float, report: Report) -> float:
         result = "falls" if walk.falls else f"error {error:.1%}, tilt {tilt:.1f} deg"
         report(f"{axis} {speed:.3f}: {result}")
         if held:
-            return speed
-        speed *= SHRINK
-    return speed
+            break
+        speed, reason = SHRINK * speed, walk.limiting_joint(trial.robot.model)
+    return _Limit(speed, reason)
 
 
 def _random_walks(trial: Trial, speed: dict[str, float], scale: float) -> Iterator[Walked]:

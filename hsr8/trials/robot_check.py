@@ -6,11 +6,14 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from hsr8.robots.defaults import navigation_speed
 from hsr8.robots.loaded import LoadedRobot
+from hsr8.robots.servos import OWN_SERVOS
+from hsr8.trials.calibration import random_commands, random_head, time_scale
 from hsr8.trials.walk import Trial, Walked
 from walking.body.robot_model import RobotModel
 from walking.command import VelocityCommand
-from walking.parameters import LimitParameters, WalkingParameters
+from walking.parameters import LimitParameters
 from walking.rules import one_leg_load
 
 Array = NDArray[np.float64]
@@ -18,6 +21,7 @@ Report = Callable[["WalkResult"], None]
 
 WALK_TIME = 9.0  # of each walk, in the time scale of HSR-VIII [s]
 FRACTION = 0.5  # of the speed limits at which the robot walks [1]
+RANDOM_SEEDS, RANDOM_WALKS = range(4), 3.0  # walks under random commands, and their length [1]
 MAX_ERROR = 0.2  # of a velocity that still counts as followed, relative [1]
 DIRECTIONS: dict[str, tuple[str, float]] = {  # speed limit and sign
     "stand": ("vx", 0.0),
@@ -42,6 +46,7 @@ class WalkResult:
             stands or fell before a stride.
         tilt: 99th percentile of the tilt of the trunk [deg].
         drift: distance from the start while standing [m].
+        limit: leg joint that was longest at a limit, and the limit.
     """
 
     direction: str
@@ -50,13 +55,14 @@ class WalkResult:
     error: float | None
     tilt: float
     drift: float | None
+    limit: str
 
     def reason(self) -> str | None:
         """Return why the robot failed; None if it did not."""
         if self.fell:
-            return f"{self.direction}: fell"
+            return f"{self.direction}: fell, {self.limit}"
         if self.error is not None and self.error > MAX_ERROR:
-            return f"{self.direction}: velocity error {self.error:.0%}"
+            return f"{self.direction}: velocity error {self.error:.0%}, {self.limit}"
         return None
 
 
@@ -66,7 +72,7 @@ class JointUse:
 
     Attributes:
         joint: name.
-        torque: peak over maximum torque [1].
+        torque: peak over maximum torque [1]; None without a limit.
         speed: peak over maximum speed [1]; None without a limit.
         range: largest distance from the middle of the range over half of it [1]; None without one,
             and of joints that keep their angle.
@@ -77,7 +83,7 @@ class JointUse:
     """
 
     joint: str
-    torque: float
+    torque: float | None
     speed: float | None
     range: float | None
     saturated: float
@@ -86,7 +92,7 @@ class JointUse:
 
     def worst(self) -> float:
         """Return the largest use of a limit [1]."""
-        return max(self.torque, self.speed or 0.0, self.range or 0.0)
+        return max(self.torque or 0.0, self.speed or 0.0, self.range or 0.0)
 
 
 def check_robot(
@@ -94,7 +100,8 @@ def check_robot(
 ) -> tuple[list[WalkResult], list[JointUse]]:
     """Return the result of each walk, and the use of each joint, the worst first.
 
-    A robot that falls while standing does not walk.
+    A robot that falls while standing does not walk. One that walks in every direction also walks
+    under random commands within the speed limits of navigation, with a moving head.
 
     Args:
         robot: to check.
@@ -102,28 +109,44 @@ def check_robot(
         duration: of each walk, in the time scale of HSR-VIII [s].
     """
     trial, results, walks = Trial(robot), [], []
-    step = robot.parameters.gait.footstep_time
-    duration *= step / WalkingParameters().gait.footstep_time
+    duration *= time_scale(robot.parameters)
     for direction, (limit, sign) in DIRECTIONS.items():
         command = _command(robot.parameters.limits, limit, sign)
         walk = trial.walk(command, duration)
-        result = _result(direction, command, walk)
+        result = _result(direction, command, walk, robot)
         report(result)
         results.append(result)
         walks.append(walk)
         if result.fell and not result.speed:
             break  # a robot that cannot stand cannot walk
+    scale = time_scale(robot.parameters)
+    for seed in () if any(result.fell for result in results) else RANDOM_SEEDS:
+        commands = random_commands(navigation_speed(robot), scale, seed)
+        length = RANDOM_WALKS * duration
+        walk = trial.walk(commands, length, seed, head=random_head(robot, seed))
+        result = _result(f"random {seed + 1}", None, walk, robot)
+        report(result)
+        results.append(result)
+        walks.append(walk)
     uses = _uses(robot, walks)
     return results, sorted(uses, key=JointUse.worst, reverse=True)
 
 
-def reasons(results: Sequence[WalkResult], joints: Sequence[JointUse]) -> list[str]:
-    """Return why a robot failed; empty if it stands and walks."""
+def reasons(
+    robot: LoadedRobot, results: Sequence[WalkResult], joints: Sequence[JointUse]
+) -> list[str]:
+    """Return why a robot failed, and remedies; empty if it stands and walks."""
     weak = [j for j in joints if j.one_leg is not None and j.one_leg > 1.0]
     texts = [
         f"{j.joint}: {j.one_leg:.0%} of its torque to carry the robot on one leg" for j in weak
     ]
-    return [reason for result in results if (reason := result.reason())] + texts
+    remedies = []
+    fallen = [result.direction for result in results if result.fell]
+    if "stand" in fallen and OWN_SERVOS in robot.notes:
+        remedies.append('the servos of the model do not hold it: state servo = "rule"')
+    elif fallen and robot.description.calibration is None:
+        remedies.append("`hsr8 robot calibrate` finds speeds at which it does not fall")
+    return [reason for result in results if (reason := result.reason())] + texts + remedies
 
 
 def _command(limits: LimitParameters, limit: str, sign: float) -> VelocityCommand:
@@ -131,15 +154,28 @@ def _command(limits: LimitParameters, limit: str, sign: float) -> VelocityComman
     return VelocityCommand(**{limit.removesuffix("_backward"): speed})
 
 
-def _result(direction: str, command: VelocityCommand, walk: Walked) -> WalkResult:
-    speed = float(np.abs(command.velocity).max())
-    error = None
-    if speed:
+def _result(
+    direction: str, command: VelocityCommand | None, walk: Walked, robot: LoadedRobot
+) -> WalkResult:
+    """Return the result of a walk; of random commands, None, only whether the robot fell."""
+    speed = 0.0 if command is None else float(np.abs(command.velocity).max())
+    error = drift = None
+    if command is None:
+        pass
+    elif speed:
         difference = np.abs(walk.velocity() - command.velocity).max() / speed
         error = float(difference) if np.isfinite(difference) else None
-    drift = None if speed else float(np.hypot(*(walk.poses[-1, :2] - walk.poses[0, :2])))
-    tilt = float(np.percentile(walk.tilt, 99.0))
-    return WalkResult(direction, speed, bool(walk.falls), error, tilt, drift)
+    else:
+        drift = float(np.hypot(*(walk.poses[-1, :2] - walk.poses[0, :2])))
+    return WalkResult(
+        direction=direction,
+        speed=speed,
+        fell=bool(walk.falls),
+        error=error,
+        tilt=float(np.percentile(walk.tilt, 99.0)),
+        drift=drift,
+        limit=walk.limiting_joint(robot.model),
+    )
 
 
 def _uses(robot: LoadedRobot, walks: Sequence[Walked]) -> Iterator[JointUse]:
@@ -162,12 +198,12 @@ def _uses(robot: LoadedRobot, walks: Sequence[Walked]) -> Iterator[JointUse]:
         limit = float(model.tree.speed[k])
         yield JointUse(
             joint=name,
-            torque=float(torque[k]),
+            torque=float(torque[k]) if np.isfinite(model.tree.effort[k]) else None,
             speed=float(speed[k]) / limit if np.isfinite(limit) else None,
             range=float(used[k]) if name in moved and np.isfinite(used[k]) else None,
             saturated=float(saturated[k]),
             stopped=float(stopped[k]),
-            one_leg=float(loads[k]) if k < len(loads) else None,
+            one_leg=float(loads[k]) if k < len(loads) and loads[k] else None,
         )
 
 

@@ -18,6 +18,7 @@ from hsr8.world.model.index import ModelIndex
 from hsr8.world.rotation import heading, up_component
 from hsr8.world.truth.saturation import Saturation
 from walking.body.robot_model import RobotModel
+from walking.body.tree import RIGHT_LEG
 from walking.command import Command, HeadTarget, VelocityCommand
 from walking.engine import WalkingEngine
 from walking.parameters import CONTROL_PERIOD, GRAVITY, WalkingParameters
@@ -27,6 +28,7 @@ from walking.state import HeadCameraPose
 Array = NDArray[np.float64]
 
 EMPTY = Layout((4.0, 4.0), (), (), (0.0, 0.0, 0.0), np.zeros((0, 2)), None, endless=False)
+FAST = 0.9  # of its maximum speed, at which a joint limits a walk [1]
 REFERENCE_FORCE = HSR_VIII.weight  # that the noise of the foot pads is stated for [N]
 
 
@@ -78,6 +80,32 @@ class Walked:
         turned = poses[ticks, 2] - poses[0, 2]
         time = ticks * CONTROL_PERIOD
         return np.array([forward.sum(), left.sum(), turned]) / time
+
+    def limiting_joint(self, robot: RobotModel) -> str:
+        """Return the leg joint that was longest at a limit, with the limit, in words.
+
+        Args:
+            robot: that walked.
+        """
+        uses, ticks = self.saturation, len(self.poses)
+        legs = slice(0, RIGHT_LEG.stop)
+        at = np.array([uses.torque_ticks[legs], uses.stop_ticks[legs]]) / ticks
+        fastest = uses.peak_speed[legs] / robot.tree.speed[legs]
+        kind, joint = (int(k) for k in np.unravel_index(at.argmax(), at.shape))
+        if at[kind, joint] > 0.0:
+            name = robot.names[joint]
+            limits = (
+                f"its maximum torque of {robot.tree.effort[joint]:.3g} N m",
+                "the end of its range",
+            )
+            return f"{name} at {limits[kind]} for {at[kind, joint]:.0%} of the walk"
+        joint = int(fastest.argmax())
+        if fastest[joint] > FAST:
+            return (
+                f"{robot.names[joint]} at {fastest[joint]:.0%} of its maximum speed of "
+                f"{robot.tree.speed[joint]:.3g} rad/s"
+            )
+        return "no joint at a limit"
 
 
 CAMERA_TICKS = 12  # control ticks between samples of the camera pose

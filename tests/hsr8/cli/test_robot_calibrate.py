@@ -31,7 +31,7 @@ def file(tmp_path, monkeypatch):
     def calibrate(robot, report):
         assert robot.description.calibration is None
         report("vx 0.200: error 1.0%, tilt 0.3 deg")
-        return MEASURED
+        return MEASURED, ["vy: 12% of the rehearsed 0.4: l_knee at its maximum torque"]
 
     monkeypatch.setattr("hsr8.cli.robot_calibrate.calibrate", calibrate)
     monkeypatch.chdir(tmp_path)
@@ -43,7 +43,14 @@ def test_the_description_receives_date_version_and_command(file, capsys):
     assert entry(["robot", "calibrate", "mine.toml"]) == 0
     printed = capsys.readouterr()
     assert printed.err == "trial   1   vx 0.200: error 1.0%, tilt 0.3 deg\n"
-    for word in ("vx [m/s]", "wz [rad/s]", "0.8", "turn delay [s]", "mine.toml"):
+    for word in (
+        "vy: 12% of the rehearsed 0.4: l_knee at",
+        "vx [m/s]",
+        "wz [rad/s]",
+        "0.8",
+        "turn delay [s]",
+        "mine.toml",
+    ):
         assert word in printed.out
     assert file.read_text().startswith(before.rstrip())
     calibration = read_description(file).calibration

@@ -3,13 +3,15 @@
 from collections.abc import Callable
 from importlib.util import find_spec
 from pathlib import Path
+from tempfile import TemporaryDirectory
 from xml.etree import ElementTree
-from xml.etree.ElementTree import Element
+from xml.etree.ElementTree import Element, SubElement
 
 import mujoco
 import pytest
 
 from hsr8.robots.description import RobotDescription, read_description
+from hsr8.robots.loaded import RawRobot, read_robot
 from hsr8.robots.locate import find_description, find_model
 from hsr8.robots.refusals import check_roles
 from hsr8.robots.roles import Roles, find_roles
@@ -38,18 +40,29 @@ def described(robot: SmallHumanoid, **keys: object) -> RobotDescription:
     return RobotDescription.model_validate(stated)
 
 
-def checked_roles(model: mujoco.MjModel, description: RobotDescription) -> Roles:
+def raw(robot: SmallHumanoid, description: RobotDescription, *changes: Change) -> RawRobot:
+    """Read a robot after some changes of its MJCF."""
+    root = robot.element()
+    for change in changes:
+        change(root)
+    with TemporaryDirectory() as folder:
+        file = Path(folder) / "robot.xml"
+        file.write_text(ElementTree.tostring(root, encoding="unicode"))
+        return read_robot(description, file.with_suffix(".toml"))
+
+
+def checked_roles(read: RawRobot, description: RobotDescription) -> Roles:
     """Find and check the roles."""
-    roles = find_roles(model, description, SOURCE)
-    check_roles(model, roles, description, SOURCE)
+    roles = find_roles(read.model, description, read.prepared)
+    check_roles(read.model, roles, description, read.prepared, SOURCE)
     return roles
 
 
-def shipped(name: str) -> tuple[mujoco.MjModel, RobotDescription]:
-    """Model and description of a shipped robot given as MJCF."""
+def shipped(name: str) -> tuple[RawRobot, RobotDescription]:
+    """Model and description of a shipped robot."""
     file = find_description(name)
     description = read_description(file)
-    return mujoco.MjModel.from_xml_path(str(model_file(name))), description
+    return read_robot(description, file), description
 
 
 def model_file(name: str) -> Path:
@@ -86,5 +99,18 @@ def removing(tag: str, name: str) -> Change:
             for child in list(parent):
                 if child.tag == tag and child.get("name") == name:
                     parent.remove(child)
+
+    return change
+
+
+def add_toes(robot: SmallHumanoid) -> Change:
+    """Return the change that adds a toe with its joint to each foot."""
+
+    def change(root: Element) -> None:
+        for side, name in zip("lr", robot.feet(), strict=True):
+            foot = part(root, "body", name)
+            toe = SubElement(foot, "body", name=f"{side}_toe_link", pos="0.08 0 -0.03")
+            SubElement(toe, "joint", name=f"{side}_toe", axis="0 1 0", range="-0.5 0.1")
+            SubElement(toe, "inertial", pos="0.01 0 0", mass="0.05", diaginertia="1e-4 1e-4 1e-4")
 
     return change

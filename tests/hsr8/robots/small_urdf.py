@@ -14,6 +14,7 @@ import numpy as np
 from scipy.spatial.transform import Rotation
 
 from hsr8.robots.description import RobotDescription, checked
+from hsr8.robots.loaded import LoadedRobot, RawRobot, build_robot, read_robot
 
 WORDS = {"y": "yaw", "r": "roll", "p": "pitch"}
 AXES = {"y": (0.0, 0.0, 1.0), "r": (1.0, 0.0, 0.0), "p": (0.0, 1.0, 0.0)}
@@ -63,6 +64,18 @@ def write(robot: Element, folder: Path) -> Path:
 def describe(**keys: object) -> RobotDescription:
     """Description with the feet of the small robot."""
     return checked({"model": "small.urdf", "feet": FEET, **keys}, "small.toml")
+
+
+def raw(robot: Element, folder: Path, **keys: object) -> RawRobot:
+    """Write a URDF file and read it with its description."""
+    write(robot, folder)
+    return read_robot(describe(**keys), folder / "small.toml")
+
+
+def built(robot: Element, folder: Path, **keys: object) -> LoadedRobot:
+    """Write a URDF file and load it with its description."""
+    write(robot, folder)
+    return build_robot(describe(**keys), folder / "small.toml")
 
 
 def joint(robot: Element, name: str) -> Element:

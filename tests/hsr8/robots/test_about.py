@@ -3,19 +3,17 @@
 import pytest
 
 from hsr8.robots.description import read_description
-from hsr8.robots.loaded import load_robot
+from hsr8.robots.loaded import load_robot, read_robot
 from hsr8.robots.locate import find_description, installed_model, robot_names
-from hsr8.robots.read_model import read_model
 
 
 @pytest.mark.parametrize("name", robot_names())
 def test_mass_and_joints_are_those_of_the_model(name):
     file = find_description(name)
     description = read_description(file)
-    model_file = installed_model(description, file.parent)
-    if model_file is None:
+    if installed_model(description, file.parent) is None:
         pytest.skip("the model is not installed")
-    model = read_model(model_file, description, file.parent).spec.compile()
+    model = read_robot(description, file).model
     assert description.about.mass == pytest.approx(model.body_subtreemass[1], rel=0.01)
     assert description.about.joints == model.njnt - 1
 

@@ -1,5 +1,6 @@
 """Each mistake in a description file is one message that begins with the file and the key."""
 
+import re
 from xml.etree import ElementTree
 
 import pytest
@@ -40,8 +41,7 @@ ANYWHERE = [  # also of a model that does not exist
     ("zero = {l_knee = nan}", "zero.l_knee: wrong value, got nan; expected a finite number"),
     ("range = {l_knee = [2, 1]}", "range.l_knee: empty range, got [2.0, 1.0]; expected lower < up"),
     ("range = {l_knee = [0, 0]}", "range.l_knee: empty range, got [0.0, 0.0]; expected lower < up"),
-    ('state = "home"', "srdf: missing, got state alone; expected both or neither"),
-    ('srdf = "a.srdf"', "state: missing, got srdf alone; expected both or neither"),
+    ('srdf = "a.srdf"', "state: missing, got srdf alone; expected both"),
     ("head_rate = 3.0", "head_rate: the description has no head; expected the key head"),
     ('head = ["a", "b"]\nrigid = ["b"]', "rigid: joint 'b' is also in head; expected one key"),
     ("zero = {a = 1}\nposture = {a = 2}", "posture.a: also in zero; expected one key"),
@@ -72,9 +72,10 @@ IN_THE_MODEL = [
     ('sole = ["x", "y"]', "sole: foot "),
     ('srdf = "none.srdf"\nstate = "home"', "srdf: "),
     (
-        "range = {l_knee = [0.0, 1.0]}",
-        "range.l_knee: not the mirror image of 'r_knee' in the plane y = 0",
+        "range = {l_hip_yaw = [1.2, 1.4], r_hip_yaw = [1.2, 1.4]}",
+        "range.l_hip_yaw: the mirrored ranges of 'l_hip_yaw' and 'r_hip_yaw' have nothing in c",
     ),
+    ('state = "home"', "state: the model has no keyframe 'home'; expected no such key: it has no"),
     (
         "range = {l_hip_roll = [0.1, 0.7], r_hip_roll = [-0.7, -0.1]}",
         "range.l_hip_roll: the ready posture is outside, got 0.0",
@@ -194,3 +195,18 @@ def test_joints_whose_range_excludes_zero_are_held_inside_it(described, kind, jo
 def test_package_folders_of_an_mjcf_file_are_refused(described):
     message = message_of(lambda f: load_robot(str(f)), described('packages = {a = "."}'))
     assert message == "packages: got an MJCF file, which has none; expected a URDF file"
+
+
+def test_a_limit_of_the_model_is_not_blamed_on_a_key(described, tmp_path, monkeypatch):
+    """The number of the message is enough, although it is rounded."""
+    monkeypatch.setattr("hsr8.robots.loaded.within_joints", lambda _robot, fitted, _: (fitted, []))
+    file = described("", urdf)
+    model = tmp_path / "small.urdf"
+    root = ElementTree.fromstring(model.read_text())
+    knee = next(e for e in root.iter("joint") if e.get("name") == "l_knee")
+    knee.find("limit").set("effort", "0.1")
+    model.write_text(ElementTree.tostring(root, encoding="unicode"))
+    with pytest.raises(ModelError, match=r"small\.urdf: joint 'l_knee': too weak") as caught:
+        load_robot(str(file))
+    needed = re.search(r"expected at least ([0-9.]+): state effort", str(caught.value))[1]
+    assert load_robot(str(described(f"effort = {{l_knee = {needed}}}", urdf)))

@@ -15,7 +15,7 @@ ROBOT = "hsr8/hsr8.xml"
     [
         (ROBOT, 'name="l_knee"', 'name="left_knee"', "'l_knee'"),
         (ROBOT, "</mujoco>", "", "XML"),
-        (ROBOT, 'mass="0.08"', 'mass="-0.08"', "mass and inertia of moving bodies"),
+        (ROBOT, 'mass="0.08"', 'mass="-0.08"', "mass, got -0.08 kg; expected 0 or more"),
         (ROBOT, 'mass="1.24"', 'mass="nan"', "'torso_link': mass, got nan kg"),
         (
             ROBOT,

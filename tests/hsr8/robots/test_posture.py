@@ -1,11 +1,14 @@
 """Posture of a description: SRDF states, clipping and names."""
 
+import mujoco
+import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
 from hsr8.errors import ModelError
-from hsr8.robots.posture import clip_to_range, stated_posture
+from hsr8.robots.posture import stated_posture
+from hsr8.robots.prepare import clip_to_range
 from tests.hsr8.robots.small_urdf import describe
 
 SRDF = '<robot name="r"><group_state name="home" group="g">{}</group_state></robot>'
@@ -13,7 +16,7 @@ SRDF = '<robot name="r"><group_state name="home" group="g">{}</group_state></rob
 
 def stated(folder, text, state="home", **keys):
     (folder / "small.srdf").write_text(text)
-    return stated_posture(describe(srdf="small.srdf", state=state, **keys), folder)
+    return stated_posture(describe(srdf="small.srdf", state=state, **keys), folder, mujoco.MjSpec())
 
 
 @given(st.floats(-7, 7), st.floats(-3, 3), st.floats(0.01, 3))
@@ -58,4 +61,20 @@ def test_wrong_files_are_refused(text, state, reason, tmp_path):
 
 def test_a_missing_file_is_refused(tmp_path):
     with pytest.raises(ModelError, match=r"srdf: .*small\.srdf' cannot be read"):
-        stated_posture(describe(srdf="small.srdf", state="home"), tmp_path)
+        stated_posture(describe(srdf="small.srdf", state="home"), tmp_path, mujoco.MjSpec())
+
+
+KEYED = """<mujoco><worldbody><body name="ball"><freejoint/><geom size=".1"/></body><body name="a">
+<freejoint/><geom size=".1"/><body name="b"><joint name="one"/><geom size=".1"/><body name="c">
+<joint name="two"/><geom size=".1"/></body></body></body></worldbody>
+<keyframe><key name="home" qpos="0 0 0 1 0 0 0 0 0 0 1 0 0 0 0.25 -0.5"/></keyframe></mujoco>"""
+
+
+def test_a_keyframe_of_the_model_is_a_state(tmp_path):
+    spec = mujoco.MjSpec.from_string(KEYED)
+    angles = stated_posture(describe(state="home", posture={"two": 1.0}), tmp_path, spec)
+    assert angles == {"one": 0.25, "two": 1.0}
+    key = spec.compile().key("home")
+    np.testing.assert_allclose(key.qpos[-2:], (0.25, -0.5))
+    with pytest.raises(ModelError, match=r"state: the model has no keyframe 'hom'; did you mean"):
+        stated_posture(describe(state="hom"), tmp_path, spec)

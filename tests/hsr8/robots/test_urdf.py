@@ -1,207 +1,100 @@
-"""Properties of a converted URDF robot: nothing of the file is lost, whatever its conventions."""
+"""URDF files: what MuJoCo's reader lacks, and one message for each file that is not a robot."""
 
-from importlib.util import find_spec
-from pathlib import Path
 from xml.etree.ElementTree import SubElement
 
-import mujoco
 import numpy as np
-import pinocchio as pin
 import pytest
-from scipy.spatial.transform import Rotation
 
 from hsr8.errors import ModelError
-from hsr8.robots.description import checked
+from hsr8.robots.loaded import read_robot
 from hsr8.robots.roles import find_roles
-from hsr8.robots.urdf import convert
-from tests.hsr8.robots.small_urdf import SmallUrdf, describe, joint, link, write
+from hsr8.robots.servos import own_efforts
+from hsr8.robots.skeleton import Posed
+from hsr8.robots.soles import soles_of
+from tests.hsr8.robots.mesh_files import FORMATS, write_mesh
+from tests.hsr8.robots.small_urdf import SmallUrdf, built, describe, joint, link, raw, write
 
-QUARTER_TURNS = Rotation.create_group("O")
-VARIANTS = [
-    SmallUrdf(
-        hip=hip, ankle=ankle, offset=offset, root=QUARTER_TURNS[5 * seed % 24], seed=seed, arms=arms
-    )
-    for seed, (hip, ankle, offset, arms) in enumerate(
-        [
-            ("yrp", "pr", 0.0, True),
-            ("pry", "pr", 0.02, True),
-            ("rpy", "rp", -0.01, False),
-            ("ypr", "pr", 0.03, True),
-            ("pyr", "rp", 0.01, False),
-            ("ryp", "pr", 0.02, True),
-        ]
-    )
-]
+SOLE = (0.10, -0.06, 0.105, 0.025, -0.44)
 
 
-def converted(robot, folder, **keys):
-    file = write(robot, folder)
-    return convert(file, describe(**keys), folder), file
+def soles(robot, folder, **keys):
+    """Edges of the left sole in the base [m], and the notes of the robot."""
+    read = raw(robot, folder, **keys)
+    description = describe(**keys)
+    roles = find_roles(read.model, description, read.prepared)
+    zero = Posed.at(read.model, {}, base=roles.frame)
+    (left, right), notes = soles_of(zero, roles, description, read.prepared)
+    assert right == left.mirrored()
+    return (left.front, left.back, left.left, left.right, left.height), [*read.notes, *notes]
 
 
-def at(model, angles):
-    """State with the base at the origin and joints at angles."""
-    data = mujoco.MjData(model)
-    data.qpos[:3] = 0.0
-    for name, angle in angles.items():
-        data.qpos[model.joint(name).qposadr[0]] = angle
-    mujoco.mj_forward(model, data)
-    return data
+def replace_shapes(robot, side, kinds, *shapes):
+    """Replace shapes of a foot by others: tag, keys, and position in the foot."""
+    foot = link(robot, f"{side}_foot")
+    for kind in kinds:
+        for old in foot.findall(kind):
+            foot.remove(old)
+        for tag, keys, at in shapes:
+            shape = SubElement(foot, kind)
+            SubElement(shape, "origin", xyz=" ".join(map(str, at)))
+            SubElement(SubElement(shape, "geometry"), tag, keys)
 
 
-def random_angles(model, seed):
-    rng = np.random.default_rng(seed)
-    return {model.joint(j).name: rng.uniform(*model.jnt_range[j]) for j in range(1, model.njnt)}
-
-
-@pytest.mark.parametrize("variant", VARIANTS)
-def test_mass_matrix_and_com_are_those_of_the_file(variant, tmp_path):
-    robot, file = converted(variant.element(), tmp_path)
-    model = robot.spec.compile()
-    raw = pin.buildModelFromUrdf(str(file), pin.JointModelFreeFlyer())
-    assert model.body_mass.sum() == pytest.approx(pin.computeTotalMass(raw), rel=1e-12)
-    angles = random_angles(model, 1)
-    data = at(model, angles)
-    matrix = np.zeros((model.nv, model.nv))
-    mujoco.mj_fullM(model, data, matrix)
-    q, raw_data = pin.neutral(raw), raw.createData()
-    for name, angle in angles.items():
-        q[raw.idx_qs[raw.getJointId(name)]] = angle
-    expected = pin.crba(raw, raw_data, q)
-    expected = np.triu(expected) + np.triu(expected, 1).T
-    ours = [model.joint(name).dofadr[0] for name in angles]
-    theirs = [raw.idx_vs[raw.getJointId(name)] for name in angles]
-    np.testing.assert_allclose(
-        matrix[np.ix_(ours, ours)], expected[np.ix_(theirs, theirs)], atol=1e-9
-    )
-    com = variant.root.apply(pin.centerOfMass(raw, raw_data, q))
-    np.testing.assert_allclose(data.subtree_com[1], com, atol=1e-9)
-
-
-@pytest.mark.parametrize("turn", range(24))
-def test_any_quarter_turn_of_the_root_gives_the_same_robot(turn, tmp_path):
-    models = [
-        converted(SmallUrdf(root=root).element(), tmp_path)[0].spec.compile()
-        for root in (Rotation.identity(), QUARTER_TURNS[turn])
-    ]
-    for seed in range(3):
-        plain, turned = (at(model, random_angles(models[0], seed)) for model in models)
-        np.testing.assert_allclose(turned.xpos, plain.xpos, atol=1e-12)
-        np.testing.assert_allclose(turned.xmat[1:], plain.xmat[1:], atol=1e-12)
-        np.testing.assert_allclose(turned.xipos, plain.xipos, atol=1e-12)
-
-
-def test_the_turn_of_the_root_is_reported(tmp_path):
-    robot, _ = converted(
-        SmallUrdf(root=Rotation.from_euler("z", 180, degrees=True)).element(), tmp_path
-    )
-    assert "base turned: forward is -x of link 'pelvis', up its z" in robot.notes
-
-
-@pytest.mark.parametrize("variant", VARIANTS)
-def test_roles_are_those_of_the_file(variant, tmp_path):
-    robot, _ = converted(variant.element(), tmp_path)
-    roles = find_roles(robot.spec.compile(), robot.description, "small.urdf")
-    assert roles.legs == variant.legs()
-    assert roles.feet == robot.feet == tuple(f"{leg[-1]}_link" for leg in variant.legs())
-    assert roles.base == "pelvis"
-
-
-@pytest.mark.parametrize("variant", VARIANTS)
-def test_the_robot_stands_on_mirrored_soles(variant, tmp_path):
-    robot, _ = converted(variant.element(), tmp_path)
-    model = robot.spec.compile()
-    data = mujoco.MjData(model)
-    mujoco.mj_forward(model, data)
-    left, right = robot.soles
-    assert left == pytest.approx((0.10, -0.06, 0.045, -0.035, -0.04), abs=1e-9)
-    assert right == pytest.approx(left.mirrored(), abs=1e-9)
-    for foot in robot.feet:
-        (box,) = (g for g in range(model.ngeom) if model.geom(g).name == f"{foot}_sole")
-        np.testing.assert_allclose(data.geom_xmat[box].reshape(3, 3), np.eye(3), atol=1e-9)
-        assert data.geom_xpos[box][2] - model.geom_size[box][2] == pytest.approx(0.0, abs=1e-9)
+def both_feet(robot, kinds, *shapes):
+    for side in "lr":
+        replace_shapes(robot, side, kinds, *shapes)
 
 
 def test_contacts_only_of_soles_and_with_obstacles(tmp_path):
-    model = converted(SmallUrdf().element(), tmp_path)[0].spec.compile()
-    by_group = {}
-    for g in range(model.ngeom):
-        bits = (int(model.geom_contype[g]), int(model.geom_conaffinity[g]))
-        by_group.setdefault(int(model.geom_group[g]), set()).add(bits)
-    assert by_group == {2: {(0, 0)}, 3: {(0, 2), (1, 1)}}
-    feet = [g for g in range(model.ngeom) if model.geom_contype[g]]
-    assert all(model.geom_condim[g] == 4 and model.geom_friction[g][0] == 0.8 for g in feet)
-
-
-def test_shapes_do_not_change_the_masses(tmp_path):
-    robot = SmallUrdf(seed=3).element()
-    full = converted(robot, tmp_path)[0].spec.compile()
-    for element in robot.findall("link"):
-        for shape in [*element.findall("visual"), *element.findall("collision")]:
-            if not element.get("name").endswith("foot"):
-                element.remove(shape)
-    bare = converted(robot, tmp_path)[0].spec.compile()
-    assert bare.ngeom < full.ngeom
-    np.testing.assert_array_equal(bare.body_mass, full.body_mass)
-    np.testing.assert_array_equal(bare.body_inertia, full.body_inertia)
+    model = built(SmallUrdf().element(), tmp_path).spec.copy().compile()
+    floor = [
+        g for g in range(model.ngeom) if (model.geom_contype[g] | model.geom_conaffinity[g]) & 1
+    ]
+    assert [model.geom(g).name for g in floor] == ["hsr8/r_sole", "hsr8/l_sole"] or len(floor) == 2
+    solid = model.geom_group == 3
+    assert (model.geom_contype[~solid] == 0).all()
+    assert (model.geom_conaffinity[~solid] == 0).all()
 
 
 def test_limits_come_from_the_file(tmp_path):
-    robot, _ = converted(SmallUrdf().element(), tmp_path)
-    model = robot.spec.compile()
-    knee = model.joint("l_knee")
+    read = raw(SmallUrdf().element(), tmp_path)
+    knee = read.model.joint("l_knee")
     np.testing.assert_allclose(knee.range, (-0.1, 2.2))
-    assert robot.description.effort["l_knee"] == 40.0
-    assert robot.description.speed["l_knee"] == 8.0
-    np.testing.assert_allclose(model.jnt_actfrcrange[knee.id], (-40.0, 40.0))
+    assert read.speed["l_knee"] == 8.0
+    np.testing.assert_allclose(read.model.jnt_actfrcrange[knee.id], (-40.0, 40.0))
     assert float(knee.damping[0]) == 0.1
     assert float(knee.frictionloss[0]) == 0.05
 
 
-@pytest.mark.parametrize("placeholder", ["-1", "3e38", "10001"])
+@pytest.mark.parametrize("placeholder", ["-1", "3e38", "10001", "inf"])
 def test_a_placeholder_of_an_effort_is_no_limit(placeholder, tmp_path):
     robot = SmallUrdf().element()
     joint(robot, "l_knee").find("limit").set("effort", placeholder)
-    result, _ = converted(robot, tmp_path)
-    assert "l_knee" not in result.description.effort
-    assert any("effort of 1 joints is not stated" in note for note in result.notes)
-    result, _ = converted(robot, tmp_path, effort={"l_knee": 50.0}, speed={"l_knee": 3.0})
-    assert result.description.effort["l_knee"] == 50.0
-    assert result.description.speed["l_knee"] == 3.0
+    efforts = own_efforts(raw(robot, tmp_path).model)
+    assert "l_knee" not in efforts
+    assert efforts["r_knee"] == 40.0
+
+
+def test_a_stated_limit_replaces_that_of_the_file(tmp_path):
+    tree = built(SmallUrdf().element(), tmp_path, effort={"l_knee": 50.0}, speed={"l_knee": 3.0})
+    tree = tree.model.tree
+    assert tree.effort[tree.names.index("l_knee")] == 50.0
+    assert tree.speed[tree.names.index("l_knee")] == 3.0
 
 
 def test_a_continuous_joint_gets_one_turn(tmp_path):
     robot = SmallUrdf().element()
-    joint(robot, "l_hip_yaw").set("type", "continuous")
-    model = converted(robot, tmp_path)[0].spec.compile()
-    np.testing.assert_allclose(model.joint("l_hip_yaw").range, (-np.pi, np.pi))
+    for side in "lr":
+        joint(robot, f"{side}_hip_yaw").set("type", "continuous")
+    tree = built(robot, tmp_path).model.tree
+    assert (tree.lower[0], tree.upper[0]) == pytest.approx((-np.pi, np.pi))
 
 
 def test_a_stated_range_frees_a_joint_without_one(tmp_path):
     robot = SmallUrdf().element()
     joint(robot, "l_knee").find("limit").attrib.update(lower="0", upper="0")
-    model = converted(robot, tmp_path, range={"l_knee": (-0.1, 2.0)})[0].spec.compile()
+    model = raw(robot, tmp_path, range={"l_knee": (-0.1, 2.0)}).model
     np.testing.assert_allclose(model.joint("l_knee").range, (-0.1, 2.0))
-
-
-def test_joints_without_a_servo_are_held(tmp_path):
-    robot = SmallUrdf(seed=4).element()
-    SubElement(joint(robot, "l_elbow"), "mimic", joint="l_shoulder", multiplier="2", offset="0.1")
-    joint(robot, "r_elbow").set("type", "prismatic")
-    joint(robot, "head_yaw").find("limit").set("effort", "0")
-    joint(robot, "head_pitch").find("limit").set("lower", "1.5")
-    result, _ = converted(
-        robot, tmp_path, rigid=["waist"], posture={"waist": 0.3, "l_shoulder": 0.2}
-    )
-    names = {j.name for j in result.spec.joints}
-    assert names & {"l_elbow", "r_elbow", "head_yaw", "head_pitch", "waist"} == set()
-    assert {"l_shoulder", "r_shoulder"} <= names
-    for reason in ("mimics a joint", "prismatic", "zero effort", "range of zero", "stated rigid"):
-        assert any(f"joints held ({reason})" in note for note in result.notes)
-    # The comparison with the file held every joint at the angle that the conversion used.
-    chest = next(b for b in result.spec.bodies if b.name == "l_shoulder_link")
-    assert np.hypot(*chest.pos[:2]) == pytest.approx(0.12)
-    assert np.arctan2(-chest.pos[0], chest.pos[1]) == pytest.approx(0.3)
 
 
 def test_efforts_of_zero_everywhere_do_not_hold_the_legs(tmp_path):
@@ -209,113 +102,348 @@ def test_efforts_of_zero_everywhere_do_not_hold_the_legs(tmp_path):
     for element in robot.findall("joint"):
         if element.find("limit") is not None:
             element.find("limit").set("effort", "0")
-    result, _ = converted(robot, tmp_path, shoulders=["l_shoulder", "r_shoulder"])
-    names = {j.name for j in result.spec.joints}
+    read = raw(robot, tmp_path, shoulders=["l_shoulder", "r_shoulder"])
+    names = {read.model.joint(j).name for j in range(read.model.njnt)}
     left, right = SmallUrdf().legs()
     assert names == {"pelvis_free", *left, *right, "l_shoulder", "r_shoulder"}
-    assert not result.description.effort
 
 
-def test_posture_of_an_srdf_file(tmp_path):
-    (tmp_path / "small.srdf").write_text(
-        '<robot name="small"><group_state name="home" group="all"><joint name="l_elbow" value="1"/>'
-        '<joint name="r_elbow" value="1"/><joint name="gripper" value="1"/>'
-        '<joint name="root" value="0 0 1"/></group_state></robot>'
-    )
-    result, _ = converted(
-        SmallUrdf().element(), tmp_path, srdf="small.srdf", state="home", posture={"r_elbow": 0.5}
-    )
-    assert result.description.posture == {"l_elbow": 1.0, "r_elbow": 0.5}
-    assert result.description.srdf is None
-
-
-def test_a_camera_on_a_fixed_link_moves_to_its_body(tmp_path):
+def test_a_camera_on_a_fixed_link_is_on_its_body(tmp_path):
     robot = SmallUrdf(seed=6).element()
     camera = {"body": "camera", "position": [0.01, 0.0, 0.0], "tilt_deg": -10.0}
-    mount = converted(robot, tmp_path, camera=camera)[0].description.camera
-    assert mount.body == "head"
-    assert mount.position == pytest.approx((0.06, 0.0, 0.05), abs=1e-9)
-    assert mount.tilt_deg == -10.0
+    result = built(robot, tmp_path, camera=camera, head=["head_yaw", "head_pitch"])
+    frame = result.model.tree.camera
+    assert result.model.names[frame.joint] == "head_pitch"
+    _, position = result.model.frame_pose(frame, np.zeros(len(result.model.names)))
+    np.testing.assert_allclose(position, (0.06, 0.0, 0.33), atol=1e-9)
 
 
-def test_the_link_that_carries_the_legs_is_the_base(tmp_path):
-    robot = SmallUrdf(seed=7).element()
-    SubElement(robot, "link", name="footprint")
-    fixed = SubElement(robot, "joint", name="footprint_fixed", type="fixed")
-    SubElement(fixed, "origin", xyz="0 0 0.44", rpy="0 0 1")
-    SubElement(fixed, "parent", link="footprint")
-    SubElement(fixed, "child", link="pelvis")
-    result, _ = converted(robot, tmp_path)
-    assert result.description.base == "pelvis"
-    assert "base: link 'pelvis', fixed to the root 'footprint'" in result.notes
+def test_spheres_below_the_corners_are_a_sole(tmp_path):
+    robot = SmallUrdf().element()
+    corners = [(x, y, 0.0) for x in (-0.05, 0.08) for y in (-0.03, 0.03)]
+    both_feet(robot, ["collision"], *(("sphere", {"radius": "0.01"}, c) for c in corners))
+    assert soles(robot, tmp_path)[0] == pytest.approx((0.08, -0.05, 0.09, 0.03, -0.44))
 
 
-def test_a_world_link_with_a_floating_joint_is_left_out(tmp_path):
-    robot = SmallUrdf(seed=8).element()
-    plain = converted(robot, tmp_path)[0].spec.compile()
-    SubElement(robot, "link", name="world")
-    floating = SubElement(robot, "joint", name="floating", type="floating")
-    SubElement(floating, "parent", link="world")
-    SubElement(floating, "child", link="pelvis")
-    model = converted(robot, tmp_path)[0].spec.compile()
-    np.testing.assert_array_equal(model.body_pos, plain.body_pos)
+@pytest.mark.parametrize("name", FORMATS)
+@pytest.mark.parametrize("scale", ["1 1 1", "0.5 1 1"])
+def test_a_mesh_of_any_format(name, scale, tmp_path):
+    write_mesh(tmp_path, name)
+    robot = SmallUrdf().element()
+    mesh = ("mesh", {"filename": f"package://small/{name}", "scale": scale}, (0, 0, -0.01))
+    both_feet(robot, ["collision", "visual"], mesh)
+    sole, _ = soles(robot, tmp_path)
+    length = 0.08 * float(scale.split()[0])
+    assert sole == pytest.approx((length, -length, 0.10, 0.02, -0.44), abs=1e-6)
+    assert raw(robot, tmp_path).model.nmesh == 1
 
 
-def test_a_link_without_mass_between_two_joints_is_kept(tmp_path):
-    robot = SmallUrdf(seed=9).element()
-    element = link(robot, "l_hip_roll_link")
-    element.remove(element.find("inertial"))
-    result, _ = converted(robot, tmp_path)
-    assert any("'l_hip_roll_link' has no mass" in note for note in result.notes)
+def test_meshes_of_one_name_in_two_folders_are_two_meshes(tmp_path):
+    for folder, scale in (("a", 1.0), ("b", 1.5)):
+        (tmp_path / folder).mkdir()
+        points = scale * np.array([(0.08, 0.04, 0), (0.08, -0.04, 0), (-0.08, 0, 0), (0, 0, 0.06)])
+        rows = "".join(f"v {x} {y} {z}\n" for x, y, z in points)
+        (tmp_path / folder / "m.obj").write_text(rows + "f 1 2 3\nf 1 4 2\nf 2 4 3\nf 3 4 1\n")
+    robot = SmallUrdf().element()
+    both_feet(robot, ["collision"], ("mesh", {"filename": "a/m.obj"}, (0, 0, -0.01)))
+    both_feet(robot, ["visual"], ("mesh", {"filename": "b/m.obj"}, (0, 0, -0.01)))
+    assert soles(robot, tmp_path)[0] == pytest.approx((0.08, -0.08, 0.10, 0.02, -0.44), abs=1e-6)
+    assert raw(robot, tmp_path).model.nmesh == 2
 
 
-def test_zero_posture_of_a_file_with_bent_legs(tmp_path):
-    robot = SmallUrdf(seed=10).element()
-    zero = {
-        f"{side}_{name}": v for side in "lr" for name, v in (("hip_pitch", 0.4), ("knee", -0.8))
-    }
-    for name, angle in zero.items():
-        # The file's zero differs: straight legs need the angles of `zero`.
-        origin = joint(robot, name).find("origin")
-        axis = np.array([float(v) for v in joint(robot, name).find("axis").get("xyz").split()])
-        turn = Rotation.from_euler("xyz", [float(v) for v in origin.get("rpy").split()])
-        turn = turn * Rotation.from_rotvec(-angle * axis)
-        origin.set("rpy", " ".join(map(str, turn.as_euler("xyz"))))
-    result, _ = converted(robot, tmp_path, zero=zero)
-    assert result.soles[0] == pytest.approx((0.10, -0.06, 0.045, -0.035, -0.04), abs=1e-9)
-    data = at(result.spec.compile(), zero)
-    assert data.body("l_ankle_roll_link").xpos[2] == pytest.approx(-0.4)
+def test_visual_shapes_where_the_others_make_no_flat_sole(tmp_path):
+    robot = SmallUrdf().element()
+    both_feet(robot, ["collision"], ("sphere", {"radius": "0.01"}, (0, 0, 0)))
+    assert soles(robot, tmp_path)[0] == pytest.approx(SOLE)
 
 
-def test_nothing_is_written(tmp_path):
-    file = write(SmallUrdf().element(), tmp_path)
-    convert(file, describe(), tmp_path)
-    assert list(tmp_path.iterdir()) == [file]
+def test_a_missing_visual_mesh_is_dropped_with_a_note(tmp_path):
+    robot = SmallUrdf().element()
+    mesh = ("mesh", {"filename": "package://small/none.stl"}, (0, 0, 0))
+    both_feet(robot, ["visual"], mesh)
+    sole, notes = soles(robot, tmp_path)
+    assert sole == pytest.approx(SOLE)
+    assert any("1 meshes missing, first package://small/none.stl" in n for n in notes)
 
 
-ICUB = find_spec("icub_models")
-ICUB_FOLDER = (
-    Path(str(ICUB.origin)).parents[1] / "share" / "iCub" / "robots" if ICUB else Path("missing")
+def test_a_mesh_that_mujoco_refuses_is_dropped_with_a_note(tmp_path):
+    (tmp_path / "flat.obj").write_text("v 0 0 0\nv 1 0 0\nv 2 0 0\nf 1 2 3\n")
+    robot = SmallUrdf().element()
+    both_feet(robot, ["visual"], ("mesh", {"filename": "flat.obj"}, (0, 0, 0)))
+    read = raw(robot, tmp_path)
+    assert read.model.nmesh == 0
+    assert read.prepared.spec.copy().compile().nmesh == 0
+    assert any("flat.obj left out" in note for note in read.notes)
+
+
+def test_a_stated_sole_is_relative_to_the_foot_link(tmp_path):
+    sole = {"front": 0.07, "back": -0.05, "left": 0.02, "right": -0.03, "height": -0.015}
+    # The link of the foot is 3 cm below its body, the ankle.
+    edges, _ = soles(SmallUrdf(seed=1).element(), tmp_path, sole=sole)
+    assert edges == pytest.approx((0.07, -0.05, 0.08, 0.03, -0.445))
+
+
+@pytest.mark.parametrize("names", [("l_pad", "r_pad"), ("l_foot", "r_foot")])
+def test_a_stated_shape_or_link(names, tmp_path):
+    robot = SmallUrdf().element()
+    for side in "lr":
+        shape = SubElement(link(robot, f"{side}_foot"), "collision", name=f"{side}_pad")
+        SubElement(SubElement(shape, "geometry"), "box", size="0.1 0.06 0.02")
+    edges, _ = soles(robot, tmp_path, sole=names)
+    assert edges == pytest.approx((0.05, -0.05, 0.09, 0.03, -0.44) if names[0] == "l_pad" else SOLE)
+
+
+@pytest.mark.parametrize("difference", [0.001, 0.01])
+def test_soles_that_differ_are_averaged(difference, tmp_path):
+    robot = SmallUrdf().element()
+    box = {"size": f"{0.16 + 2.0 * difference} 0.08 0.02"}
+    replace_shapes(robot, "r", ["collision"], ("box", box, (0.02, -0.005, 0.0)))
+    edges, notes = soles(robot, tmp_path)
+    mean = 0.5 * difference
+    assert edges == pytest.approx((0.10 + mean, -0.06 - mean, *SOLE[2:]))
+    noted = [text for text in notes if text.startswith("soles differ")]
+    assert len(noted) == int(difference > 0.002)
+
+
+def test_a_foot_that_is_not_flat_is_reported(tmp_path):
+    robot = SmallUrdf().element()
+    both_feet(
+        robot,
+        ["collision"],
+        ("box", {"size": "0.16 0.08 0.02"}, (0.02, 0, 0.01)),
+        ("box", {"size": "0.03 0.03 0.02"}, (0, 0, 0)),
+    )
+    _, notes = soles(robot, tmp_path)
+    assert any(
+        "the sole of 'l_ankle_roll_link' covers 7% of the foot's outline" in n for n in notes
+    )
+
+
+def test_the_minimum_sole_scales_with_the_robot(tmp_path):
+    """4 % of a leg of 0.40 m."""
+    robot = SmallUrdf().element()
+    for width, accepted in (("0.017", True), ("0.015", False)):
+        both_feet(robot, ["collision"], ("box", {"size": f"0.1 {width} 0.02"}, (0, 0, 0)))
+        both_feet(robot, ["visual"])
+        if accepted:
+            assert soles(robot, tmp_path)[0][3] == pytest.approx(0.06 - 0.5 * float(width))
+        else:
+            with pytest.raises(ModelError, match=r"too small .* expected at least 16 mm"):
+                soles(robot, tmp_path)
+
+
+def add_joint(robot, kind, parent, child):
+    added = SubElement(robot, "joint", name="added", type=kind)
+    SubElement(added, "parent", link=parent)
+    SubElement(added, "child", link=child)
+
+
+def set_type(name, kind):
+    return lambda robot: joint(robot, name).set("type", kind)
+
+
+def set_limit(name, **limits):
+    return lambda robot: joint(robot, name).find("limit").attrib.update(limits)
+
+
+def set_dynamics(name, **values):
+    return lambda robot: joint(robot, name).find("dynamics").attrib.update(values)
+
+
+def set_origin(name, xyz):
+    return lambda robot: joint(robot, name).find("origin").set("xyz", xyz)
+
+
+def set_inertia(name, **moments):
+    return lambda robot: link(robot, name).find("inertial/inertia").attrib.update(moments)
+
+
+def set_mass(name, value):
+    return lambda robot: link(robot, name).find("inertial/mass").set("value", value)
+
+
+def add_root(robot):
+    SubElement(robot, "link", name="other")
+
+
+def close_chain(robot):
+    add_joint(robot, "fixed", "r_foot", "l_foot")
+
+
+def ring(robot):
+    for parent, child in (("a", "b"), ("b", "a")):
+        SubElement(robot, "link", name=child)
+        add_joint(robot, "fixed", parent, child)
+        robot[-1].set("name", child)
+
+
+def five_joints(robot):
+    for side in "lr":
+        joint(robot, f"{side}_ankle_roll").set("type", "fixed")
+
+
+def shared_hip(robot):
+    for side in "lr":
+        joint(robot, f"{side}_ankle_roll").set("type", "fixed")
+        joint(robot, f"{side}_hip_yaw").find("parent").set("link", "chest")
+
+
+def bare_foot(robot):
+    foot = link(robot, "l_foot")
+    for shape in [*foot.findall("visual"), *foot.findall("collision")]:
+        foot.remove(shape)
+
+
+def set_sole(size, feet=("l_foot", "r_foot")):
+    def change(robot):
+        for foot in feet:
+            for box in link(robot, foot).iter("box"):
+                box.set("size", size)
+
+    return change
+
+
+def mesh_foot(robot):
+    for geometry in link(robot, "l_foot").iter("geometry"):
+        geometry.remove(geometry[0])
+        SubElement(geometry, "mesh", filename="package://small_description/foot.stl")
+
+
+def no_limits(name):
+    return lambda robot: joint(robot, name).remove(joint(robot, name).find("limit"))
+
+
+def mimic_stranger(robot):
+    SubElement(joint(robot, "l_elbow"), "mimic", joint="stranger")
+
+
+def mimic_leg(robot):
+    SubElement(joint(robot, "l_ankle_pitch"), "mimic", joint="l_knee", multiplier="-1")
+
+
+def no_mass(robot):
+    for element in robot.findall("link"):
+        if element.find("inertial") is not None:
+            element.remove(element.find("inertial"))
+
+
+def wedge(robot):
+    for geometry in link(robot, "l_foot").iter("geometry"):
+        geometry[0].tag = "wedge"
+
+
+def unchanged(_robot):
+    pass
+
+
+@pytest.mark.parametrize(
+    ("change", "keys", "element", "remedy"),
+    [
+        (
+            unchanged,
+            {"feet": ["l_fot", "r_foot"]},
+            "no body 'l_fot'; did you mean 'l_foot'",
+            "feet: left foot: the model has",
+        ),
+        (
+            unchanged,
+            {"head": ["head_yaw", "nod"]},
+            "head: the model has no hinge joint 'nod'",
+            "one of",
+        ),
+        (unchanged, {"posture": {"wist": 1.0}}, "posture: the model has no hinge joint", "'waist'"),
+        (unchanged, {"rigid": ["imu_fixed"]}, "rigid: the model has no hinge joint", "one of"),
+        (unchanged, {"servo": "own"}, "URDF file has no servos", "'rule'"),
+        (unchanged, {"base": "head"}, "base: not fixed to the body", "leave the key out"),
+        (unchanged, {"camera": "eye"}, "camera: the model has no camera 'eye'", "no such key"),
+        (unchanged, {"packages": {"p": "missing"}}, "packages.p: not a folder", "package's folder"),
+        (unchanged, {"feet": ["l_foot", "l_ankle_roll_link"]}, "0 hinge joints", "per leg"),
+        (
+            unchanged,
+            {"sole": ["none", "none"]},
+            "sole: foot 'l_ankle_roll_link' has no geom",
+            "one",
+        ),
+        (unchanged, {"zero": {"l_hip_roll": 0.7}}, "base: at zero angles the direction", "as zero"),
+        (five_joints, {}, "above foot 'l_foot' has 5 hinge joints", "6 hinge joints per leg"),
+        (shared_hip, {}, "a leg has 5 hinge joints that it does not have in common", "per leg"),
+        (set_type("l_knee", "prismatic"), {}, "'l_knee' between foot 'l_foot' and base", "6 hinge"),
+        (set_limit("l_knee", lower="0", upper="0"), {}, "l_knee: range of zero", "6 hinge joints"),
+        (set_limit("l_knee", lower="1", upper="0"), {}, "'l_knee': lower limit above", "1 .. 0"),
+        (no_limits("l_knee"), {}, "joint 'l_knee': limits are missing", "<limit lower="),
+        (close_chain, {}, "link 'l_foot': closed chain", "remove one of the joints"),
+        (ring, {}, "closed chain, it is its own ancestor", "expected a tree"),
+        (set_type("waist", "planar"), {}, "joint 'waist': type, got 'planar'", "make it fixed"),
+        (set_type("waist", "floating"), {}, "joint 'waist': type, got 'floating'", "make it fixed"),
+        (add_root, {}, "2 root links, got pelvis, other", "one link without a parent"),
+        (set_inertia("l_knee_link", ixy="1"), {}, "got 1 body with principal moments", "repair_in"),
+        (
+            set_inertia("l_knee_link", ixx="x"),
+            {},
+            "link 'l_knee_link': ixx, got 'x'",
+            "a finite nu",
+        ),
+        (set_mass("l_knee_link", "-1"), {}, "link 'l_knee_link': mass, got -1 kg", "0 or more"),
+        (
+            set_mass("l_knee_link", "nan"),
+            {},
+            "link 'l_knee_link': value, got 'nan'",
+            "a finite num",
+        ),
+        (set_dynamics("l_knee", damping="-1"), {}, "'l_knee': damping, got -1", "expected >= 0"),
+        (set_dynamics("l_knee", friction="inf"), {}, "'l_knee': friction, got 'inf'", "a finite"),
+        (set_origin("l_knee", "0 0 -9"), {}, "body 'l_knee_link': 9 m from the body", "at most 5"),
+        (set_origin("l_knee", "0 0"), {}, "joint 'l_knee': xyz, got '0 0'", "3 finite numbers"),
+        (no_mass, {}, "l_hip_yaw: moves no mass", "6 hinge joints"),
+        (bare_foot, {}, "sole: missing, and foot 'l_ankle_roll_link' has no shape", "{front, back"),
+        (mesh_foot, {}, "foot 'l_ankle_roll_link' has no shape", "under packages"),
+        (set_sole("0.16 0.004 0.02"), {}, "got 160 x 4 mm; expected at least 16 mm", "state sole"),
+        (set_sole("0.16 0.14 0.02", ["l_foot"]), {}, "not the mirror image", "state sole"),
+        (set_sole("0.16 -0.14 0.02", ["l_foot"]), {}, "link 'l_foot': size of the box", "positive"),
+        (wedge, {}, "link 'l_foot': geometry <wedge>", "expected box, sphere"),
+        (mimic_stranger, {}, "joint 'l_elbow': mimic, got 'stranger'", "another joint"),
+        (mimic_leg, {}, "couples joint 'l_knee' of a leg", 'linkage = "serial"'),
+        (
+            set_limit("head_yaw", effort="x"),
+            {},
+            "joint 'head_yaw': effort, got 'x'",
+            "a finite num",
+        ),
+        (
+            set_type("l_shoulder", "prismatic"),
+            {"shoulders": ["l_shoulder", "r_shoulder"]},
+            "shoulders: ",
+            "",
+        ),
+    ],
 )
-ICUBS = sorted(p.parent.name for p in ICUB_FOLDER.glob("*/model.urdf")) or ["iCubGazeboV2_7"]
+def test_refusal(change, keys, element, remedy, tmp_path):
+    robot = SmallUrdf().element()
+    change(robot)
+    with pytest.raises(ModelError) as refusal:
+        built(robot, tmp_path, **keys)
+    message = str(refusal.value)
+    assert element in message
+    assert remedy in message
+    assert "\n" not in message
 
 
-@pytest.mark.skipif(ICUB is None, reason="icub_models is not installed")
-@pytest.mark.parametrize("name", [name for name in ICUBS if name.startswith("iCub")])
-def test_icub(name):
-    file = ICUB_FOLDER / name / "model.urdf"
-    description = checked({"model": str(file), "feet": ("l_foot", "r_foot")}, "icub.toml")
-    if name in ("iCubGenova03", "iCubLisboa01", "iCubNancy01"):
-        with pytest.raises(ModelError, match=r"link 'root_link': inertia of no rigid body"):
-            convert(file, description, file.parent)
-        return
-    robot = convert(file, description, file.parent)
-    assert robot.feet == ("l_ankle_2", "r_ankle_2")
-    assert "base turned: forward is -x of link 'root_link', up its z" in robot.notes
-    length, width = robot.soles[0].size
-    assert 0.15 < length < 0.20
-    assert 0.07 < width < 0.10
-    model = robot.spec.compile()
-    assert model.nmesh > 30
-    roles = find_roles(model, robot.description, name)
-    assert roles.legs[0][3] == "l_knee"
+@pytest.mark.parametrize(
+    ("text", "reason"),
+    [
+        ("<robot", "cannot be read"),
+        ("<mujoco/>", "not a URDF file, got the element <mujoco>"),
+        ("<robot><xacro:macro/></robot>", "cannot be read"),
+        (
+            "<robot xmlns:xacro='http://www.ros.org/wiki/xacro'><xacro:macro/></robot>",
+            "a xacro file",
+        ),
+        ("<robot/>", "0 root links"),
+        ("<robot><link name='a'/><link name='a'/></robot>", "link 'a' appears twice"),
+        ("<robot><link name='a'/></robot>", "the model has no joints"),
+    ],
+)
+def test_file_that_is_not_a_robot(text, reason, tmp_path):
+    write(SmallUrdf().element(), tmp_path).write_text(text)
+    with pytest.raises(ModelError, match=reason):
+        read_robot(describe(), tmp_path / "small.toml")

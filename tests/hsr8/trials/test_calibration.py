@@ -17,7 +17,8 @@ def test_a_short_calibration_of_the_default_robot(monkeypatch):
     monkeypatch.setattr(calibration, "RANDOM_SEEDS", range(1))
     lines = []
     robot = load_robot("hsr8")
-    measured = calibration.calibrate(robot, lines.append)
+    measured, warnings = calibration.calibrate(robot, lines.append)
+    assert warnings == []
     limits = robot.parameters.limits
     for axis in calibration.AXES:
         assert 0.5 * getattr(limits, axis) < measured.speed[axis] <= getattr(limits, axis)
@@ -28,3 +29,14 @@ def test_a_short_calibration_of_the_default_robot(monkeypatch):
     assert 0.0 < measured.tilt_sigma < 0.02
     stated = {"date": "2026-01-01", "version": "0", "command": "none", **asdict(measured)}
     assert Calibration.model_validate(stated).lag == measured.lag
+
+
+def test_a_speed_far_below_the_rehearsed_one_is_a_warning(monkeypatch):
+    """Half of the speed falls short: no walk is exact enough for the limits."""
+    for name, value in (("STEADY_TIME", 1.0), ("RANDOM_TIME", 1.0), ("INTERVAL", 0.5)):
+        monkeypatch.setattr(calibration, name, value)
+    for name, value in (("RANDOM_SEEDS", range(1)), ("MAX_TILT", 0.0), ("SMALLEST", 0.3)):
+        monkeypatch.setattr(calibration, name, value)
+    _, warnings = calibration.calibrate(load_robot("hsr8"))
+    assert [warning.split(":")[0] for warning in warnings] == list(calibration.AXES)
+    assert warnings[0].startswith("vx: 27% of the rehearsed 0.55: ")

@@ -1,3 +1,5 @@
+"""Model files are read with names for all parts, and every file that they need is known."""
+
 import re
 from xml.etree import ElementTree
 
@@ -5,27 +7,22 @@ import mujoco
 import pytest
 
 from hsr8.errors import ModelError
-from hsr8.robots.loaded import build_robot
-from hsr8.robots.mjcf import read_mjcf
+from hsr8.robots.loaded import load_robot, read_robot
+from hsr8.robots.locate import digest
+from tests.hsr8.robots.mesh_humanoid import write_robot
 from tests.hsr8.robots.robot_parts import described, part, setting
 from tests.hsr8.robots.small_humanoid import SmallHumanoid
-
-BALL = """
-<body name="ball" pos="1 0 1"><joint name="roll" type="hinge"/><geom size="0.1"/></body>
-"""
-FREE_BALL = '<body pos="1 0 1"><freejoint/><geom size="0.1"/></body>'
 
 
 @pytest.fixture
 def read(tmp_path):
     """Write a changed robot and read it."""
 
-    def read_changed(change, foot=""):
+    def read_changed(change, **keys):
         root = SmallHumanoid(actuator="").element()
         change(root)
-        file = tmp_path / "small.xml"
-        file.write_text(ElementTree.tostring(root, "unicode"))
-        return read_mjcf(file, foot).compile()
+        (tmp_path / "robot.xml").write_text(ElementTree.tostring(root, "unicode"))
+        return read_robot(described(SmallHumanoid(), **keys), tmp_path / "robot.toml").model
 
     return read_changed
 
@@ -60,7 +57,7 @@ def option(**values):
     ],
 )
 def test_numbers_that_are_not_those_of_a_robot_are_refused(read, change, reason):
-    with pytest.raises(ValueError, match=re.escape(reason)):
+    with pytest.raises(ModelError, match=re.escape(reason)):
         read(change)
 
 
@@ -73,7 +70,8 @@ def test_parts_without_a_name_get_one(read):
     def remove_names(root):
         for tag in ("body", "joint"):
             for element in list(root.iter(tag))[::2]:
-                element.attrib.pop("name", None)
+                if element.get("name") not in SmallHumanoid().feet():
+                    element.attrib.pop("name", None)
         part(root, "body", "torso").set("name", "body_1")
 
     bodies, joints = names(read(remove_names))
@@ -91,39 +89,44 @@ def test_names_of_the_file_remain(read):
     )
 
 
-@pytest.mark.parametrize("first", [True, False])
-@pytest.mark.parametrize("ball", [BALL, FREE_BALL])
-def test_other_moving_bodies_are_left_out(read, ball, first):
-    def add(root):
-        root.find("worldbody").insert(0 if first else 1, ElementTree.fromstring(ball))
-        if ball == BALL:
-            sensor = ElementTree.SubElement(root, "sensor")
-            ElementTree.SubElement(sensor, "jointpos", joint="roll")
-            ElementTree.SubElement(root.find("actuator"), "motor", joint="roll")
+@pytest.mark.parametrize("angle", ["radian", "degree"])
+def test_a_description_corrects_a_range(read, angle):
+    def unit(root):
+        root.find("compiler").set("angle", angle)
 
-    model = read(add)
-    assert names(model) == names(read(lambda root: None))
-    assert (model.nu, model.nsensor) == (0, 0)
+    model = read(unit, range={"l_knee": (0.1, 1.9)})
+    assert model.joint("l_knee").range == pytest.approx([0.1, 1.9])
 
 
-def test_the_robot_is_that_of_the_foot(read):
-    def twin(root):
-        other = SmallHumanoid(actuator="", name=lambda side, name: f"b{side}_{name}").element()
-        for body in other.iter("body"):
-            body.set("name", "b_" + body.get("name"))
-        for joint in other.iter("freejoint"):
-            joint.set("name", "b_root")
-        root.find("worldbody").append(other.find("worldbody").find("body"))
-
-    assert "base" in names(read(twin))[0]
-    bodies, _ = names(read(twin, "b_bl_knee_link"))
-    assert "b_base" in bodies
-    assert "base" not in bodies
+def described_file(folder, element, lines=""):
+    (folder / "robot.xml").write_text(ElementTree.tostring(element, encoding="unicode"))
+    left, right = SmallHumanoid().feet()
+    file = folder / "robot.toml"
+    file.write_text(f'model = "robot.xml"\nfeet = ["{left}", "{right}"]\n{lines}')
+    return file
 
 
-def test_a_leg_too_weak_for_the_robot_is_refused(tmp_path):
-    (tmp_path / "robot.xml").write_text(SmallHumanoid(mass=15).xml())
-    with pytest.raises(
-        ModelError, match="knee': too weak to carry the robot on one leg, got a max"
-    ):
-        build_robot(described(SmallHumanoid()), tmp_path / "robot.toml")
+def test_a_change_of_an_included_file_is_another_robot(tmp_path):
+    root = SmallHumanoid().element()
+    actuators = root.find("actuator")
+    root.remove(actuators)
+    include = ElementTree.Element("mujocoinclude")
+    include.append(actuators)
+    root.append(ElementTree.Element("include", {"file": "servos.xml"}))
+    servos = tmp_path / "servos.xml"
+    text = ElementTree.tostring(include, "unicode")
+    servos.write_text(text)
+    file = str(described_file(tmp_path, root))
+    before, robot = digest(file), load_robot(file)
+    assert load_robot(file) is robot
+    servos.write_text(text.replace('kp="300"', 'kp="310"'))
+    assert digest(file) != before
+    assert load_robot(file).model.tree.stiffness[0] == 310.0
+
+
+def test_a_change_of_a_mesh_is_another_robot(tmp_path):
+    file = write_robot(tmp_path)
+    before = digest(str(file))
+    mesh = next(path for path in tmp_path.rglob("*") if path.suffix in (".stl", ".obj"))
+    mesh.write_bytes(mesh.read_bytes() + b" ")
+    assert digest(str(file)) != before

@@ -1,7 +1,5 @@
-"""Vertices and triangles of mesh files, and the file of a ``package://`` URI."""
+"""Vertices and triangles of mesh files."""
 
-import os
-from collections.abc import Mapping
 from pathlib import Path
 from xml.etree import ElementTree
 
@@ -10,51 +8,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from hsr8.errors import ModelError
-from hsr8.robots.key_mistake import KeyMistake
 
 Array = NDArray[np.float64]
 Triangles = NDArray[np.int32]
-
-
-def package_folders(packages: Mapping[str, str], folder: Path) -> dict[str, Path]:
-    """Folder of each package of a description; relative ones are next to its file.
-
-    Raises:
-        KeyMistake: a folder does not exist.
-    """
-    folders = {name: folder / os.path.expanduser(text) for name, text in packages.items()}
-    for name, path in folders.items():
-        if not os.path.isdir(path):
-            raise KeyMistake(
-                f"packages.{name}: not a folder, got '{path}'; expected the package's folder"
-            )
-    return folders
-
-
-def find_mesh(uri: str, urdf: Path, packages: Mapping[str, Path]) -> Path | None:
-    """Find the file of a mesh.
-
-    ``package://NAME/FILE`` is searched in the folder of the package if it is known, else as
-    ``NAME/FILE``, then as ``FILE``, in every folder from that of the URDF file upwards; paths
-    without a scheme as they are.
-
-    Args:
-        uri: of the mesh.
-        urdf: file that names it.
-        packages: known folders.
-
-    Returns:
-        Its path, or None if the file does not exist.
-    """
-    scheme, _, rest = uri.rpartition("://")
-    name, _, tail = rest.partition("/")
-    if scheme in ("package", "model") and name in packages:
-        candidates = [packages[name] / tail]
-    else:
-        tails = (rest, tail) if scheme in ("package", "model") else (rest,)
-        folders = list(urdf.resolve().parents)
-        candidates = [folder / text for text in tails if text for folder in folders]
-    return next((path for path in candidates if path.is_file()), None)
 
 
 def read_mesh(path: Path) -> tuple[Array, Triangles]:

@@ -3,8 +3,7 @@ from xml.etree import ElementTree
 import pytest
 
 from hsr8.errors import ModelError
-from hsr8.robots.inspection import inspect
-from hsr8.robots.trial_load import load_inspected
+from hsr8.robots.inspection import inspect, load_inspected
 from tests.hsr8.robots.robot_parts import part
 from tests.hsr8.robots.small_humanoid import SmallHumanoid
 

@@ -1,4 +1,4 @@
-"""Refusal of mechanisms that the walking engine cannot drive: inertia, closed chains, actuators.
+"""Refusal of mechanisms that the walking engine cannot drive: closed chains, springs, actuators.
 
 Every check raises one `ModelError` with the element, the reason and the remedy.
 """
@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from hsr8.errors import ModelError
 from hsr8.robots.description import RobotDescription
+from hsr8.robots.key_mistake import RepairableError, at_most
 from hsr8.robots.roles import Roles
 from hsr8.robots.skeleton import HINGE, label
 
@@ -25,6 +26,9 @@ TO_JOINT = (int(mujoco.mjtTrn.mjTRN_JOINT), int(mujoco.mjtTrn.mjTRN_JOINTINPAREN
 TO_TENDON = int(mujoco.mjtTrn.mjTRN_TENDON)
 FIXED_GAIN = int(mujoco.mjtGain.mjGAIN_FIXED)
 AFFINE_BIAS = int(mujoco.mjtBias.mjBIAS_AFFINE)
+STATELESS = int(mujoco.mjtDyn.mjDYN_NONE)
+MAX_SPRING = 0.05  # stiffness of a joint spring that walking neglects, of its servo's [1]
+SERIAL = 'state linkage = "serial" to drive every joint of the legs by itself'
 WRAP_JOINT, WRAP_SITE = int(mujoco.mjtWrap.mjWRAP_JOINT), int(mujoco.mjtWrap.mjWRAP_SITE)
 
 
@@ -34,11 +38,9 @@ def check_mechanism(
     """Refuse a mechanism that the walking engine cannot drive.
 
     Raises:
-        ModelError: inertia that is not positive, a reversed range, a closed chain, or joints
-            without a servo.
+        ModelError: a reversed range, a closed chain, a stiff spring, or joints without a servo.
     """
     check = _Mechanism(model, roles, description, source)
-    check.inertia()
     check.ranges()
     check.ties()
     check.tendons()
@@ -55,10 +57,11 @@ def joint_actuators(model: mujoco.MjModel, joint: int) -> list[int]:
 
 
 def is_position_servo(model: mujoco.MjModel, actuator: int) -> bool:
-    """Return whether an actuator holds its joint at its setpoint."""
+    """Return whether an actuator holds its joint at its setpoint, without a state."""
     gain, bias = model.actuator_gainprm[actuator, 0], model.actuator_biasprm[actuator, 1]
     return bool(
-        model.actuator_gaintype[actuator] == FIXED_GAIN
+        model.actuator_dyntype[actuator] == STATELESS
+        and model.actuator_gaintype[actuator] == FIXED_GAIN
         and model.actuator_biastype[actuator] == AFFINE_BIAS
         and gain > 0.0
         and np.isclose(gain, -bias)
@@ -76,23 +79,6 @@ class _Mechanism:
 
     def _error(self, reason: str) -> ModelError:
         return ModelError(f"{self._source}: {reason}")
-
-    def inertia(self) -> None:
-        """Masses and inertias must be positive where a body has any."""
-        model = self._model
-        for body in range(1, model.nbody):
-            if model.body_rootid[body] != self._root:
-                continue
-            name = label(model.body(body).name, body)
-            mass, inertia = model.body_mass[body], model.body_inertia[body]
-            if not (np.isfinite(mass) and mass >= 0.0):
-                raise self._error(f"body {name!r}: mass, got {mass:g} kg; expected 0 or more")
-            if not np.isfinite(inertia).all() or (mass > 0.0 and not (inertia > 0.0).all()):
-                values = " ".join(f"{value:.3g}" for value in inertia)
-                raise self._error(
-                    f"body {name!r}: inertia is not positive, got principal moments {values} "
-                    "kg m²; expected positive ones: correct its <inertial>"
-                )
 
     def ranges(self) -> None:
         """Ranges must rise; MuJoCo takes a reversed one for no limit."""
@@ -112,6 +98,10 @@ class _Mechanism:
             raise self._error(f"{who}: {name}, got {lower:g} {upper:g}; expected lower < upper")
         if name != "range" and not lower <= 0.0 <= upper:
             raise self._error(f"{who}: {name}, got {lower:g} {upper:g}; expected 0 in it")
+        if name == "forcerange" and lower * upper == 0.0 and lower != upper:
+            raise self._error(
+                f"{who}: {name}, got {lower:g} {upper:g}; expected torque in both directions"
+            )
 
     def ties(self) -> None:
         """No constraint may close a chain, hold the robot, or couple joints of the legs."""
@@ -127,19 +117,24 @@ class _Mechanism:
                     tied = " and ".join(
                         repr(model.body(b).name) if b else "the world" for b in bodies
                     )
-                    raise self._error(
-                        f"{name}: closed chain, a {RIGID_TIES[kind]} ties {tied}; expected a "
-                        "tree of bodies: remove it and the joints that it drives"
+                    reason = (
+                        f"{name}: closed chain, a {RIGID_TIES[kind]} ties {tied}; expected a tree "
+                        "of bodies: remove it"
                     )
+                    raise self._error(reason) if 0 in bodies else self._loop(reason)
             ends = [int(model.eq_obj1id[tie]), int(model.eq_obj2id[tie])]
             joints = set(ends) & self._legs if kind == JOINT_TIES else set()
             if kind == TENDON_TIES:
                 joints = {j for t in ends if t >= 0 for j in self._tendon_joints(t)} & self._legs
             if joints:
-                raise self._error(
+                reason = (
                     f"{name}: couples joint {model.joint(min(joints)).name!r} of a leg; expected "
-                    "legs of independent joints: remove it, and drive every joint by itself"
+                    "legs of independent joints: remove it"
                 )
+                raise self._loop(reason) if kind == JOINT_TIES else self._error(reason)
+
+    def _loop(self, reason: str) -> ModelError:
+        return RepairableError(f"{self._source}: {reason}, or {SERIAL}", linkage="serial")
 
     def _tied_bodies(self, tie: int) -> list[int]:
         ends = (int(self._model.eq_obj1id[tie]), int(self._model.eq_obj2id[tie]))
@@ -189,26 +184,58 @@ class _Mechanism:
             on_robot = model.body_rootid[model.jnt_bodyid[joint]] == self._root
             if model.jnt_type[joint] == HINGE and on_robot:
                 self._require_servo(joint, needed=joint in needed)
+        self._springs()
 
     def _require_servo(self, joint: int, *, needed: bool) -> None:
-        model = self._model
-        name, actuators = model.joint(joint).name, joint_actuators(model, joint)
-        remedy = '; or state servo = "rule"'
-        if len(actuators) > 1 or (needed and not actuators):
-            raise self._error(
-                f"joint {name!r}: {len(actuators) or 'no'} actuators; expected one position servo"
-                f"{remedy}"
-            )
+        model, actuators = self._model, joint_actuators(self._model, joint)
+        who = f"joint {model.joint(joint).name!r}"
+        if len(actuators) > 1:
+            raise self._needs_linkage(joint, f"{who}: {len(actuators)} actuators; expected one")
+        if needed and not actuators:
+            raise self._needs_servos(f"{who}: no actuators; expected one position servo")
         for actuator in actuators:
-            who = f"actuator {label(model.actuator(actuator).name, actuator)!r} of joint {name!r}"
-            gain = model.actuator_gainprm[actuator, 0]
-            if gain < 0.0 and np.isclose(gain, -model.actuator_biasprm[actuator, 1]):
-                raise self._error(f"{who}: kp, got {gain:g}; expected > 0")
-            if not is_position_servo(model, actuator):
-                raise self._error(
-                    f"{who}: not a position servo but a torque motor or another kind; expected "
-                    f"<position>{remedy}"
+            name = label(model.actuator(actuator).name, actuator)
+            self._require_position(joint, actuator, f"actuator {name!r} of {who}")
+
+    def _require_position(self, joint: int, actuator: int, who: str) -> None:
+        """Require that an actuator is a position servo with gear 1, without a state."""
+        model = self._model
+        gain, gear = model.actuator_gainprm[actuator, 0], model.actuator_gear[actuator, 0]
+        dynamics = mujoco.mjtDyn(model.actuator_dyntype[actuator]).name.removeprefix("mjDYN_")
+        if gain < 0.0 and np.isclose(gain, -model.actuator_biasprm[actuator, 1]):
+            raise self._needs_servos(f"{who}: kp, got {gain:g}; expected > 0")
+        if dynamics != "NONE":
+            raise self._needs_servos(
+                f"{who}: has a state, got dynamics {dynamics.lower()}; expected <position> without "
+                "timeconst"
+            )
+        if not is_position_servo(model, actuator):
+            raise self._needs_servos(
+                f"{who}: not a position servo but a torque motor or another kind; expected "
+                "<position>"
+            )
+        if gear != 1.0:
+            raise self._needs_linkage(joint, f"{who}: gear, got {gear:g}; expected 1")
+
+    def _needs_servos(self, reason: str) -> ModelError:
+        return RepairableError(f'{self._source}: {reason}; or state servo = "rule"', servo="rule")
+
+    def _needs_linkage(self, joint: int, reason: str) -> ModelError:
+        """Return the error of a joint whose actuators one servo can replace, in a leg."""
+        if joint not in self._legs:
+            return self._needs_servos(reason)
+        return RepairableError(f"{self._source}: {reason}; or {SERIAL}", linkage="serial")
+
+    def _springs(self) -> None:
+        """Springs of leg joints must be soft against their servos; walking does not know them."""
+        model = self._model
+        for joint in sorted(self._legs):
+            spring = float(model.jnt_stiffness[joint])
+            (servo,) = joint_actuators(model, joint)
+            limit = MAX_SPRING * float(model.actuator_gainprm[servo, 0])
+            if spring > limit:
+                raise self._needs_servos(
+                    f"joint {model.joint(joint).name!r}: spring, got a stiffness of {spring:.3g} "
+                    f"N m/rad; expected at most {at_most(limit)}, {MAX_SPRING:.0%} of its servo: "
+                    "remove the stiffness of the joint"
                 )
-            gear = model.actuator_gear[actuator, 0]
-            if gear != 1.0:
-                raise self._error(f"{who}: gear, got {gear:g}; expected 1{remedy}")

@@ -1,35 +1,88 @@
-"""Reading of MJCF files: one robot whose bodies and joints all have names."""
+"""Reading of model files: MJCF or URDF as a MuJoCo model whose bodies and joints all have names."""
 
+from collections.abc import Mapping
+from dataclasses import dataclass
 from pathlib import Path
 
 import mujoco
 import numpy as np
 
-from hsr8.robots.skeleton import label, root_of
+from hsr8.errors import ModelError
+from hsr8.robots.models import reading_models
+from hsr8.robots.skeleton import label
+from hsr8.robots.urdf import drop_invalid_meshes, read_urdf
 
 MIN_STEP = 1e-5  # of the physics [s]
 MAX_OFFSET = 5.0  # of a body from the one that carries it [m]
 
 
-def read_mjcf(file: Path, foot: str = "") -> mujoco.MjSpec:
-    """Read an MJCF file; other bodies that move are left out.
+@dataclass(frozen=True, slots=True, eq=False)
+class ModelFile:
+    """Model of a file.
+
+    Attributes:
+        file: MJCF or URDF file.
+        spec: MuJoCo model.
+        speed: maximum speed of the joints that state one [rad/s].
+        notes: on parts that are left out, a line each.
+    """
+
+    file: Path
+    spec: mujoco.MjSpec
+    speed: Mapping[str, float]
+    notes: tuple[str, ...]
+
+    @property
+    def is_urdf(self) -> bool:
+        """Whether the file is a URDF file."""
+        return self.file.suffix.lower() == ".urdf"
+
+
+def read_spec(file: Path, packages: Mapping[str, Path]) -> ModelFile:
+    """Read a model file.
 
     Bodies and joints without a name get one, such as ``body_7``.
 
     Args:
-        file: MJCF file.
-        foot: body of the robot; default: the robot with most joints.
+        file: MJCF or URDF file.
+        packages: folders of the packages that a URDF file names.
 
     Raises:
-        ValueError: MuJoCo cannot compile it, or a number is not that of a robot.
+        ModelError: the file cannot be read, or has no joints.
     """
-    model = mujoco.MjModel.from_xml_path(str(file))  # a copy of a specification loses wrong names
-    _check_numbers(model)
-    spec = mujoco.MjSpec.from_file(str(file))
-    _name_parts(spec)
-    if len(np.unique(model.body_rootid[model.jnt_bodyid])) > 1:
-        _drop_others(spec, foot)
-    return spec
+    speed, notes = dict[str, float](), list[str]()
+    if file.suffix.lower() == ".urdf":
+        spec, speed, notes = read_urdf(file, packages)
+    else:
+        with reading_models(str(file)):
+            spec = mujoco.MjSpec.from_file(str(file))
+        _name_parts(spec)
+    if not spec.joints:
+        raise ModelError(f"{file}: the model has no joints; expected a robot")
+    return ModelFile(file, spec, speed, tuple(notes))
+
+
+def compile_spec(source: ModelFile, spec: mujoco.MjSpec) -> tuple[mujoco.MjModel, list[str]]:
+    """Compile a model; return notes on the meshes of a URDF file that are left out.
+
+    Args:
+        source: its file.
+        spec: cannot be changed afterwards in reasonable time.
+
+    Raises:
+        ModelError: MuJoCo cannot compile it, or a number is not that of a robot.
+    """
+    notes: list[str] = []
+    with reading_models(str(source.file)):
+        try:
+            model = spec.compile()
+        except ValueError:
+            if not source.is_urdf:
+                raise
+            notes = drop_invalid_meshes(spec)
+            model = spec.compile()
+        _check_numbers(model)
+    return model, notes
 
 
 def _check_numbers(model: mujoco.MjModel) -> None:
@@ -70,17 +123,3 @@ def _name_parts(spec: mujoco.MjSpec) -> None:
             if not part.name and getattr(part, "type", None) != mujoco.mjtJoint.mjJNT_FREE:
                 name = f"{kind}_{number}"
                 part.name = name if name not in names else f"unnamed_{name}"
-
-
-def _drop_others(spec: mujoco.MjSpec, foot: str) -> None:
-    """Remove bodies that move and do not belong to the robot."""
-    model = spec.copy().compile()
-    names = {model.body(b).name for b in range(model.nbody)}
-    root = int(model.body_rootid[model.body(foot).id]) if foot in names else root_of(model)
-    moving = {model.body(b).name for b in model.body_rootid[model.jnt_bodyid] if b != root}
-    for parts in (spec.keys, spec.sensors):
-        for part in list(parts):
-            spec.delete(part)
-    for body in list(spec.worldbody.bodies):
-        if body.name in moving:
-            spec.delete(body)

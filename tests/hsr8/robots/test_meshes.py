@@ -4,7 +4,8 @@ import numpy as np
 import pytest
 
 from hsr8.errors import ModelError
-from hsr8.robots.mesh_points import find_mesh, is_binary_stl, package_folders, read_mesh
+from hsr8.robots.files import find_mesh, package_folders
+from hsr8.robots.meshes import is_binary_stl, read_mesh
 from tests.hsr8.robots.mesh_files import CORNERS, FORMATS, dae, write_mesh
 
 

@@ -9,44 +9,54 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from hsr8.errors import ModelError
-from hsr8.robots import servo_rule
-from hsr8.robots.description import ServoRule
+from hsr8.robots import servos
 from hsr8.robots.roles import find_roles
-from hsr8.robots.servo_rule import (
-    add_servos,
+from hsr8.robots.servos import (
     armature_floor,
+    choose_servos,
     critical_damping,
     joint_damping,
     leg_damping,
     leg_stiffness,
-    motor_efforts,
+    own_efforts,
     upper_stiffness,
 )
-from hsr8.robots.urdf import convert
+from hsr8.robots.skeleton import Posed
+from tests.hsr8.robots import robot_parts, small_urdf
 from tests.hsr8.robots.small_humanoid import SmallHumanoid
-from tests.hsr8.robots.small_urdf import SmallUrdf, describe, link, write
+from tests.hsr8.robots.small_urdf import SmallUrdf, describe, link
 
 POSITIVE = st.floats(1e-3, 1e3)
 STEP = 0.0025
 
 
-def small_urdf(folder):
-    return convert(write(SmallUrdf().element(), folder), describe(), folder)
-
-
-def add(robot, *, rule=None, timestep=STEP):
-    """Servos for a converted robot; its soles are at z = 0."""
-    height = -float(robot.spec.body("pelvis").pos[2])
-    return add_servos(
-        robot.spec,
-        SmallUrdf().legs(),
-        sole_height=height,
-        posture=robot.description.posture,
-        rule=rule or ServoRule(),
-        effort=robot.description.effort,
-        speed=robot.description.speed,
-        timestep=timestep,
+def with_servos(read, description, *, sole_height=-0.44, speed=None):
+    """Model of a robot with servos, and their notes."""
+    roles = find_roles(read.model, description, read.prepared)
+    spec = read.prepared.spec.copy()
+    notes = choose_servos(
+        spec,
+        Posed.at(read.model, {}),
+        roles,
+        description,
+        posture={},
+        speed=read.speed if speed is None else speed,
+        sole_height=sole_height,
     )
+    return spec, notes
+
+
+def small(folder, element=None, *, timestep=STEP, speed=None, **keys):
+    """Small URDF robot with servos and floor contacts, its soles at z = 0."""
+    element = SmallUrdf().element() if element is None else element
+    read = small_urdf.raw(element, folder, **keys)
+    read.prepared.spec.option.timestep = timestep
+    spec, notes = with_servos(read, describe(**keys), speed=speed)
+    spec.body("pelvis").pos = (0.0, 0.0, 0.44)
+    for geom in spec.geoms:
+        solid = geom.conaffinity and "foot" in geom.name
+        geom.contype = geom.conaffinity = int(bool(solid))
+    return spec, notes
 
 
 def swing(inertia, kp, kv, *, armature=0.0, timestep=STEP, steps=400):
@@ -142,9 +152,8 @@ def test_damping_of_the_file_is_kept_where_it_is_larger_or_a_limit_is_unknown():
 
 
 def test_every_joint_has_a_servo_with_the_limits_of_the_file(tmp_path):
-    robot = small_urdf(tmp_path)
-    notes = add(robot)
-    model = robot.spec.compile()
+    spec, notes = small(tmp_path)
+    model = spec.compile()
     assert model.nu == model.njnt - 1
     np.testing.assert_allclose(model.actuator_forcerange, [[-40.0, 40.0]] * model.nu)
     np.testing.assert_allclose(model.dof_damping[6:], 40.0 / 8.0)
@@ -156,9 +165,8 @@ def test_every_joint_has_a_servo_with_the_limits_of_the_file(tmp_path):
     assert any("armature added" in note for note in notes)
 
 
-def standing_tilt(robot, timestep=STEP, seconds=2.0):
+def standing_tilt(spec, timestep=STEP, seconds=2.0):
     """Maximum tilt of the robot on its servos [rad], infinite where the physics diverges."""
-    spec = robot.spec
     spec.option.timestep = timestep
     spec.option.integrator = mujoco.mjtIntegrator.mjINT_IMPLICITFAST
     spec.option.disableflags |= mujoco.mjtDisableBit.mjDSBL_AUTORESET
@@ -179,11 +187,10 @@ def standing_tilt(robot, timestep=STEP, seconds=2.0):
     return tilt
 
 
-@pytest.mark.parametrize("timestep", [0.001, 0.0025, 0.005])
-def test_a_converted_robot_stands(timestep, tmp_path):
-    robot = small_urdf(tmp_path)
-    add(robot, timestep=timestep)
-    assert standing_tilt(robot, timestep) < 0.01
+@pytest.mark.parametrize("timestep", [0.001, 0.0025])
+def test_a_robot_stands_on_its_servos(timestep, tmp_path):
+    spec, _ = small(tmp_path, timestep=timestep)
+    assert standing_tilt(spec, timestep) < 0.01
 
 
 @pytest.mark.parametrize("floor", [True, False])
@@ -195,36 +202,26 @@ def test_a_robot_with_light_feet_stands_only_with_the_armature_floor(floor, tmp_
             inertial = link(element, name).find("inertial")
             inertial.find("mass").set("value", "0.02")
             inertial.find("inertia").attrib.update(ixx="1e-5", iyy="1e-5", izz="1e-5")
-    robot = convert(write(element, tmp_path), describe(), tmp_path)
-    robot.description.speed.clear()
+    monkeypatch.setattr(servos, "MIN_SUBSTEPS", 1)
     if not floor:
-        monkeypatch.setattr(servo_rule, "armature_floor", lambda *_: 0.0)
-    add(robot, timestep=0.005)
-    assert (standing_tilt(robot, 0.005) < 0.01) is floor
+        monkeypatch.setattr(servos, "armature_floor", lambda *_: 0.0)
+    spec, _ = small(tmp_path, element, timestep=0.005, speed={})
+    assert (standing_tilt(spec, 0.005) < 0.01) is floor
 
 
 def test_a_robot_with_soft_legs_falls(tmp_path):
-    robot = small_urdf(tmp_path)
-    add(robot, rule=ServoRule(compliance=10.0))
-    assert standing_tilt(robot, seconds=4.0) > 1.0
-
-
-def mjcf(actuator):
-    robot = SmallHumanoid(actuator=actuator)
-    spec = mujoco.MjSpec.from_string(robot.xml())
-    description = describe(feet=robot.feet())
-    roles = find_roles(spec.copy().compile(), description, "small.xml")
-    return spec, roles
+    spec, _ = small(tmp_path, servo={"compliance": 10.0})
+    assert standing_tilt(spec, seconds=4.0) > 1.0
 
 
 @pytest.mark.parametrize("actuator", ["motor", "position"])
 def test_actuators_of_a_file_are_replaced(actuator):
-    spec, roles = mjcf(actuator)
-    before = spec.copy().compile()
-    limits = motor_efforts(before)
-    spec.add_key(name="home", qpos=before.qpos0, ctrl=np.zeros(before.nu))
-    keys = {"rule": ServoRule(), "effort": {}, "speed": {}, "timestep": STEP}
-    add_servos(spec, roles.legs, sole_height=-0.45, posture={}, **keys)
+    robot = SmallHumanoid(actuator=actuator)
+    description = robot_parts.described(robot, servo="rule")
+    read = robot_parts.raw(robot, description)
+    limits = own_efforts(read.model)
+    assert len(limits) == read.model.nu
+    spec, _ = with_servos(read, description)
     model = spec.compile()
     hinges = [j for j in range(model.njnt) if model.jnt_type[j] == 3]
     assert sorted(model.actuator_trnid[:, 0].tolist()) == hinges
@@ -233,18 +230,29 @@ def test_actuators_of_a_file_are_replaced(actuator):
         assert float(model.actuator(name).forcerange[1]) == pytest.approx(limit)
 
 
-def test_the_effort_of_a_motor_is_its_tightest_bound():
+def test_the_effort_of_a_joint_is_its_tightest_bound():
+    """Actuators of one joint add up; of limits that differ by direction the smaller counts."""
     model = mujoco.MjModel.from_xml_string(
         """<mujoco><worldbody><body><joint name="a" actuatorfrcrange="-9 9"/><geom size=".1"/>
-        <body><joint name="b"/><geom size=".1"/><body><joint name="c"/><geom size=".1"/></body>
-        </body></body></worldbody><actuator><motor joint="a" gear="50" ctrlrange="-1 1"/>
-        <motor joint="b" gear="50" ctrlrange="-1 1"/><motor joint="c"/></actuator></mujoco>"""
+        <body><joint name="b"/><geom size=".1"/><body><joint name="c"/><geom size=".1"/>
+        <body><joint name="d"/><geom size=".1"/></body></body></body></body></worldbody>
+        <actuator><motor joint="a" gear="50" ctrlrange="-1 1"/>
+        <motor joint="b" gear="50" ctrlrange="-1 1"/><motor joint="c"/>
+        <position joint="d" forcerange="-3 5"/><motor jointinparent="d" forcerange="-2 2"/>
+        </actuator></mujoco>"""
     )
-    assert motor_efforts(model) == {"a": 9.0, "b": 50.0}
+    assert own_efforts(model) == {"a": 9.0, "b": 50.0, "d": 5.0}
+
+
+def test_limits_that_are_not_stated_are_noted():
+    robot = SmallHumanoid(actuator="")
+    description = robot_parts.described(robot)
+    _, notes = with_servos(robot_parts.raw(robot, description), description)
+    for key in ("effort", "speed"):
+        assert any(note.startswith(f"{key} of 20 joints is not stated") for note in notes)
 
 
 def test_soles_above_the_com_are_refused(tmp_path):
-    robot = small_urdf(tmp_path)
-    keys = {"rule": ServoRule(), "effort": {}, "speed": {}, "timestep": STEP}
-    with pytest.raises(ModelError, match=r"CoM is -1\.\d+ m above the soles"):
-        add_servos(robot.spec, SmallUrdf().legs(), sole_height=1.2, posture={}, **keys)
+    read = small_urdf.raw(SmallUrdf().element(), tmp_path)
+    with pytest.raises(ModelError, match=r"servo: the CoM is -1\.\d+ m above the soles"):
+        with_servos(read, describe(), sole_height=1.2)

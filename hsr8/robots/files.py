@@ -1,0 +1,98 @@
+"""Files of a robot: those of its packages, meshes and included parts."""
+
+import hashlib
+import os
+from collections.abc import Iterator, Mapping
+from pathlib import Path
+from xml.etree import ElementTree
+
+from hsr8.robots.key_mistake import KeyMistake
+
+FOLDERS = {"mesh": "meshdir", "texture": "texturedir", "hfield": "meshdir", "skin": "meshdir"}
+
+
+def package_folders(packages: Mapping[str, str], folder: Path) -> dict[str, Path]:
+    """Folder of each package of a description; relative ones are next to its file.
+
+    Raises:
+        KeyMistake: a folder does not exist.
+    """
+    folders = {name: folder / os.path.expanduser(text) for name, text in packages.items()}
+    for name, path in folders.items():
+        if not os.path.isdir(path):
+            raise KeyMistake(
+                f"packages.{name}: not a folder, got '{path}'; expected the package's folder"
+            )
+    return folders
+
+
+def find_mesh(uri: str, urdf: Path, packages: Mapping[str, Path]) -> Path | None:
+    """Find the file of a mesh.
+
+    ``package://NAME/FILE`` is searched in the folder of the package if it is known, else as
+    ``NAME/FILE``, then as ``FILE``, in every folder from that of the URDF file upwards; paths
+    without a scheme as they are.
+
+    Args:
+        uri: of the mesh.
+        urdf: file that names it.
+        packages: known folders.
+
+    Returns:
+        Its path, or None if the file does not exist.
+    """
+    scheme, _, rest = uri.rpartition("://")
+    name, _, tail = rest.partition("/")
+    if scheme in ("package", "model") and name in packages:
+        candidates = [packages[name] / tail]
+    else:
+        tails = (rest, tail) if scheme in ("package", "model") else (rest,)
+        folders = list(urdf.resolve().parents)
+        candidates = [folder / text for text in tails if text for folder in folders]
+    return next((path for path in candidates if path.is_file()), None)
+
+
+def files_of(
+    model: Path, packages: Mapping[str, Path], options: Mapping[str, str] | None = None
+) -> Iterator[Path]:
+    """Yield a model file, and the files that it includes or refers to and that exist.
+
+    Args:
+        model: MJCF or URDF file.
+        packages: folders of the packages that a URDF file names.
+        options: of the compiler in the file that includes this one.
+    """
+    yield model
+    try:
+        root = ElementTree.fromstring(model.read_bytes())
+    except (OSError, ValueError, ElementTree.ParseError):
+        return  # reading it reports the reason
+    if root.tag == "robot":
+        uris = dict.fromkeys(mesh.get("filename", "") for mesh in root.iter("mesh"))
+        yield from (path for uri in uris if (path := find_mesh(uri, model, packages)))
+        return
+    folders = dict(options or {})
+    for compiler in root.iter("compiler"):
+        folders |= compiler.attrib
+    for element in root.iter():
+        below = folders.get(FOLDERS.get(element.tag, ""), folders.get("assetdir", ""))
+        for key, name in element.attrib.items():
+            path = model.parent / below / name
+            if key == "file" and element.tag in ("include", "model"):
+                yield from files_of(model.parent / name, packages, folders)
+            elif key.startswith("file") and path.is_file():
+                yield path
+
+
+def digest_of(files: Iterator[Path]) -> str:
+    """Return the first 12 digits of the SHA-256 of some files."""
+    digest = hashlib.sha256()
+    for file in files:
+        digest.update(file.read_bytes())
+    return digest.hexdigest()[:12]
+
+
+def stamp_of(files: Iterator[Path]) -> tuple[tuple[str, int, int], ...]:
+    """Return names, times of change and sizes of some files, which differ when a file changes."""
+    stats = ((str(file), file.stat()) for file in files if file.is_file())
+    return tuple((name, stat.st_mtime_ns, stat.st_size) for name, stat in stats)

@@ -1,0 +1,419 @@
+"""Preparation of a model file: one robot that is free to move, of bodies with possible inertias.
+
+The same for MJCF and URDF: joints that no servo can move are held, a missing free joint is added,
+links without mass or with impossible inertia are completed or reported. Links of a URDF file that
+do not move apart become one body.
+"""
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from typing import Any
+
+import mujoco
+import numpy as np
+from numpy.typing import NDArray
+
+from hsr8.errors import ModelError
+from hsr8.robots.inertia import complete_inertias
+from hsr8.robots.key_mistake import KeyMistake, require_name
+from hsr8.robots.read import ModelFile
+from hsr8.robots.skeleton import BaseFrame
+
+Array = NDArray[np.float64]
+
+LEG_JOINTS = 6
+LIMIT_MARGIN = 0.02  # distance of a clipped angle from its limit, by the range [1]
+MAX_LISTED = 6  # joints in a note
+FREE, HINGE = mujoco.mjtJoint.mjJNT_FREE, mujoco.mjtJoint.mjJNT_HINGE
+LIMITED, UNLIMITED = mujoco.mjtLimited.mjLIMITED_TRUE, mujoco.mjtLimited.mjLIMITED_FALSE
+JOINT_TIE = mujoco.mjtEq.mjEQ_JOINT
+CLOSING = (mujoco.mjtEq.mjEQ_CONNECT, mujoco.mjtEq.mjEQ_WELD)
+COUPLINGS = (JOINT_TIE, mujoco.mjtEq.mjEQ_TENDON)
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Place:
+    """Link of a file in a prepared model.
+
+    Attributes:
+        body: that it is a part of.
+        pose: of its origin in that body (4, 4) [m].
+    """
+
+    body: str
+    pose: Array
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Prepared:
+    """Prepared model.
+
+    Attributes:
+        spec: MuJoCo model.
+        root: body with the free joint.
+        base: link of the base, a part of `root` or fixed to it.
+        places: of the links that are a part of another body, by name.
+        held: reason of each joint that is held.
+        held_above: those above each foot.
+        notes: derived facts, a line each.
+    """
+
+    spec: mujoco.MjSpec
+    root: str
+    base: str
+    places: Mapping[str, Place]
+    held: Mapping[str, str]
+    held_above: Mapping[str, tuple[str, ...]]
+    notes: tuple[str, ...]
+
+    def where(self, link: str) -> Place:
+        """Return the place of a link of the file."""
+        return self.places.get(link, Place(link, np.eye(4)))
+
+
+def prepare(
+    source: ModelFile,
+    feet: tuple[str, str] | None,
+    *,
+    base: str | None = None,
+    rigid: tuple[str, ...] = (),
+    powered: frozenset[str] = frozenset(),
+    posture: Mapping[str, float],
+    repair_inertia: bool = False,
+) -> Prepared:
+    """Prepare a model.
+
+    Held are: joints that follow another one, slides and balls, those with an effort or a range of
+    zero, those that move no mass, and those of `rigid`. Joints of the legs are held by `rigid`, a
+    range of zero, or a lack of mass only; an effort of zero counts in legs with six others.
+
+    Args:
+        source: model file; its model is changed.
+        feet: bodies or links; None where they are unknown.
+        base: body or link; default: the last one that the legs have in common and that is fixed to
+            the body with the free joint.
+        rigid: joints to hold.
+        powered: joints that an effort of zero does not hold.
+        posture: angles of held joints [rad or m].
+        repair_inertia: whether impossible inertias are replaced.
+
+    Raises:
+        KeyMistake: a foot or the base is unknown.
+        ModelError: the base cannot move, or a body has an impossible inertia.
+    """
+    spec = source.spec
+    bodies = [body.name for body in spec.bodies[1:]]
+    for side, foot in zip(("left", "right"), feet or (), strict=False):
+        require_name(f"feet: {side} foot", "body", foot, bodies)
+    if base is not None:
+        require_name("base", "body", base, bodies)
+    root, notes = _only_robot(spec, feet)
+    notes += _free(spec, root, source)
+    paths = [] if feet is None else [_joints_above(spec, spec.body(foot)) for foot in feet]
+    on_path = {name for path in paths for name in path}
+    followers = _followers(spec)
+    on_path |= _tied_to(spec, on_path, followers)
+    all_powered = frozenset(joint.name for joint in spec.joints) if feet is None else powered
+    held = dict(_held(spec, rigid, all_powered, on_path, followers))
+    if any(sum(name not in held for name in path) < LEG_JOINTS for path in paths):
+        held = dict(_held(spec, rigid, powered | on_path, on_path, followers))
+    angles = {name: _held_angle(spec, name, posture, followers) for name in held}
+    for name, angle in angles.items():
+        hold(spec, name, angle)
+    for joint in spec.joints:
+        if joint.actfrclimited == LIMITED and not np.any(joint.actfrcrange):
+            joint.actfrclimited = UNLIMITED  # an effort of zero that does not count is unknown
+    notes += _held_notes(held)
+    places = _places(spec, root)
+    base = base or _common_link(spec, root, feet)
+    if base != root and (base not in places or places[base].body != root):
+        raise KeyMistake(
+            f"base: not fixed to the body with the free joint, got {base!r}; expected {root!r} or "
+            "one fixed to it: leave the key out"
+        )
+    if base != root:
+        notes.append(f"base: {base!r}, fixed to {root!r}")
+    notes += complete_inertias(spec, places, source, repair=repair_inertia)
+    if source.is_urdf:
+        for body in reversed(spec.bodies[1:]):
+            if body.name in places:
+                body.to_frame()
+    else:
+        places = {}
+    above = {
+        foot: tuple(name for name in path if name in held)
+        for foot, path in zip(feet or (), paths, strict=True)
+    }
+    return Prepared(spec, root, base, places, held, above, tuple(notes))
+
+
+def hold(spec: mujoco.MjSpec, name: str, angle: float) -> None:
+    """Remove a joint and its actuators; its body keeps the place of an angle [rad or m]."""
+    joint = spec.joint(name)
+    body, degree = joint.parent, bool(spec.compiler.degree)
+    quat = orientation(spec, body)
+    axis, anchor = np.asarray(joint.axis, float), np.asarray(joint.pos, float)
+    axis = axis / np.linalg.norm(axis)
+    turn, shift = np.array([1.0, 0.0, 0.0, 0.0]), np.zeros(3)
+    if joint.type == HINGE:
+        ref = float(np.radians(joint.ref)) if degree else float(joint.ref)
+        mujoco.mju_axisAngle2Quat(turn, axis, angle - ref)
+        shift = anchor - _rotated(turn, anchor)
+    elif joint.type == mujoco.mjtJoint.mjJNT_SLIDE:
+        shift = axis * (angle - float(joint.ref))
+    back = np.empty(4)
+    mujoco.mju_negQuat(back, turn)
+    for other in body.joints:  # joints of the same body that come first see it in the turned body
+        if other.name == name:
+            break
+        other.axis = _rotated(back, np.asarray(other.axis, float))
+        other.pos = _rotated(back, np.asarray(other.pos, float) - shift)
+    body.pos = np.asarray(body.pos, float) + _rotated(quat, shift)
+    product = np.empty(4)
+    mujoco.mju_mulQuat(product, quat, turn)
+    body.quat, body.alt.type = product, mujoco.mjtOrientation.mjORIENTATION_QUAT
+    for part in (*_referring(spec, name), joint):
+        spec.delete(part)
+
+
+def clip_to_range(angle: float, lower: float, upper: float) -> float:
+    """Return an angle that is inside its range; one outside moves in by 2 % of the range [rad]."""
+    if lower <= angle <= upper:
+        return angle
+    margin = LIMIT_MARGIN * (upper - lower)
+    return min(max(angle, lower + margin), upper - margin)
+
+
+def orientation(spec: mujoco.MjSpec, body: mujoco.MjsBody) -> Array:
+    """Return the stated orientation of a body in its parent, a quaternion (4,)."""
+    if body.alt.type == mujoco.mjtOrientation.mjORIENTATION_QUAT:
+        quat = np.array(body.quat, float)
+        normalised: Array = quat / np.linalg.norm(quat)
+        return normalised
+    return np.array(
+        mujoco.MjSpec.resolve_orientation(
+            degree=bool(spec.compiler.degree),
+            sequence=spec.compiler.eulerseq,
+            orientation=body.alt,
+        )
+    )
+
+
+def rebase(spec: mujoco.MjSpec, root: str, base: BaseFrame) -> None:
+    """Move the frame of the body with the free joint to that of the base.
+
+    Args:
+        spec: changed in place; its inertias are explicit.
+        root: body with the free joint.
+        base: frame of the base.
+    """
+    body = spec.body(root)
+    turn = np.empty(4)
+    mujoco.mju_mat2Quat(turn, base.rotation.ravel())
+    parts = [*body.bodies, *body.geoms, *body.sites, *body.cameras, *body.lights, *body.frames]
+    frame = body.add_frame(pos=-base.rotation @ base.origin, quat=turn)
+    for part in parts:
+        if part.frame is None:
+            part.set_frame(frame)
+    turned = np.empty(4)
+    mujoco.mju_mulQuat(turned, turn, np.asarray(body.iquat, float))
+    body.ipos = base.rotation @ (np.asarray(body.ipos, float) - base.origin)
+    body.iquat = turned
+    body.quat, body.alt.type = (1.0, 0.0, 0.0, 0.0), mujoco.mjtOrientation.mjORIENTATION_QUAT
+
+
+def _referring(spec: mujoco.MjSpec, joint: str) -> list[Any]:
+    """Return the elements that refer to a joint, which it takes along."""
+    over = [t for t in spec.tendons if any(_wraps(wrap, joint) for wrap in t.path)]
+    names = {joint, *(tendon.name for tendon in over)}
+    servos = [servo for servo in spec.actuators if servo.target in names]
+    ties = [
+        tie for tie in spec.equalities if tie.type in COUPLINGS and {tie.name1, tie.name2} & names
+    ]
+    sensed = names | {servo.name for servo in servos}
+    sensors = [sensor for sensor in spec.sensors if sensor.objname in sensed]
+    return [*sensors, *ties, *servos, *over]
+
+
+def _wraps(wrap: mujoco.MjsWrap, joint: str) -> bool:
+    return bool(wrap.type == mujoco.mjtWrap.mjWRAP_JOINT and wrap.target.name == joint)
+
+
+def _only_robot(spec: mujoco.MjSpec, feet: tuple[str, str] | None) -> tuple[str, list[str]]:
+    """Remove the other bodies of a scene; return the body that carries the robot, and a note.
+
+    It is that of the left foot, else the one with most joints.
+    """
+    tops = list(spec.worldbody.bodies)
+    root = max(tops, key=lambda body: len(body.find_all("joint")))
+    foot = None if feet is None else spec.body(feet[0])
+    if foot is not None:
+        while foot.parent.name != spec.worldbody.name:
+            foot = foot.parent
+        root = foot
+    others = [body for body in tops if body.name != root.name]
+    shown = [repr(b.name) for b in others if b.find_all("joint") or b.find_all("geom")]
+    moving = [body.name for body in others if body.find_all("joint")]
+    if moving:  # keyframes have their coordinates
+        for part in (*spec.keys, *spec.sensors):
+            spec.delete(part)
+    for body in others:
+        spec.delete(body)
+    note = f"{len(shown)} other bodies of the scene left out: {', '.join(shown[:MAX_LISTED])}"
+    return root.name, [note] if shown else []
+
+
+def _free(spec: mujoco.MjSpec, root: str, source: ModelFile) -> list[str]:
+    """Add a missing free joint to the body that carries the robot; return a note.
+
+    Raises:
+        ModelError: other joints fix the robot to the world.
+    """
+    body = spec.body(root)
+    if any(joint.type == FREE for joint in body.joints):
+        return []
+    if body.joints:
+        raise ModelError(
+            f"{source.file}: base: body {root!r} has joint {body.joints[0].name!r} and no free "
+            "joint, so the robot is fixed to the world; expected a free base: replace its joints "
+            "by <freejoint/>"
+        )
+    body.add_freejoint(name=f"{root}_free")
+    for key in list(spec.keys):  # without the coordinates of the joint
+        spec.delete(key)
+    return [] if source.is_urdf else [f"base: free joint added to body {root!r}"]
+
+
+def _common_link(spec: mujoco.MjSpec, root: str, feet: tuple[str, str] | None) -> str:
+    """Return the last body that both legs have in common and that is fixed to the root."""
+    if feet is None:
+        return root
+    paths = []
+    for foot in feet:
+        path = [spec.body(foot)]
+        while path[-1].name != root and path[-1].name != spec.worldbody.name:
+            path.append(path[-1].parent)
+        paths.append(path[::-1])
+    base = root
+    for one, other in zip(*paths, strict=False):
+        if one.name != other.name or (one.joints and one.name != root):
+            break
+        base = one.name
+    return base
+
+
+def _joints_above(spec: mujoco.MjSpec, body: mujoco.MjsBody | None) -> list[str]:
+    """Return the joints from the robot's root down to a body, but for the free one."""
+    names: list[str] = []
+    while body is not None and body.name != spec.worldbody.name:
+        names = [j.name for j in body.joints if j.type != FREE] + names
+        body = body.parent
+    return names
+
+
+def _tied_to(
+    spec: mujoco.MjSpec, legs: set[str], followers: Mapping[str, tuple[str, Array]]
+) -> set[str]:
+    """Return the joints of cranks and rods: those above closed chains, or coupled to the legs."""
+    tied = {name for name, (leader, _) in followers.items() if leader in legs}
+    for tie in spec.equalities:
+        if tie.type in CLOSING and tie.active:
+            for name in (tie.name1, tie.name2):
+                part = spec.site(name) if tie.objtype == mujoco.mjtObj.mjOBJ_SITE else None
+                body = spec.body(name) if part is None else part.parent
+                tied |= {*_joints_above(spec, body)}
+    return tied
+
+
+def _followers(spec: mujoco.MjSpec) -> dict[str, tuple[str, Array]]:
+    """Return leader (may be empty) and polynomial of each joint that follows another one."""
+    ties = [tie for tie in spec.equalities if tie.type == JOINT_TIE and tie.active]
+    return {tie.name1: (tie.name2, np.array(tie.data[:5])) for tie in ties}
+
+
+def _held(
+    spec: mujoco.MjSpec,
+    rigid: tuple[str, ...],
+    powered: frozenset[str],
+    on_path: set[str],
+    followers: Mapping[str, tuple[str, Array]],
+) -> Iterator[tuple[str, str]]:
+    """Yield every joint that is held, with the reason."""
+    for joint in spec.joints:
+        name = joint.name
+        if joint.type == FREE:
+            continue
+        if name in rigid:
+            yield name, "stated rigid"
+        elif name in followers and name not in on_path:
+            yield name, "follows a joint"
+        elif joint.type != HINGE and name not in on_path:
+            ball = joint.type == mujoco.mjtJoint.mjJNT_BALL
+            yield name, "ball" if ball else "prismatic"
+        elif joint.limited == LIMITED and joint.range[0] == joint.range[1]:
+            yield name, "range of zero"
+        elif (
+            joint.actfrclimited == LIMITED and not np.any(joint.actfrcrange) and name not in powered
+        ):
+            yield name, "zero effort"
+        elif not _may_move_mass(spec, joint.parent):
+            yield name, "moves no mass"
+
+
+def _may_move_mass(spec: mujoco.MjSpec, body: mujoco.MjsBody) -> bool:
+    """Return whether a body or one below it may have a mass."""
+    inferred = spec.compiler.inertiafromgeom != mujoco.mjtInertiaFromGeom.mjINERTIAFROMGEOM_FALSE
+    own = body.mass > 0.0 if body.explicitinertial else inferred and bool(body.geoms)
+    return own or any(_may_move_mass(spec, child) for child in body.bodies)
+
+
+def _held_angle(
+    spec: mujoco.MjSpec,
+    name: str,
+    posture: Mapping[str, float],
+    followers: Mapping[str, tuple[str, Array]],
+    depth: int = 0,
+) -> float:
+    """Return the angle of a held joint: of the posture, else by its leader, else near zero."""
+    if name in posture:
+        return posture[name]
+    angle = 0.0
+    if name in followers and depth < len(followers):
+        leader, polynomial = followers[name]
+        led = _held_angle(spec, leader, posture, followers, depth + 1) if leader else 0.0
+        angle = float(np.polynomial.Polynomial(polynomial)(led))
+    joint = spec.joint(name)
+    lower, upper = joint.range
+    if joint.limited == UNLIMITED or lower == upper == 0.0:
+        return angle
+    if joint.type == HINGE and spec.compiler.degree:
+        lower, upper = np.radians([lower, upper]).tolist()
+    return clip_to_range(angle, float(lower), float(upper))
+
+
+def _held_notes(held: Mapping[str, str]) -> Iterator[str]:
+    for reason in dict.fromkeys(held.values()):
+        names = [name for name, its in held.items() if its == reason]
+        more = " ..." if len(names) > MAX_LISTED else ""
+        yield f"{len(names)} joints held ({reason}): {', '.join(names[:MAX_LISTED])}{more}"
+
+
+def _places(spec: mujoco.MjSpec, root: str) -> dict[str, Place]:
+    """Return the place of every body below the root that has no joint, in the one that moves it."""
+    places: dict[str, Place] = {}
+    for body in spec.bodies[1:]:
+        if body.joints or body.name == root:
+            continue
+        above = places.get(body.parent.name, Place(body.parent.name, np.eye(4)))
+        pose, turn = np.eye(4), np.empty(9)
+        mujoco.mju_quat2Mat(turn, orientation(spec, body))
+        pose[:3, :3], pose[:3, 3] = turn.reshape(3, 3), body.pos
+        with np.errstate(invalid="ignore"):  # wrong numbers are reported later
+            places[body.name] = Place(above.body, above.pose @ pose)
+    return places
+
+
+def _rotated(quaternion: Array, vector: Array) -> Array:
+    rotated = np.empty(3)
+    mujoco.mju_rotVecQuat(rotated, vector, quaternion)
+    return rotated
