@@ -3,16 +3,21 @@
     python scripts/bench.py                       # `course`, 40 s
     python scripts/bench.py --obstacles 8 16 32 64 128 --beacons 0 6 --seconds 30 100 300 --write
     python scripts/bench.py --check               # against the ratios kept with the results
+    python scripts/bench.py --against ../main     # in turn with another checkout
 
 The floor is MuJoCo stepping the same model with constant controls and rendering as many
 images. It runs in turn with the loop, second by second, so that the ratio of the two holds
 on any machine and while other work comes and goes. Times are processor time; the time of
-the threads that draw and write in parallel is listed separately and included in the total.
+the threads that draw and write in parallel is listed separately and included in the total, as are
+garbage collections. The first call of each stage is left out: it loads compiled code. Of several
+runs, the one with the median total is shown.
 """
 
 import argparse
 import json
 from collections.abc import Iterable
+from pathlib import Path
+from statistics import median
 
 from hsr8.files import atomic
 from hsr8.gl import require_gl
@@ -20,9 +25,11 @@ from hsr8.loop import Simulation
 from hsr8.scenario.loader import load_scenario
 from hsr8.scenario.schema import Scenario
 
+from bench_pairs import comparison, pairs
 from loop_bench import Bench
 from study_page import RESULTS, command_line, environment
 
+ROOT = Path(__file__).resolve().parents[1]
 PAGE, BASELINE = RESULTS / "loop-time.md", RESULTS / "loop-ratios.json"
 PACKAGES = ("hsr8", "mujoco", "numba", "numpy", "rerun-sdk")
 EARLIER = "\n## Earlier states\n"  # the following part of the page is not measured again
@@ -81,11 +88,15 @@ def warm(scenario: str, seed: int) -> None:
     Simulation(load_scenario(scenario, ["duration=3"], seed), seed).run()
 
 
-def ratios(rounds: int) -> dict[str, float]:
-    """Least ratio of every stage to the floor in so many runs: other work only adds."""
+def ratios() -> dict[str, float]:
+    """Ratio of every stage to the floor in the run that is checked."""
     name, seed, length = CHECKED
-    runs = [Bench(load_scenario(name, [length], seed), seed).ratios() for _ in range(rounds)]
-    return {stage: min(run[stage] for run in runs) for stage in runs[0]}
+    return Bench(load_scenario(name, [length], seed), seed).ratios()
+
+
+def medians(runs: list[dict[str, float]]) -> dict[str, float]:
+    """Median of every stage in several runs."""
+    return {stage: median(run[stage] for run in runs) for stage in runs[0]}
 
 
 def slower(measured: dict[str, float], kept: dict[str, float]) -> list[str]:
@@ -101,13 +112,17 @@ def check() -> None:
     """Warn of every stage that has become slower; it never fails."""
     warm(*CHECKED[:2])
     kept = json.loads(BASELINE.read_text())["ratios"]
-    measured = ratios(1)
+    measured = ratios()
     if slower(measured, kept):
-        again = ratios(1)
-        measured = {stage: min(ratio, again[stage]) for stage, ratio in measured.items()}
+        measured = medians([measured, ratios(), ratios()])
     for line in slower(measured, kept):
         print(f"warning: {line}")
     print(f"the loop takes {measured['whole loop']:.2f} floors; {kept['whole loop']:.2f} are kept")
+
+
+def total(bench: Bench) -> float:
+    """Return the ratio of loop and floor."""
+    return bench.ratio
 
 
 def main() -> None:
@@ -115,6 +130,8 @@ def main() -> None:
     parser.add_argument("--scenario", default="course")
     parser.add_argument("--seed", type=int, default=5)
     parser.add_argument("--duration", type=float, default=40.0, help="simulated [s]")
+    parser.add_argument("--turns", type=int, default=3, help="runs, of which the median is shown")
+    parser.add_argument("--against", type=Path, metavar="PATH", help="another checkout")
     parser.add_argument("--obstacles", type=int, nargs="*", default=[], help="worlds to compare")
     parser.add_argument("--beacons", type=int, choices=(0, 6), nargs="*", default=[])
     parser.add_argument("--seconds", type=int, nargs="*", default=[], help="lengths to compare")
@@ -126,15 +143,24 @@ def main() -> None:
     if options.check:
         check()
         return
+    if options.against:
+        words = ["--scenario", options.scenario, "--seed", str(options.seed)]
+        words += ["--duration", str(options.duration), *(f"--set={text}" for text in options.set)]
+        timed = pairs(ROOT, options.against.resolve(), words, options.turns)
+        print("\n".join(comparison(timed)))
+        return
     warm(options.scenario, options.seed)
     if options.keep:
-        measured = {stage: round(ratio, 3) for stage, ratio in ratios(3).items()}
+        runs = [ratios() for _ in range(options.turns)]
+        measured = {stage: round(ratio, 3) for stage, ratio in medians(runs).items()}
         atomic.write_json(
             BASELINE, {"run": CHECKED, "of": environment(PACKAGES), "ratios": measured}
         )
         return
     settings = [f"duration={options.duration:g}", *options.set]
-    bench = Bench(load_scenario(options.scenario, settings, options.seed), options.seed)
+    scenario = load_scenario(options.scenario, settings, options.seed)
+    runs = sorted((Bench(scenario, options.seed) for _ in range(options.turns)), key=total)
+    bench = runs[len(runs) // 2]
     lines = [
         f"`{options.scenario}`, seed {options.seed}, {bench.simulated:g} s: "
         f"{bench.simulated / bench.loop:.2f} times real time, the floor "

@@ -3,7 +3,8 @@
 The floor is MuJoCo stepping the same model with constant controls and rendering as many
 images. It runs in turn with the loop, second by second, so that the ratio of the two holds
 on any machine and while other work comes and goes. Times are processor time; the time of
-the threads that draw and write in parallel is listed separately and included in the total.
+the threads that draw and write in parallel is listed separately and included in the total, as are
+garbage collections. The first call of each stage is left out: it loads compiled code.
 """
 
 import hsr8  # noqa: F401  before MuJoCo: it chooses the OpenGL to draw with
@@ -34,7 +35,8 @@ import numpy as np
 from stopwatch import Stopwatch
 
 FLOOR = ("floor: physics", "floor: images")
-REST, PARALLEL, WHOLE = "the rest of the loop", "parallel threads", "whole loop"
+REST, COLLECTIONS = "the rest of the loop", "garbage collections"
+PARALLEL, WHOLE = "parallel threads", "whole loop"
 SECOND = 1.0  # the floor has its turn after so much simulated time [s]
 
 
@@ -103,7 +105,8 @@ class Bench:
         self.floor = watch.total(*FLOOR) + watch.beside(*FLOOR)
         stages = [stage for stage in watch.times if stage not in FLOOR]
         self.beside = watch.beside(*stages)
-        self.loop = watch.total(*stages) + self.beside
+        self.collections = sum(watch.collections)
+        self.loop = watch.total(*stages) + self.collections + self.beside
 
     @property
     def ratio(self) -> float:
@@ -114,7 +117,8 @@ class Bench:
         """Of every stage and of the whole, over the floor [1]."""
         stages = [stage for stage in self.watch.times if not stage.startswith("floor")]
         result = {stage: self.watch.total(stage) / self.floor for stage in stages}
-        return result | {PARALLEL: self.beside / self.floor, WHOLE: self.ratio}
+        sums = {COLLECTIONS: self.collections, PARALLEL: self.beside, WHOLE: self.loop}
+        return result | {name: total / self.floor for name, total in sums.items()}
 
     def table(self) -> list[str]:
         """Rows of the stages, the floor last."""
@@ -133,8 +137,13 @@ class Bench:
                 f"| {stage} | {calls} | {mean:.3f} | {late:.3f} | "
                 f"{1e3 * total / self.simulated:.1f} | {total / self.floor:.3f} |"
             )
-        rest = self.watch.total(REST)
-        for name, total in ((REST, rest), (PARALLEL, self.beside), (WHOLE, self.loop)):
+        sums = {
+            REST: self.watch.total(REST),
+            COLLECTIONS: self.collections,
+            PARALLEL: self.beside,
+            WHOLE: self.loop,
+        }
+        for name, total in sums.items():
             lines.append(
                 f"| {name} | | | | {1e3 * total / self.simulated:.1f} | {total / self.floor:.3f} |"
             )
