@@ -19,6 +19,7 @@ from collections.abc import Iterable
 from pathlib import Path
 from statistics import median
 
+from hsr8.cli.yardstick import step_time
 from hsr8.files import atomic
 from hsr8.gl import require_gl
 from hsr8.loop import Simulation
@@ -164,7 +165,8 @@ def main() -> None:
     lines = [
         f"`{options.scenario}`, seed {options.seed}, {bench.simulated:g} s: "
         f"{bench.simulated / bench.loop:.2f} times real time, the floor "
-        f"{bench.simulated / bench.floor:.1f}; the loop takes {bench.ratio:.2f} floors.",
+        f"{bench.simulated / bench.floor:.1f}; the loop takes {bench.ratio:.2f} floors. "
+        f"Speed times a physics step: {bench.simulated / bench.loop * step_time():.0f} us.",
         "",
         *bench.table(),
     ]

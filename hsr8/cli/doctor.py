@@ -65,6 +65,7 @@ def examine() -> list[Finding]:
         *opengl({backend: probe(backend) for backend in BACKENDS}),
         *_requested_opengl(REQUESTED),
         _models(),
+        _speed(),
         _disk(),
         _viewer(),
     ]
@@ -141,6 +142,18 @@ def _models() -> Finding:
         return Finding("models", "ok", str(models_dir()))
     except Hsr8Error as error:
         return Finding("models", "missing", str(error))
+
+
+def _speed() -> Finding:
+    """Measure the machine by a physics step of the standing robot."""
+    from hsr8.cli.yardstick import course_speed, step_time  # noqa: PLC0415  loads MuJoCo
+
+    try:
+        step = step_time()
+    except Hsr8Error as error:
+        return Finding("speed", "note", str(error).splitlines()[0])
+    expected = f"expect `course` at about {course_speed(step):.2g} times real time"
+    return Finding("speed", "ok", f"{step:.1f} us for a physics step: {expected}")
 
 
 def _disk() -> Finding:

@@ -1,8 +1,10 @@
 import json
+import re
+from pathlib import Path
 
 import pytest
 
-from hsr8.cli import doctor
+from hsr8.cli import doctor, yardstick
 from hsr8.cli.main import entry
 from hsr8.gl import APT_LINE, VULKAN_LINE
 from hsr8.robots import models
@@ -73,3 +75,20 @@ def test_missing_vulkan_is_a_note(monkeypatch, capsys, tmp_path):
     (tmp_path / "vulkan/icd.d/lvp.json").touch()
     entry(["doctor"])
     assert VULKAN_LINE not in " ".join(capsys.readouterr().out.split())
+
+
+def test_the_speed_of_a_run_is_expected_from_a_physics_step(monkeypatch, capsys):
+    monkeypatch.setattr(doctor, "probe", lambda backend: "llvmpipe")
+    assert entry(["doctor", "--json"]) == 0
+    findings = {f["name"]: f for f in json.loads(capsys.readouterr().out)["findings"]}
+    step, expected = map(float, re.findall(r"([\d.]+) (?:us|times)", findings["speed"]["text"]))
+    assert 2.0 < step < 2000.0
+    assert expected == pytest.approx(yardstick.COURSE / step, rel=0.1)
+
+
+def test_damaged_compiled_code_is_noticed(monkeypatch):
+    assert doctor.damaged_code() == []
+    monkeypatch.setattr(doctor.store, "damaged", lambda: [Path("a.compiled"), Path("b.compiled")])
+    (finding,) = doctor.damaged_code()
+    assert finding.state == "note"
+    assert "2 damaged, a.compiled" in finding.text
