@@ -224,8 +224,8 @@ def stand_ins(monkeypatch, tmp_path, finished):
     for name in RUNS:
         shutil.copytree(finished, tmp_path / "runs" / name)
     monkeypatch.setattr("hsr8.api.run", run_in_short)
-    monkeypatch.setattr("hsr8.cli.sweep_runs.require_gl", lambda: "none")
-    monkeypatch.setattr("hsr8.cli.sweep_runs.open_executor", lambda name, workers: Instant())
+    monkeypatch.setattr("hsr8.evaluation.sweep.runs.require_gl", lambda: "none")
+    monkeypatch.setattr("hsr8.evaluation.sweep.runs.open_executor", lambda name, workers: Instant())
     monkeypatch.setattr("hsr8.cli.recorded_run.VideoProcess", lambda *_, **__: nullcontext())
     monkeypatch.setattr("hsr8.render.viewer.has_display", lambda: True)
     monkeypatch.setattr("hsr8.render.viewer.show", lambda logs: 0)

@@ -6,21 +6,15 @@ from pathlib import Path
 
 from hsr8.cli.command_line import command_words, settings
 from hsr8.cli.options import Bench, Run
-from hsr8.cli.sweep_runs import (
-    INTERRUPTED,
-    Execution,
-    definitions,
-    folder_name,
-    report_lost_runs,
-    require_no_seed,
-    run_sweeps,
-)
+from hsr8.cli.sweep import INTERRUPTED, folder_name, report_lost_runs, require_no_seed
+from hsr8.cli.termination import like_ctrl_c
 from hsr8.errors import Hsr8Error, UsageError
 from hsr8.evaluation.bench.entry import FILE, Entry, row
 from hsr8.evaluation.bench.mistakes import checked_name
 from hsr8.evaluation.bench.page import entry_page
 from hsr8.evaluation.bench.suite import SHIPPED, changed_settings, read_suite, scenario_hash
 from hsr8.evaluation.sweep.folder import REPORT
+from hsr8.evaluation.sweep.runs import Execution, definitions, run_sweeps
 from hsr8.evaluation.sweep.seeds import parse_seeds
 from hsr8.evaluation.sweep.summary import summarize
 from hsr8.files import atomic
@@ -57,7 +51,8 @@ def main(options: Bench) -> int:
         for family, path in suite.paths(file).items()
     }
     defined = definitions(scenarios, commands)
-    runs = run_sweeps(out, scenarios, defined, execution)
+    with like_ctrl_c():
+        runs = run_sweeps(out, scenarios, defined, execution)
     if runs.interrupted:
         return INTERRUPTED
     results = {

@@ -13,10 +13,10 @@ from typing import Any, get_args
 
 import tyro
 
-from hsr8.cli.crash import crash_report
 from hsr8.cli.options import BenchCompare, Command, RobotAction
 from hsr8.cli.renamed import require_present_names
 from hsr8.errors import Hsr8Error, UsageError
+from hsr8.evaluation.crash import crash_report
 from hsr8.suggestion import suggestion
 from hsr8.version import VERSION
 

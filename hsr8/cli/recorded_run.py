@@ -8,7 +8,6 @@ from pathlib import Path
 from types import FrameType
 
 from hsr8.cli import report
-from hsr8.cli.crash import crash_report
 from hsr8.cli.first_compilation import two_processes
 from hsr8.cli.options import Run
 from hsr8.cli.output_file import writing
@@ -16,6 +15,7 @@ from hsr8.cli.progress import Progress
 from hsr8.cli.termination import like_ctrl_c, on_signals
 from hsr8.cli.video_process import VideoProcess
 from hsr8.errors import Hsr8Error, UsageError
+from hsr8.evaluation.crash import crash_report
 from hsr8.evaluation.recording import Result, record, renderer_of, started_folder
 from hsr8.evaluation.verdict import exit_code
 from hsr8.export.bag import require_rosbags, write_bag

@@ -1,8 +1,11 @@
 """``hsr8 sweep``: one scenario over many seeds, and over values of its keys."""
 
+import hashlib
 import itertools
+import re
 import shlex
-from collections.abc import Sequence
+import sys
+from collections.abc import Iterable, Sequence
 from pathlib import Path
 
 from rich.console import Console
@@ -10,23 +13,19 @@ from rich.table import Table
 
 from hsr8.cli.command_line import command_words, flat, option_tables, run_options, settings
 from hsr8.cli.options import Sweep
-from hsr8.cli.sweep_runs import (
-    INTERRUPTED,
-    Execution,
-    definitions,
-    folder_name,
-    report_lost_runs,
-    require_no_seed,
-    run_sweeps,
-)
+from hsr8.cli.termination import like_ctrl_c
 from hsr8.errors import Hsr8Error, UsageError
 from hsr8.evaluation.sweep.folder import REPORT
 from hsr8.evaluation.sweep.report import headline, report_of_values
+from hsr8.evaluation.sweep.runs import Execution, definitions, run_sweeps
 from hsr8.evaluation.sweep.seeds import parse_seeds, parse_shard, parse_values
 from hsr8.evaluation.sweep.summary import Summary, summarize
 from hsr8.files import atomic
 from hsr8.scenario.loader import load_scenario
 from hsr8.scenario.schema import Scenario
+
+MAX_NAME = 120  # of a folder [characters]
+INTERRUPTED = 130
 
 
 def main(options: Sweep) -> int:
@@ -54,7 +53,8 @@ def main(options: Sweep) -> int:
         name: command_words(run_options(options, None, more)) for name, more in combinations.items()
     }
     defined = definitions(scenarios, commands)
-    runs = run_sweeps(out, scenarios, defined, execution)
+    with like_ctrl_c():
+        runs = run_sweeps(out, scenarios, defined, execution)
     summaries = {name: summarize(results) for name, results in runs.results.items()}
     if options.vary:
         keys = ", ".join(parse_values(text)[0] for text in flat(options.vary))
@@ -113,3 +113,44 @@ def _exit_code(summaries: Sequence[Summary]) -> int:
     if any(s.refused and not s.runs for s in summaries):
         return 2
     return 0 if all(s.criteria_met.count == s.runs for s in summaries) else 1
+
+
+def folder_name(settings: Sequence[str]) -> str:
+    """Return settings as a file name, with a digest if characters are replaced or cut."""
+    text = ",".join(settings)
+    name = re.sub(r"[^A-Za-z0-9._=+,-]+", "_", text)
+    if name == text and len(name) <= MAX_NAME:
+        return name
+    digest = hashlib.sha256(text.encode("utf-8", errors="surrogateescape")).hexdigest()[:8]
+    return f"{name[: MAX_NAME - 9]}-{digest}"
+
+
+def require_no_seed(option: str, settings: Iterable[str], expected: str = "--seeds") -> None:
+    """Check that no setting is the seed.
+
+    Args:
+        option: named in the message.
+        settings: KEY=VALUE.
+        expected: named in the message.
+
+    Raises:
+        UsageError: a setting is.
+    """
+    for setting in settings:
+        if setting.partition("=")[0].strip() == "seed":
+            raise UsageError(
+                f"{option}: the seed is not a setting, got {setting}; expected {expected}"
+            )
+
+
+def report_lost_runs(summaries: Iterable[Summary], where: Path) -> None:
+    """Print the numbers of crashed, diverged and refused runs on standard error."""
+    summaries = list(summaries)
+    counts = {
+        kind: sum(getattr(s, kind) for s in summaries)
+        for kind in ("crashed", "diverged", "refused")
+    }
+    if any(counts.values()):
+        runs = sum(s.runs + s.refused for s in summaries)
+        text = ", ".join(f"{count} {kind}" for kind, count in counts.items() if count)
+        print(f"hsr8: of {runs} runs {text}; reasons: {where}", file=sys.stderr)

@@ -1,15 +1,18 @@
 """Runs on the workers of a Dask cluster; requires the extra ``hsr8[dask]``."""
 
-import signal
+import pickle
 import socket
 import subprocess
 import sys
+from multiprocessing import Pipe
 from queue import Empty, SimpleQueue
+from tempfile import TemporaryFile
 from typing import Any
 
 from hsr8.errors import UsageError
+from hsr8.evaluation.sweep import child
 from hsr8.evaluation.sweep.definition import code_digest
-from hsr8.evaluation.sweep.job import Job, RunResult, StartedJob, lost
+from hsr8.evaluation.sweep.job import Job, RunResult, unfinished
 from hsr8.parent_watch import with_parent_watch
 
 TIMEOUT = 30.0  # for connecting to the scheduler [s]
@@ -19,21 +22,24 @@ def work(job: Job) -> RunResult:
     """Run `job` in a new process on the Dask worker that calls this."""
     from distributed import get_worker  # noqa: PLC0415  an extra
 
-    started = StartedJob(job, str(get_worker().address))
-    command = with_parent_watch([sys.executable, "-P", "-m", "hsr8", *started.arguments])
-    with started.messages.open("wb") as messages:
-        try:
-            done = subprocess.run(
-                command,
-                stdin=subprocess.DEVNULL,
-                stdout=messages,
-                stderr=messages,
-                timeout=job.timeout,
-                check=False,
-            )
-        except subprocess.TimeoutExpired:
-            return started.result(-signal.SIGKILL, timed_out=True)
-    return started.result(done.returncode)
+    receiver, sender = Pipe(duplex=False)
+    with sender, TemporaryFile() as file:
+        pickle.dump(job, file)
+        file.seek(0)
+        words = [sys.executable, "-P", "-m", child.__name__, str(sender.fileno())]
+        process = subprocess.Popen(
+            with_parent_watch(words), stdin=file, pass_fds=(sender.fileno(),)
+        )
+    run = child.Child(job, receiver)
+    while run.receive(run.remaining_time):
+        pass
+    try:
+        code: int | None = process.wait(run.remaining_time)
+    except subprocess.TimeoutExpired:
+        process.kill()
+        process.wait()
+        code = None
+    return run.close(code) | {"worker": str(get_worker().address)}
 
 
 class DaskExecutor:
@@ -100,4 +106,4 @@ class DaskExecutor:
             result: RunResult = future.result()
             return result
         error = future.exception() if future.status == "error" else future.status
-        return lost(job, f"the worker died: {error}")
+        return unfinished(job, f"the worker died: {error}")

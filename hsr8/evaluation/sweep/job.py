@@ -1,26 +1,33 @@
-"""One run of a sweep: its command line and its result."""
+"""One run of a sweep: a function that the process of the run calls, and its result."""
 
-import json
 import os
 import shutil
 import signal
 import socket
-import time as clock
+from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, Literal
 
-from hsr8.files import atomic
-from hsr8.recorder.run import run_folder
+from hsr8.errors import Hsr8Error
+from hsr8.evaluation.crash import FILE, crash_report
+from hsr8.evaluation.recording import Result, record, renderer_of, started_folder
+from hsr8.evaluation.verdict import exit_code
+from hsr8.loop import Simulation
+from hsr8.recorder.log_level import LogLevel
+from hsr8.recorder.run.run_folder import new_run_folder
+from hsr8.scenario.schema import Scenario
 
 RunResult = dict[str, Any]
+"""``seed``, ``outcome`` (passed, failed, diverged, crashed, refused), ``attempts``, ``worker``,
+``run`` (folder relative to the sweep's), ``process_s``, ``error``, and all metrics of the run."""
 Keep = Literal["all", "failed", "none"]
 
 CRASHED = "crashed"
 REFUSED = "refused"
-OUTCOMES = {0: "passed", 1: "failed", 3: "diverged"}  # by exit code
+OUTCOMES = {0: "passed", 1: "failed", 3: "diverged"}  # by exit code of ``hsr8 run``
 RUNS = "runs"  # run folders within a sweep's folder
-MAX_ERROR = 2000  # characters kept of the messages of a run
+MAX_ERROR = 2000  # characters kept of the message of a run
 
 
 @dataclass(frozen=True, slots=True)
@@ -28,127 +35,97 @@ class Job:
     """One run to do.
 
     Attributes:
-        seed: seed of the run.
+        scenario: scenario with the seed of the run.
         folder: absolute path of the sweep's folder.
-        scenario: resolved scenario as TOML.
+        command: command line that repeats the run.
         timeout: wall-clock limit [s].
         log: whether the run writes a Rerun log.
         keep: which run folders are kept.
         attempt: 1, or 2 after a crash.
-        settings: KEY=VALUE of the plugins, which a file alone may not name.
     """
 
-    seed: int
+    scenario: Scenario
     folder: str
-    scenario: str
+    command: str
     timeout: float
     log: bool = False
     keep: Keep = "all"
     attempt: int = 1
-    settings: tuple[str, ...] = ()
+
+    @property
+    def name(self) -> str:
+        """Name of the scenario."""
+        return self.scenario.name
+
+    @property
+    def seed(self) -> int:
+        """Seed of the run."""
+        return self.scenario.seed
 
 
-class StartedJob:
-    """Job whose process is being started.
+def run_job(job: Job) -> Iterator[RunResult]:
+    """Do a run in this process, which SIGTERM ends after the current tick.
+
+    Yields:
+        Parts of the result as soon as they are known, see `RunResult`: ``run``, then all others.
+    """
+    path = None
+    try:
+        with crash_report(), new_run_folder(Path(job.folder) / RUNS, job.name, job.seed) as path:
+            yield {"run": str(path.relative_to(job.folder))}
+            yield _result(_record(job, path))
+    except Hsr8Error as error:
+        refused = error.exit_code == 2 and (path is None or not path.exists())
+        yield {"outcome": REFUSED if refused else CRASHED, "error": str(error)[-MAX_ERROR:]}
+    except OSError as error:  # a full disk
+        yield {"outcome": CRASHED, "error": f"cannot write: {error.strerror}"}
+
+
+def _record(job: Job, path: Path) -> Result:
+    """Record the run into a new folder."""
+    log = LogLevel.STANDARD if job.log else None
+    renderer = renderer_of(job.scenario)
+    simulation = Simulation(job.scenario, job.seed)
+    signal.signal(signal.SIGTERM, lambda *_: simulation.interrupt())
+    with crash_report(path):
+        folder = started_folder(path, job.scenario, (job.command,), renderer, log)
+        return record(simulation, folder, log=log)
+
+
+def _result(result: Result) -> RunResult:
+    """Return the outcome and the metrics of a run that ended."""
+    code = exit_code(result.exit_reason, result.criteria)
+    if code not in OUTCOMES:
+        return {"outcome": CRASHED, "error": result.exit_reason, **result.metrics}
+    error = {"error": result.diverged} if result.diverged else {}
+    return {"outcome": OUTCOMES[code], **error, **result.metrics}
+
+
+def complete(job: Job, result: RunResult) -> RunResult:
+    """Return the result of a run that has ended; remove its folder if it is not kept.
+
+    A folder with a traceback is always kept, because the result names it.
 
     Args:
-        job: the job.
-        worker: name of the worker; host and process id by default.
-
-    Attributes:
-        arguments: command line of the run, without the program.
-        messages: file for standard output and error of the run.
-
-    Raises:
-        OSError: the sweep's folder cannot be written.
+        job: the run.
+        result: all parts that are known.
     """
-
-    def __init__(self, job: Job, worker: str = "") -> None:
-        self.job = job
-        self._folder = Path(job.folder)
-        self._worker = worker or f"{socket.gethostname()}:{os.getpid()}"
-        self._started = clock.perf_counter()
-        runs, scenario = self._folder / RUNS, self._folder / run_folder.SCENARIO
-        runs.mkdir(parents=True, exist_ok=True)
-        if not scenario.exists():  # on a worker that does not share the disk
-            atomic.write_text(scenario, job.scenario)
-        self.messages = runs / f"{job.seed}.messages"
-        self.arguments = ["run", str(scenario), "--seed", str(job.seed), "--out", str(runs)]
-        self.arguments += ["--quiet"] if job.log else ["--quiet", "--no-log"]
-        self.arguments += ["--set", *job.settings] if job.settings else []
-        self._old_folders = set(self._run_folders())
-
-    def result(self, exit_code: int, *, timed_out: bool = False) -> RunResult:
-        """Return the result of the run, and remove the files that are not kept.
-
-        A folder with a traceback is always kept, because the result names it.
-
-        Args:
-            exit_code: of the process, negative for a signal.
-            timed_out: whether the process was killed at its wall-clock limit.
-
-        Returns:
-            ``seed``, ``outcome`` (passed, failed, diverged, crashed, refused), ``attempts``,
-            ``worker``, ``run`` (folder relative to the sweep's), ``process_s``, ``error`` and all
-            metrics of the run.
-        """
-        job = self.job
-        new = next((path for path in self._run_folders() if path not in self._old_folders), None)
-        result: RunResult = {
-            "seed": job.seed,
-            "outcome": CRASHED,
-            "attempts": job.attempt,
-            "worker": self._worker,
-            "run": None if new is None else str(new.relative_to(self._folder)),
-            "process_s": clock.perf_counter() - self._started,
-        }
-        message = self._message()
-        metrics = _metrics(new)
-        if timed_out:
-            result["error"] = f"stopped at the wall-clock limit of {job.timeout:g} s"
-        elif exit_code == 2 and new is None:
-            result |= {"outcome": REFUSED, "error": message}
-        elif exit_code in OUTCOMES and metrics is not None:
-            result |= {"outcome": OUTCOMES[exit_code], **metrics}
-            result |= {"error": message} if exit_code == 3 else {}
-        else:
-            result["error"] = ": ".join(filter(None, (_ending(exit_code), message)))
-        kept = job.keep == "all" or (job.keep == "failed" and result["outcome"] != OUTCOMES[0])
-        if new is not None and not kept and not (new / run_folder.CRASH).exists():
-            shutil.rmtree(new, ignore_errors=True)
-            result["run"] = None
+    if result["run"] is None:
         return result
-
-    def _run_folders(self) -> list[Path]:
-        return sorted((self._folder / RUNS).glob(f"*/{self.job.seed}-*"))
-
-    def _message(self) -> str:
-        try:
-            text = self.messages.read_bytes().decode(errors="replace")
-            self.messages.unlink()
-        except OSError:
-            return ""
-        return text.strip()[-MAX_ERROR:]
+    path = Path(job.folder) / result["run"]
+    kept = job.keep == "all" or (job.keep == "failed" and result["outcome"] != OUTCOMES[0])
+    if not kept and not (path / FILE).exists():
+        shutil.rmtree(path, ignore_errors=True)
+    return result if path.exists() else {**result, "run": None}
 
 
-def lost(job: Job, reason: str) -> RunResult:
-    """Return the result of a run whose process did not start, or whose worker died."""
+def unfinished(job: Job, error: str = "") -> RunResult:
+    """Return the result of a run that has not ended, or was lost with its process."""
     return {
         "seed": job.seed,
         "outcome": CRASHED,
         "attempts": job.attempt,
-        "worker": "",
+        "worker": f"{socket.gethostname()}:{os.getpid()}",
         "run": None,
-        "error": reason[-MAX_ERROR:],
+        **({"error": error[-MAX_ERROR:]} if error else {}),
     }
-
-
-def _metrics(folder: Path | None) -> RunResult | None:
-    """Return the metrics in a run folder, None for a run that did not end."""
-    file = None if folder is None else folder / run_folder.METRICS
-    metrics: RunResult | None = json.loads(file.read_bytes()) if file and file.exists() else None
-    return metrics
-
-
-def _ending(code: int) -> str:
-    return f"killed by {signal.Signals(-code).name}" if code < 0 else f"exit code {code}"

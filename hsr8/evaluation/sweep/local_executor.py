@@ -3,29 +3,27 @@
 import multiprocessing
 import os
 import signal
-import sys
 import time as clock
 from collections import deque
-from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from multiprocessing import forkserver
-from multiprocessing.connection import wait
+from multiprocessing.connection import Connection, wait
 from multiprocessing.process import BaseProcess
+from typing import Any
 
-from hsr8.evaluation.sweep.job import Job, RunResult, StartedJob, lost
+from hsr8.evaluation.sweep.child import Child, Work, serve
+from hsr8.evaluation.sweep.job import Job, RunResult, run_job, unfinished
 from hsr8.parent_watch import ORPHAN, end_with_parent
 
+PRELOAD = "hsr8.evaluation.sweep.preload"
 GRACE = 5.0  # time that interrupted runs get to close their files [s]
 ONE_THREAD = ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS")
-
-Entry = Callable[[Sequence[str]], int]
 
 
 @dataclass(frozen=True, slots=True)
 class _Run:
-    started: StartedJob
+    child: Child
     process: BaseProcess
-    deadline: float  # monotonic time [s]
 
 
 class LocalExecutor:
@@ -33,13 +31,13 @@ class LocalExecutor:
 
     Args:
         workers: number of runs at a time.
-        entry: command line of hsr8, which returns an exit code; called in the child.
+        work: called in the process of a run.
         preload: module that the fork server imports before it forks.
     """
 
-    def __init__(self, workers: int, entry: Entry, preload: str) -> None:
+    def __init__(self, workers: int, work: Work = run_job, preload: str = PRELOAD) -> None:
         self._workers = workers
-        self._entry = entry
+        self._work = work
         self._waiting: deque[Job] = deque()
         self._running: list[_Run] = []
         self._context = multiprocessing.get_context("forkserver")
@@ -59,18 +57,22 @@ class LocalExecutor:
             job = self._waiting.popleft()
             try:
                 self._running.append(self._start(job))
-            except (OSError, EOFError) as error:  # no process or no disk space
-                ended.append((job, lost(job, f"{type(error).__name__}: {error}")))
-        wait([run.process.sentinel for run in self._running], 0.0 if ended else seconds)
+            except (OSError, EOFError) as error:  # no process
+                ended.append((job, unfinished(job, f"{type(error).__name__}: {error}")))
+        sources: list[Any] = [run.process.sentinel for run in self._running]
+        sources += [run.child.results for run in self._running if not run.child.ended]
+        wait(sources, 0.0 if ended else seconds)
         for run in list(self._running):
-            timed_out = run.process.exitcode is None and clock.monotonic() > run.deadline
-            if timed_out:
+            while run.child.receive():
+                pass
+            exit_code = run.process.exitcode
+            if exit_code is None and run.child.remaining_time > 0.0:
+                continue
+            if exit_code is None:
                 run.process.kill()
-                run.process.join()
-            if run.process.exitcode is not None:
-                self._running.remove(run)
-                result = run.started.result(run.process.exitcode, timed_out=timed_out)
-                ended.append((run.started.job, result))
+            run.process.join()
+            self._running.remove(run)
+            ended.append((run.child.job, run.child.close(exit_code)))
         return ended
 
     def close(self) -> None:
@@ -82,7 +84,7 @@ class LocalExecutor:
             run.process.join(max(0.0, end - clock.monotonic()))
             run.process.kill()
             run.process.join()
-            run.started.messages.unlink(missing_ok=True)
+            run.child.results.close()
         self._running.clear()
 
     def _start(self, job: Job) -> _Run:
@@ -94,20 +96,17 @@ class LocalExecutor:
             forkserver.ensure_running()
         finally:
             signal.signal(signal.SIGINT, handler)
-        started = StartedJob(job)
-        arguments = (self._entry, started.arguments, str(started.messages))
-        process = self._context.Process(target=_run_in_child, args=arguments)
-        process.start()
-        return _Run(started, process, clock.monotonic() + job.timeout)
+        receiver, sender = self._context.Pipe(duplex=False)
+        with sender:
+            process = self._context.Process(target=_run, args=(job, sender, self._work))
+            process.start()
+        return _Run(Child(job, receiver), process)
 
 
-def _run_in_child(entry: Entry, arguments: Sequence[str], messages: str) -> None:
-    """Run a command line of hsr8 in a process forked by the server."""
+def _run(job: Job, results: "Connection[RunResult, object]", work: Work) -> None:
+    """Serve a job in a process forked by the server."""
     sweep = multiprocessing.parent_process()
     watched = end_with_parent(os.getppid(), signal.SIGKILL)
     if not watched or sweep is None or not sweep.is_alive():
         os._exit(ORPHAN)
-    file = os.open(messages, os.O_WRONLY | os.O_CREAT | os.O_TRUNC, 0o666)
-    os.dup2(file, 1)
-    os.dup2(file, 2)
-    sys.exit(entry(arguments))
+    serve(job, results, work)

@@ -44,7 +44,9 @@ def instant(monkeypatch, tmp_path):
 
     def use(outcomes=None):
         executor = Instant(outcomes or {})
-        monkeypatch.setattr("hsr8.cli.sweep_runs.open_executor", lambda name, workers: executor)
+        monkeypatch.setattr(
+            "hsr8.evaluation.sweep.runs.open_executor", lambda name, workers: executor
+        )
         return executor
 
     return use

@@ -8,9 +8,9 @@ from pathlib import Path
 
 import pytest
 
-from hsr8.cli.crash import InternalError, crash_report
 from hsr8.cli.main import COMMANDS, entry
 from hsr8.errors import Hsr8Error, SimulationDiverged, UsageError
+from hsr8.evaluation.crash import InternalError, crash_report
 
 HEAVY = (
     "mujoco",

@@ -221,7 +221,7 @@ def test_progress_and_table_are_printed(instant, capsys):
 def test_the_examples_of_the_documentation_work(instant, monkeypatch, capsys):
     """Every command of it, in order, on runs that end at once; then its Python."""
     page = (Path(__file__).parents[3] / "docs" / "sweeps.md").read_text()
-    monkeypatch.setattr("hsr8.cli.sweep_runs.require_gl", lambda: "none")
+    monkeypatch.setattr("hsr8.evaluation.sweep.runs.require_gl", lambda: "none")
     monkeypatch.setattr("os.fsync", lambda _: None)  # thousands of runs
     instant()
     commands = re.findall(r"^(hsr8 (?:sweep|compare) .*)$", page, re.M)

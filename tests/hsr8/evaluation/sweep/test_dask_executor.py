@@ -2,7 +2,6 @@
 
 import os
 import time
-from dataclasses import replace
 
 import pytest
 
@@ -11,6 +10,7 @@ from hsr8.evaluation.sweep import dask_executor as module
 from hsr8.evaluation.sweep.dask_executor import DaskExecutor
 from hsr8.evaluation.sweep.executor import run_jobs
 from hsr8.evaluation.sweep.job import Job
+from hsr8.scenario.loader import load_scenario
 
 distributed = pytest.importorskip("distributed")
 
@@ -35,7 +35,8 @@ def test_every_run_ends_even_if_its_worker_dies(address, monkeypatch, tmp_path):
     monkeypatch.setattr(module, "work", work)
     executor = DaskExecutor(address)
     seeds = []
-    jobs = [replace(Job(0, "/nowhere", "", 10.0), seed=seed) for seed in range(6)]
+    scenario = load_scenario("quick")
+    jobs = [Job(scenario.with_seed(seed), "/nowhere", "", 10.0) for seed in range(6)]
     run_jobs(jobs, executor, lambda job, result: seeds.append(result["seed"]), lambda: None)
     executor.close()
     assert sorted(seeds) == list(range(6))
@@ -43,14 +44,16 @@ def test_every_run_ends_even_if_its_worker_dies(address, monkeypatch, tmp_path):
 
 def test_a_run_has_a_process_and_a_wall_clock_limit(address, tmp_path):
     executor = DaskExecutor(address)
-    executor.submit(Job(1, str(tmp_path), "nonsense = 1\n", 100.0))
-    executor.submit(Job(2, str(tmp_path), "", 0.01))
+    settings = ("robot.body=kinematic", "camera.source=analytic", "duration=0.3")
+    scenario = load_scenario("walk", settings)
+    executor.submit(Job(scenario.with_seed(1), str(tmp_path), "hsr8 run", 100.0))
+    executor.submit(Job(scenario.with_seed(2), str(tmp_path), "hsr8 run", 0.01))
     results = {}
     while len(results) < 2:
         results |= {job.seed: result for job, result in executor.wait(5.0)}
     executor.close()
-    assert results[1]["outcome"] == "refused"
-    assert "nonsense" in results[1]["error"]
+    assert results[1]["outcome"] == "passed"
+    assert (tmp_path / results[1]["run"] / "metrics.json").exists()
     assert results[2]["outcome"] == "crashed"
     assert "wall-clock limit" in results[2]["error"]
 

@@ -9,8 +9,9 @@ from hsr8.errors import UsageError
 from hsr8.evaluation.sweep.dask_executor import DaskExecutor
 from hsr8.evaluation.sweep.executor import parse_executor, pending, run_jobs
 from hsr8.evaluation.sweep.job import Job
+from hsr8.scenario.loader import load_scenario
 
-JOB = Job(0, "/sweep", "", 10.0)
+JOB = Job(load_scenario("quick"), "/sweep", "", 10.0)
 
 
 class Scripted:
@@ -33,7 +34,7 @@ class Scripted:
 def _run(seeds, outcomes):
     executor, results = Scripted(outcomes), {}
     run_jobs(
-        [replace(JOB, seed=s) for s in seeds],
+        [replace(JOB, scenario=JOB.scenario.with_seed(s)) for s in seeds],
         executor,
         lambda job, result: results.setdefault(job.seed, []).append(result),
         lambda: None,

@@ -1,93 +1,141 @@
+"""A job in this process: outcome, metrics and folder of its run."""
+
 import json
+import os
+import signal
 from dataclasses import replace
-from pathlib import Path
 
 import pytest
 
-from hsr8.evaluation.sweep.job import Job, StartedJob, lost
+from hsr8.errors import RecordingFailed, SimulationDiverged
+from hsr8.evaluation.sweep.job import Job, complete, run_job, unfinished
+from hsr8.loop import Simulation
+from hsr8.recorder.run.run_reader import open_run
+from hsr8.scenario.loader import load_scenario
 
-METRICS = {"success": True, "collisions": 0, "state_hash": "ab"}
+SHORT = ("robot.body=kinematic", "camera.source=analytic", "duration=0.3")
 
 
 @pytest.fixture
 def job(tmp_path):
-    return Job(3, str(tmp_path / "sweep"), "duration = 1.0\n", 30.0)
+    """Job whose run meets its criteria: a walk."""
+    scenario = load_scenario("walk", SHORT, 3)
+    return Job(scenario, str(tmp_path / "sweep"), "hsr8 run walk --seed 3", 30.0)
 
 
-def _end(job, exit_code, *, folder=True, metrics=True, message="", timed_out=False):
-    """Start a job and return its result after a run that left these files."""
-    started = StartedJob(job)
-    path = Path(job.folder) / "runs" / "quick" / "3-abc"
-    if folder:
-        path.mkdir(parents=True)
-    if folder and metrics:
-        (path / "metrics.json").write_text(json.dumps(METRICS))
-    started.messages.write_text(message)
-    result = started.result(exit_code, timed_out=timed_out)
-    assert not started.messages.exists()
-    return result
+@pytest.fixture(autouse=True)
+def _handler():
+    """Restore the handler of SIGTERM, which a job replaces in its own process."""
+    handler = signal.getsignal(signal.SIGTERM)
+    yield
+    signal.signal(signal.SIGTERM, handler)
 
 
-@pytest.mark.parametrize(("code", "outcome"), [(0, "passed"), (1, "failed"), (3, "diverged")])
-def test_the_exit_code_is_the_outcome_and_the_metrics_are_the_result(job, code, outcome):
-    result = _end(job, code)
-    assert result["outcome"] == outcome
+def result_of(job):
+    result = unfinished(job)
+    for part in run_job(job):
+        result |= part
+    return complete(job, result)
+
+
+def test_the_metrics_of_the_run_folder_are_the_result(job, tmp_path):
+    result = result_of(job)
+    assert result["outcome"] == "passed"
     assert result["seed"] == 3
-    assert result["run"] == "runs/quick/3-abc"
-    assert {key: result[key] for key in METRICS} == METRICS
+    assert "error" not in result
+    run = open_run(tmp_path / "sweep" / result["run"])
+    assert run.metrics().items() <= result.items()
+    assert run.manifest["command"] == "hsr8 run walk --seed 3"
+    alone = Simulation(job.scenario, 3).run()
+    assert result["state_hash"] == alone.state_hash
+
+
+def test_a_missed_goal_is_a_failure(job):
+    scenario = load_scenario("quick", SHORT, 3)
+    assert result_of(replace(job, scenario=scenario))["outcome"] == "failed"
+
+
+def raising(error):
+    def method(self, *_):
+        raise error
+
+    return method
 
 
 @pytest.mark.parametrize(
-    ("code", "more", "outcome", "word"),
+    ("place", "error", "outcome", "word", "folder"),
     [
-        (-9, {"metrics": False}, "crashed", "killed by SIGKILL"),
-        (130, {}, "crashed", "exit code 130"),
-        (3, {"metrics": False, "message": "internal error"}, "crashed", "3: internal error"),
-        (0, {"folder": False}, "crashed", "exit code 0"),
-        (2, {"folder": False, "message": "no world"}, "refused", "no world"),
-        (2, {"metrics": False, "message": "planner fails"}, "crashed", "planner fails"),
-        (-9, {"timed_out": True}, "crashed", "wall-clock limit of 30 s"),
+        ("loop.Simulation.step", ZeroDivisionError("oh no"), "crashed", "oh no", True),
+        ("loop.Simulation.step", RecordingFailed("disk full"), "crashed", "disk full", True),
+        ("loop.Simulation.step", KeyboardInterrupt(), "crashed", "interrupted", True),
+        (
+            "world.body.kinematic.KinematicBody.apply",
+            SimulationDiverged("too fast"),
+            "diverged",
+            "too fast",
+            True,
+        ),
+        ("loop.Simulation._build_robot", ValueError("no robot"), "crashed", "no robot", False),
     ],
 )
-def test_other_endings_are_errors(job, code, more, outcome, word):
-    result = _end(job, code, **more)
+def test_other_endings_are_errors(job, monkeypatch, place, error, outcome, word, folder):
+    monkeypatch.setattr(f"hsr8.{place}", raising(error))
+    result = result_of(job)
     assert result["outcome"] == outcome
     assert word in result["error"]
+    assert (result["run"] is not None) == folder
+
+
+def test_a_world_that_cannot_be_drawn_is_refused_and_leaves_no_folder(job, tmp_path):
+    crowded = (*SHORT, "world.n_static=60", "world.size=[2.0,2.0]")
+    result = result_of(replace(job, scenario=load_scenario("quick", crowded, 3)))
+    assert result["outcome"] == "refused"
+    assert "world" in result["error"]
+    assert not list(tmp_path.glob("sweep/runs/*/*"))
+
+
+def test_a_folder_that_cannot_be_written_is_a_refusal_with_its_reason(job, tmp_path):
+    (tmp_path / "sweep").touch()
+    result = result_of(job)
+    assert result["outcome"] == "refused"
+    assert "cannot write the run folder" in result["error"]
+
+
+def test_sigterm_ends_the_run_after_the_tick_and_leaves_a_whole_folder(job, tmp_path, monkeypatch):
+    step = Simulation.step
+
+    def interrupting(self):
+        if self.tick == 20:
+            os.kill(os.getpid(), signal.SIGTERM)
+        return step(self)
+
+    monkeypatch.setattr(Simulation, "step", interrupting)
+    result = result_of(job)
+    assert (result["outcome"], result["error"]) == ("crashed", "interrupted")
+    run = open_run(tmp_path / "sweep" / result["run"])
+    assert run.manifest["exit_reason"] == "interrupted"
+    assert len(run.ticks) == 21
 
 
 @pytest.mark.parametrize(
-    ("keep", "code", "kept"),
-    [("all", 0, True), ("failed", 0, False), ("failed", 1, True), ("none", 1, False)],
+    ("keep", "outcome", "kept"),
+    [
+        ("all", "passed", True),
+        ("failed", "passed", False),
+        ("failed", "failed", True),
+        ("none", "failed", False),
+        ("none", "crashed", False),
+    ],
 )
-def test_run_folders_are_kept_as_requested(job, tmp_path, keep, code, kept):
-    result = _end(replace(job, keep=keep), code)
-    assert (tmp_path / "sweep" / "runs" / "quick" / "3-abc").exists() == kept
-    assert (result["run"] is not None) == kept
-    assert result["success"] is True
-
-
-def test_a_folder_with_the_traceback_that_its_result_names_is_always_kept(job, tmp_path):
-    started = StartedJob(replace(job, keep="none"))
-    file = tmp_path / "sweep" / "runs" / "quick" / "3-abc" / "crash.txt"
-    file.parent.mkdir(parents=True)
-    file.write_text("Traceback")
-    started.messages.write_text(f"internal error\n  traceback: {file}")
-    result = started.result(3)
-    assert str(file) in result["error"]
-    assert file.exists()
-    assert result["run"] == "runs/quick/3-abc"
-
-
-def test_the_folder_of_an_earlier_attempt_is_not_this_run_s(job):
-    _end(job, -9)
-    assert StartedJob(job).result(0)["run"] is None
-
-
-def test_the_scenario_travels_with_the_job(job, tmp_path):
-    StartedJob(job)
-    assert (tmp_path / "sweep" / "scenario.toml").read_text() == job.scenario
-
-
-def test_a_lost_run_is_a_crash(job):
-    assert lost(job, "no space")["outcome"] == "crashed"
-    assert lost(job, "no space")["seed"] == 3
+@pytest.mark.parametrize("crash", [False, True])
+def test_run_folders_are_kept_as_requested(job, tmp_path, keep, outcome, kept, crash):
+    """One with the traceback that its result names always is."""
+    folder = tmp_path / "sweep" / "runs" / "quick" / "3-abc"
+    folder.mkdir(parents=True)
+    (folder / "metrics.json").write_text(json.dumps({}))
+    if crash:
+        (folder / "crash.txt").write_text("Traceback")
+    job = replace(job, keep=keep)
+    result = complete(job, unfinished(job) | {"outcome": outcome, "run": "runs/quick/3-abc"})
+    assert folder.exists() == (kept or crash)
+    assert (result["run"] is not None) == folder.exists()

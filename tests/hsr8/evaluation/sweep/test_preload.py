@@ -3,7 +3,7 @@ import sys
 
 LOADED = """
 import os, sys
-import hsr8.cli.sweep_preload
+import hsr8.evaluation.sweep.preload
 from mujoco import egl
 from walking.body.kinematics_kernel import pose
 print(len(os.listdir("/proc/self/task")), len(pose.signatures), egl.EGL_DISPLAY)

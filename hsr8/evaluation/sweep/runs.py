@@ -1,16 +1,12 @@
 """Runs of one or more sweep folders."""
 
-import hashlib
 import os
-import re
 import sys
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from contextlib import ExitStack, closing
 from dataclasses import dataclass, replace
 from pathlib import Path
 
-from hsr8.cli import termination
-from hsr8.cli.main import entry
 from hsr8.errors import UsageError
 from hsr8.evaluation.sweep.dask_executor import DaskExecutor
 from hsr8.evaluation.sweep.definition import Definition
@@ -20,20 +16,16 @@ from hsr8.evaluation.sweep.job import Job, Keep, RunResult
 from hsr8.evaluation.sweep.local_executor import LocalExecutor
 from hsr8.evaluation.sweep.progress import SweepProgress
 from hsr8.evaluation.sweep.report import report
-from hsr8.evaluation.sweep.summary import Summary
 from hsr8.files.temporary import require_temporary
 from hsr8.gl import require_gl
 from hsr8.plugin_file import digests, require_plugins
 from hsr8.robots.locate import digest
-from hsr8.scenario.loader import as_words, dump
+from hsr8.scenario.loader import dump
 from hsr8.scenario.schema import Scenario
 from hsr8.scenario.track_file import track_digests
 
-PRELOAD = "hsr8.cli.sweep_preload"
 START_TIME = 60.0  # default limits: for the start of a process [s]
 MAX_SLOWNESS = 20.0  # and wall time per simulated second [1]
-MAX_NAME = 120  # of a folder [characters]
-INTERRUPTED = 130
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -122,11 +114,15 @@ def run_sweeps(
             stack.callback(folder.close)
             folders[name] = folder
             limit = execution.timeout or START_TIME + MAX_SLOWNESS * scenario.duration
-            path, text = str(folder.path.resolve()), folder.definition.scenario
-            named = {f"plugin.{kind}": name for kind, name in scenario.plugin.named.items()}
-            job = Job(0, path, text, limit, execution.log, execution.keep, settings=as_words(named))
             jobs += [
-                replace(job, seed=seed)
+                Job(
+                    scenario.with_seed(seed),
+                    str(folder.path.resolve()),
+                    folder.definition.command(seed),
+                    limit,
+                    log=execution.log,
+                    keep=execution.keep,
+                )
                 for seed in pending(execution.seeds, folder.results(), execution.shard)
             ]
         interrupted = bool(jobs) and _run(jobs, list(folders.values()), execution)
@@ -174,14 +170,13 @@ def _run(jobs: Sequence[Job], folders: Sequence[SweepFolder], execution: Executi
 
     def on_result(job: Job, result: RunResult) -> None:
         folder = by_path[job.folder]
-        folder.append(result | {"command": folder.definition.command(job.seed)})
+        folder.append(result | {"command": job.command})
         if progress is not None:
             progress.on_result(result, folder.path.name if len(folders) > 1 else "")
 
     with ExitStack() as stack:
         if progress is not None:
             stack.callback(progress.close)
-        stack.enter_context(termination.like_ctrl_c())
         try:
             executor = open_executor(execution.executor, execution.workers)
             stack.enter_context(closing(executor))
@@ -201,45 +196,4 @@ def open_executor(name: str, workers: int | None) -> Executor:
     address = parse_executor(name)
     if address:
         return DaskExecutor(address)
-    return LocalExecutor(workers or len(os.sched_getaffinity(0)), entry, PRELOAD)
-
-
-def folder_name(settings: Sequence[str]) -> str:
-    """Return settings as a file name, with a digest if characters are replaced or cut."""
-    text = ",".join(settings)
-    name = re.sub(r"[^A-Za-z0-9._=+,-]+", "_", text)
-    if name == text and len(name) <= MAX_NAME:
-        return name
-    digest = hashlib.sha256(text.encode("utf-8", errors="surrogateescape")).hexdigest()[:8]
-    return f"{name[: MAX_NAME - 9]}-{digest}"
-
-
-def require_no_seed(option: str, settings: Iterable[str], expected: str = "--seeds") -> None:
-    """Check that no setting is the seed.
-
-    Args:
-        option: named in the message.
-        settings: KEY=VALUE.
-        expected: named in the message.
-
-    Raises:
-        UsageError: a setting is.
-    """
-    for setting in settings:
-        if setting.partition("=")[0].strip() == "seed":
-            raise UsageError(
-                f"{option}: the seed is not a setting, got {setting}; expected {expected}"
-            )
-
-
-def report_lost_runs(summaries: Iterable[Summary], where: Path) -> None:
-    """Print the numbers of crashed, diverged and refused runs on standard error."""
-    summaries = list(summaries)
-    counts = {
-        kind: sum(getattr(s, kind) for s in summaries)
-        for kind in ("crashed", "diverged", "refused")
-    }
-    if any(counts.values()):
-        runs = sum(s.runs + s.refused for s in summaries)
-        text = ", ".join(f"{count} {kind}" for kind, count in counts.items() if count)
-        print(f"hsr8: of {runs} runs {text}; reasons: {where}", file=sys.stderr)
+    return LocalExecutor(workers or len(os.sched_getaffinity(0)))

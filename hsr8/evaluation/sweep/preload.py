@@ -14,7 +14,7 @@ from hsr8.parent_watch import end_with_parent
 end_with_parent(os.getppid(), signal.SIGKILL)
 os.environ["JE_ARROW_MALLOC_CONF"] = "background_thread:false"  # a thread of PyArrow
 
-import hsr8.cli.recorded_run  # noqa: E402, F401  chooses the OpenGL backend before MuJoCo loads
+import hsr8.evaluation.sweep.job  # noqa: E402, F401
 from hsr8.loop import Simulation  # noqa: E402
 from hsr8.scenario.loader import load_scenario  # noqa: E402
 
