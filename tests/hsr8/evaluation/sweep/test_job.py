@@ -2,6 +2,7 @@
 
 import json
 import os
+import pickle
 import signal
 from dataclasses import replace
 
@@ -139,3 +140,16 @@ def test_run_folders_are_kept_as_requested(job, tmp_path, keep, outcome, kept, c
     result = complete(job, unfinished(job) | {"outcome": outcome, "run": "runs/quick/3-abc"})
     assert folder.exists() == (kept or crash)
     assert (result["run"] is not None) == folder.exists()
+
+
+def test_consent_to_plugins_travels_with_the_job(job, tmp_path):
+    (tmp_path / "mine.py").write_text("class Mine:\n    def plan(self, *_):\n        return None\n")
+    given = load_scenario("quick", ("plugin.planner=mine.py:Mine",))
+    (tmp_path / "foreign").mkdir()
+    file = tmp_path / "foreign" / "yard.toml"
+    file.write_text('extends = "quick"\n[plugin]\nplanner = "../mine.py:Mine"\n')
+    for scenario in (given, load_scenario(str(file))):
+        copy = pickle.loads(pickle.dumps(replace(job, scenario=scenario))).scenario
+        assert copy == scenario
+        assert copy.plugin.untrusted == scenario.plugin.untrusted
+    assert given.plugin.untrusted != scenario.plugin.untrusted
