@@ -6,14 +6,23 @@
     print(result.criteria_met, result.metrics["time_to_goal_s"])
 
 `run` and `Result` make whole runs, `load_scenario` and `Simulation` run tick by tick, `open_run`
-reads run folders. `docs/python.md` shows custom planners and gaze controllers, `docs/data.md` the
-tables of a run.
+and `runs` read run folders. A custom planner or gaze gets a `Belief` and returns a `MotionDecision`
+or a `GazeDecision`, see `docs/python.md`; `docs/data.md` describes the tables of a run.
 """
 
 from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
 from hsr8 import arithmetic as arithmetic  # sets the environment, before NumPy is imported
+from hsr8.errors import (
+    Hsr8Error,
+    ModelError,
+    RecordingFailed,
+    RenderingUnavailable,
+    ScenarioError,
+    SimulationDiverged,
+    UsageError,
+)
 from hsr8.gl import choose_backend
 from hsr8.version import VERSION
 
@@ -21,29 +30,48 @@ if TYPE_CHECKING:
     from hsr8.api import run
     from hsr8.evaluation.recording import Result
     from hsr8.loop import Simulation
-    from hsr8.recorder.run.run_reader import open_run
+    from hsr8.recorder.run.run_reader import open_run, runs
     from hsr8.scenario.loader import load_scenario
+    from navigation.belief.belief import Belief
+    from navigation.decision import GazeDecision, MotionDecision
 
 __version__ = VERSION
-__all__ = ["Result", "Simulation", "load_scenario", "open_run", "run"]
+__all__ = [
+    "Belief",
+    "GazeDecision",
+    "Hsr8Error",
+    "ModelError",
+    "MotionDecision",
+    "RecordingFailed",
+    "RenderingUnavailable",
+    "Result",
+    "ScenarioError",
+    "Simulation",
+    "SimulationDiverged",
+    "UsageError",
+    "load_scenario",
+    "open_run",
+    "run",
+    "runs",
+]
 
 # Imported on first use: MuJoCo and SciPy take seconds.
 _PLACES = {
+    "Belief": "navigation.belief.belief",
+    "GazeDecision": "navigation.decision",
+    "MotionDecision": "navigation.decision",
     "Result": "hsr8.evaluation.recording",
     "Simulation": "hsr8.loop",
     "load_scenario": "hsr8.scenario.loader",
     "open_run": "hsr8.recorder.run.run_reader",
     "run": "hsr8.api",
+    "runs": "hsr8.recorder.run.run_reader",
 }
 
 choose_backend()
 
 
 def __getattr__(name: str) -> Any:
-    if name == "load":
-        raise AttributeError("hsr8.load: renamed to load_scenario")
-    if name == "read_log":
-        raise AttributeError("hsr8.read_log: removed; hsr8.open_run gives the tables of a run")
     if name not in _PLACES:
         raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
     return getattr(import_module(_PLACES[name]), name)

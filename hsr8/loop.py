@@ -59,14 +59,14 @@ class Simulation:
 
     Args:
         scenario: what to run.
-        seed: draws the world and all noise.
+        seed: seed of the world and of all noise; default: that of the scenario.
         planner: replaces the motion planner of the scenario.
         gaze: replaces the gaze planner of the scenario.
         walker: replaces the walking engine of the scenario.
 
     Attributes:
         scenario: what to run.
-        seed: draws the world and all noise.
+        seed: seed of the world and of all noise.
         humanoid: the robot and its model.
         layout: the drawn world.
         certificate: feasibility certificate of the world.
@@ -86,14 +86,14 @@ class Simulation:
     def __init__(
         self,
         scenario: Scenario,
-        seed: SupportsIndex,
+        seed: SupportsIndex | None = None,
         *,
         planner: MotionPlanner | None = None,
         gaze: GazeController | None = None,
         walker: CustomWalker | None = None,
     ) -> None:
         self.scenario = scenario
-        self.seed = scenario.with_seed(seed).seed
+        self.seed = scenario.seed if seed is None else scenario.with_seed(seed).seed
         self.humanoid = load_robot(scenario.robot.model)
         world = draw_world(scenario, self.seed)
         self.layout, self.certificate = world.layout, world.certificate

@@ -14,7 +14,6 @@ from typing import Any, get_args
 import tyro
 
 from hsr8.cli.options import BenchCompare, Command, RobotAction
-from hsr8.cli.renamed import require_present_names
 from hsr8.errors import Hsr8Error, UsageError
 from hsr8.evaluation.crash import crash_report
 from hsr8.suggestion import suggestion
@@ -116,7 +115,6 @@ def parse(words: Sequence[str]) -> Command | BenchCompare | None:
         UsageError: the command line is wrong.
     """
     name, *rest = words or ["--help"]
-    require_present_names(words)
     if name == "--version":
         print(f"hsr8 {VERSION}")
         return None

@@ -10,6 +10,7 @@ from hsr8.evaluation.replay import replay
 from hsr8.recorder.rows import TABLES
 from hsr8.recorder.run.run_reader import open_run
 from hsr8.recorder.table_difference import first_cell
+from navigation.belief.belief import Belief
 from navigation.decision import GazeDecision, MotionDecision
 from tests.hsr8.recorder.log.reading import Log
 
@@ -157,13 +158,39 @@ def test_criteria_met():
     assert hsr8.run("quick", settings=settings).criteria_met
 
 
-def test_unknown_and_former_names_are_refused():
+def test_an_unknown_name_is_refused():
     with pytest.raises(AttributeError, match="nonsense"):
         hsr8.nonsense  # noqa: B018
-    with pytest.raises(AttributeError, match="renamed to load_scenario"):
-        hsr8.load  # noqa: B018
 
 
 def test_the_public_names_are_listed():
     assert set(hsr8.__all__) <= set(dir(hsr8))
     assert all(hasattr(hsr8, name) for name in dir(hsr8))
+
+
+def test_a_plugin_needs_no_other_import():
+    assert hsr8.MotionDecision is MotionDecision
+    assert hsr8.GazeDecision is GazeDecision
+    assert hsr8.Belief is Belief
+    errors = {name for name, kind in vars(hsr8.errors).items() if isinstance(kind, type)}
+    assert errors <= set(hsr8.__all__)
+
+
+def test_a_simulation_takes_the_seed_of_its_scenario():
+    scenario = hsr8.load_scenario("quick", STAND_INS, seed=7)
+    assert hsr8.Simulation(scenario).seed == 7
+    assert hsr8.Simulation(scenario, 8).seed == 8
+
+
+def test_the_runs_of_a_folder_are_listed_from_the_oldest_to_the_newest(tmp_path):
+    assert hsr8.runs(tmp_path) == []
+    settings = STAND_INS | {"duration": 0.1}
+    folders = [hsr8.run("quick", seed=k, settings=settings, out=tmp_path).folder for k in (3, 1, 2)]
+    damaged = tmp_path / "quick" / "9-000000"
+    damaged.mkdir()
+    (damaged / "manifest.json").write_text("{")
+    for folder in (tmp_path, tmp_path / "quick"):
+        assert [run.path for run in hsr8.runs(folder)] == folders
+    assert [run.path for run in hsr8.runs(folders[0])] == folders[:1]
+    with pytest.raises(hsr8.UsageError, match="no such folder"):
+        hsr8.runs(tmp_path / "missing")

@@ -102,15 +102,38 @@ def open_run(path: str | Path, *, trust: bool = False) -> StoredRun:
             raise UsageError(f"{path}: no such run folder{_alternatives(path)}")
         if not path.is_dir():
             raise UsageError(f"{path}: a file; expected the run folder, here {path.parent}")
-        runs = run_folders(path)
+        folders = run_folders(path)
     except OSError as error:
         raise UsageError(f"cannot read the run folder {path}: {error.strerror}") from error
-    if not runs:
+    if not folders:
         raise UsageError(
             f"{path}: no run in this folder; a run folder has a {run_folder.MANIFEST}, and "
             "`hsr8 run SCENARIO` makes one"
         )
-    return _run(runs[-1], trust)
+    return _run(folders[-1], trust)
+
+
+def runs(folder: str | Path, *, trust: bool = False) -> list[StoredRun]:
+    """Return the runs in a folder, see `run_folders`; those that cannot be read are left out.
+
+    Args:
+        folder: ``runs``, one of its folders, or a run folder.
+        trust: whether the plugins that the scenarios in the folders name may run.
+
+    Raises:
+        UsageError: the folder cannot be read.
+    """
+    try:
+        folders = run_folders(Path(folder))
+    except FileNotFoundError:
+        raise UsageError(f"{folder}: no such folder") from None
+    except OSError as error:
+        raise UsageError(f"{folder}: cannot be read: {error.strerror}") from error
+    readable = []
+    for path in folders:
+        with suppress(UsageError):
+            readable.append(_run(path, trust))
+    return readable
 
 
 def run_folders(path: Path) -> list[Path]:
@@ -149,6 +172,9 @@ def _run(path: Path, trust: bool) -> StoredRun:
     if not isinstance(number, int):
         raise UsageError(f"cannot read {file}: format: expected an integer, got {number!r}")
     check_number(number, FORMAT, path, "run folder")
+    rows = manifest.get("rows", {})
+    if not isinstance(rows, dict) or not all(isinstance(count, int) for count in rows.values()):
+        raise UsageError(f"cannot read {file}: rows: expected numbers by table, got {rows!r}")
     return StoredRun(path, manifest, trust)
 
 
