@@ -17,8 +17,8 @@ from hsr8.plugin_decisions import Limits, PluginGaze, PluginPlanner
 from hsr8.plugin_file import load_named
 from hsr8.plugin_walker import CustomWalker, PluginEngine, PluginWalker, RobotInfo
 from hsr8.robot import Robot
-from hsr8.robots.arms import ground_shadow
 from hsr8.robots.loaded import LoadedRobot, load_robot
+from hsr8.robots.posed_shapes import ground_shadow
 from hsr8.scenario.mission import Walk
 from hsr8.scenario.schema import Scenario
 from hsr8.seeds import named_rng

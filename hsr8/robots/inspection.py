@@ -19,10 +19,10 @@ from hsr8.robots.guess import Finding, Guess, guess
 from hsr8.robots.key_mistake import KeyMistake, RepairableError
 from hsr8.robots.loaded import LoadedRobot, RawRobot, build_robot, read_robot
 from hsr8.robots.locate import find_description, find_model
+from hsr8.robots.posed_shapes import SelfCollision
 from hsr8.robots.prepare import Prepared, prepare
 from hsr8.robots.read import compile_spec, read_spec
 from hsr8.robots.roles import find_roles
-from hsr8.robots.self_collision import SelfCollision
 from hsr8.robots.skeleton import HINGE, Skeleton, root_of, skeleton_of
 from hsr8.robots.soles import flat_feet
 from walking.body.robot_model import MAX_STIFFENING

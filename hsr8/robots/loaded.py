@@ -10,7 +10,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from hsr8.errors import ModelError
-from hsr8.robots.arms import arm_spheres, robot_height, robot_radius
 from hsr8.robots.description import TRUNK, RobotDescription, read_description
 from hsr8.robots.files import package_folders, stamp_of
 from hsr8.robots.key_mistake import KeyMistake, at_least, joint_error, reading_keys
@@ -18,12 +17,12 @@ from hsr8.robots.linkage import drive_serially
 from hsr8.robots.locate import find_description, find_model, model_files
 from hsr8.robots.models import reading_models
 from hsr8.robots.normal_form import normalise
+from hsr8.robots.posed_shapes import arm_spheres, exclude_neighbours, robot_height, robot_radius
 from hsr8.robots.posture import check_joint_names, completed_posture, stated_posture
 from hsr8.robots.prepare import LEG_JOINTS, Prepared, prepare
 from hsr8.robots.read import compile_spec, read_spec
 from hsr8.robots.refusals import check_roles
 from hsr8.robots.roles import Roles, base_note, find_roles, present
-from hsr8.robots.self_collision import exclude_neighbours
 from hsr8.robots.servos import choose_servos
 from hsr8.robots.skeleton import HINGE, Posed
 from hsr8.robots.soles import soles_of

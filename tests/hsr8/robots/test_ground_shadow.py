@@ -5,7 +5,7 @@ from math import cos, pi, sin
 import numpy as np
 import pytest
 
-from hsr8.robots.arms import BEARINGS, ground_shadow
+from hsr8.robots.posed_shapes import BEARINGS, ground_shadow
 
 HEIGHT = 0.5
 

