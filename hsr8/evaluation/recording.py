@@ -17,7 +17,7 @@ from hsr8.gl import require_gl
 from hsr8.loop import Simulation
 from hsr8.plugin_file import digests
 from hsr8.record import Tick
-from hsr8.recorder.log_level import RATES, LogLevel
+from hsr8.recorder.log_level import IMAGES, LogLevel
 from hsr8.recorder.memory import Memory
 from hsr8.recorder.recorder import PERIOD, Recorder, Sink
 from hsr8.recorder.run import run_folder
@@ -156,7 +156,7 @@ def _record(
             simulation.humanoid.model.names,
             sinks,
             scale=simulation.layout.scale,
-            images=None if log is None else RATES[log],
+            images=IMAGES[scenario.recorder.images],
             period=LIVE_PERIOD if live else PERIOD,
         )
         with suppress(KeyboardInterrupt), ExitStack() as opened:

@@ -1,4 +1,4 @@
-"""Levels of detail of the Rerun log."""
+"""Levels of detail of the Rerun log, and of the images that a run keeps."""
 
 from dataclasses import dataclass
 from enum import StrEnum
@@ -19,16 +19,33 @@ class LogRates:
     Attributes:
         pose: between two poses and points of curves [s].
         frame: between two camera frames [s].
-        jpeg: quality of the images, 0 for neither images nor beliefs [%].
+        belief: whether images and beliefs are shown.
     """
 
     pose: float
     frame: float
-    jpeg: int
+    belief: bool
 
 
 RATES = {
-    LogLevel.MINIMAL: LogRates(pose=0.06, frame=0.18, jpeg=0),
-    LogLevel.STANDARD: LogRates(pose=0.06, frame=0.18, jpeg=75),
-    LogLevel.FULL: LogRates(pose=0.0, frame=0.0, jpeg=90),
+    LogLevel.MINIMAL: LogRates(pose=0.06, frame=0.18, belief=False),
+    LogLevel.STANDARD: LogRates(pose=0.06, frame=0.18, belief=True),
+    LogLevel.FULL: LogRates(pose=0.0, frame=0.0, belief=True),
 }
+
+
+@dataclass(frozen=True, slots=True)
+class ImageRates:
+    """Images of the head camera that a run keeps.
+
+    Attributes:
+        period: minimum interval between two images [s].
+        quality: quality of the compression [%].
+    """
+
+    period: float
+    quality: int
+
+
+IMAGES = {"none": None, "standard": ImageRates(0.18, 75), "full": ImageRates(0.0, 90)}
+"""Rates by the scenario's key ``recorder.images``."""

@@ -11,7 +11,7 @@ import pyarrow as pa
 from hsr8.frame_record import FrameRecord
 from hsr8.record import Tick
 from hsr8.recorder.columns import batch_of, schema_of
-from hsr8.recorder.log_level import LogRates
+from hsr8.recorder.log_level import ImageRates
 from hsr8.recorder.recorded import FrameSampler, RecordedImage, image_row, objects_of
 from hsr8.recorder.rows import TABLES
 from hsr8.recorder.table import Table
@@ -52,7 +52,7 @@ class Recorder:
         sinks: Sequence[Sink],
         *,
         scale: float = 1.0,
-        images: LogRates | None = None,
+        images: ImageRates | None = None,
         period: int = PERIOD,
     ) -> None:
         self._labels = {"joints": joints}
@@ -60,7 +60,7 @@ class Recorder:
         self._period = period
         self._sampler = FrameSampler(scale)
         self._images = images
-        self._throttle = Throttle(images.frame if images else 0.0)
+        self._throttle = Throttle(images.period if images else 0.0)
         self._schemas: dict[str, pa.Schema] = {}
         self._ticks: list[Tick] = []
         self._encoder = ThreadPoolExecutor(1)  # of images, while the other tables are made
@@ -101,7 +101,7 @@ class Recorder:
 
     def _image_rows(self, frames: Sequence[FrameRecord]) -> Iterable[RecordedImage]:
         """Return the rows of images, which are compressed in another thread."""
-        if self._images is None or not self._images.jpeg:
+        if self._images is None:
             return ()
         due = [f for f in frames if f.image is not None and self._throttle.due(f.time)]
-        return self._encoder.map(partial(image_row, quality=self._images.jpeg), due)
+        return self._encoder.map(partial(image_row, quality=self._images.quality), due)

@@ -61,6 +61,10 @@ class Recorder(Section):
     period_ms: Annotated[
         PeriodMs, doc("Period of the records, a multiple of the control tick of 5 ms [ms].")
     ] = 20
+    images: Annotated[
+        Literal["none", "standard", "full"],
+        doc("Rendered images that are kept: none, one per 0.18 s, or all, in a higher quality."),
+    ] = "standard"
 
 
 class Scenario(Section):

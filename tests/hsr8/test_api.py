@@ -118,6 +118,17 @@ def test_the_log_follows_its_level(tmp_path):
     assert "/belief/tracks" in full - minimal
 
 
+@pytest.mark.gl
+@pytest.mark.parametrize(("kept", "period"), [("none", None), ("standard", 3), ("full", 1)])
+def test_images_are_kept_by_their_setting_with_or_without_a_log(tmp_path, kept, period):
+    settings = {"robot.body": "kinematic", "duration": 1.0, "recorder.images": kept}
+    for log in (False, True):
+        out = tmp_path / str(log) if period == 3 or log else None
+        run = hsr8.run("quick", settings=settings, out=out, log=log).run
+        shown = run.frames["index"][::period] if period else []
+        assert run.images["index"].tolist() == [*shown]
+
+
 def test_an_unknown_level_is_refused_before_the_run(tmp_path):
     with pytest.raises(UsageError, match="minimal, standard, full"):
         hsr8.run("quick", settings=STAND_INS, out=tmp_path, log="all")

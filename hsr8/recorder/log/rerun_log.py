@@ -87,7 +87,7 @@ class RerunLog:
             max(layout.field_size),
             robot=view,
             walking=len(layout.waypoints) == 0,
-            images=rates.jpeg > 0,
+            images=rates.belief,
         )
         try:
             self._stream.begin(sinks, shown)
@@ -103,7 +103,7 @@ class RerunLog:
         self._camera: CameraLayer | None = None
         self._belief: BeliefLayer | None = None
         self._plan: PlanLayer | None = None
-        if rates.jpeg:
+        if rates.belief:
             size, gaze = (scenario.camera.width, scenario.camera.height), scenario.navigation.gaze
             self._camera = CameraLayer(self._stream, model, size, gaze, scale=view.size)
             self._belief = BeliefLayer(self._stream, layout.scale)

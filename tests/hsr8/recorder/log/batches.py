@@ -1,7 +1,7 @@
 """Batches of tables, as the recorder passes them to a log."""
 
 from hsr8.record import Event
-from hsr8.recorder.log_level import RATES, LogLevel
+from hsr8.recorder.log_level import IMAGES, RATES, LogLevel
 from hsr8.recorder.recorded import FrameSampler, image_row
 from hsr8.recorder.rows import TABLES
 from hsr8.recorder.table import Table
@@ -10,9 +10,11 @@ from hsr8.recorder.throttle import Throttle
 
 def batch_of(records, events=(), level=LogLevel.STANDARD):
     """Return the tables of records and of events: time, kind and text."""
-    records, sampler, due = list(records), FrameSampler(), Throttle(RATES[level].frame)
+    records, sampler = list(records), FrameSampler()
+    rates = IMAGES["full" if level == LogLevel.FULL else "standard"]
+    due = Throttle(rates.period)
     frames = [record.frame for record in records if record.frame is not None]
-    images = [f for f in frames if f.image is not None and RATES[level].jpeg and due.due(f.time)]
+    images = [f for f in frames if f.image is not None and RATES[level].belief and due.due(f.time)]
     objects = {
         "records": records,
         "frames": [*map(sampler.sample, frames)],
