@@ -11,12 +11,19 @@ from math import floor
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from navigation.belief import local_map_kernel
-from navigation.belief.visibility import Mask, Viewpoint
-from navigation.belief.visibility_kernel import update_grid
+from compilation import compiled
+from navigation.belief.visibility import (
+    OCCUPIED,
+    UNSEEN,
+    Marks,
+    Mask,
+    Viewpoint,
+    observed_cells,
+)
 from navigation.parameters.belief import LocalMapParameters
 
 Array = NDArray[np.float64]
+Corner = tuple[int, int]
 
 
 class LocalMap:
@@ -69,16 +76,14 @@ class LocalMap:
         Infinite where never seen, 0 outside the map.
         """
         points = np.ascontiguousarray(points, np.float64)
-        seen_at = local_map_kernel.lookup(
-            points, self._corner, self.cell, self._seen_at, self._time
-        )
+        seen_at = lookup(points, self._corner, self.cell, self._seen_at, self._time)
         age: Array = self._time - seen_at
         return age
 
     def free_at(self, points: ArrayLike) -> Mask:
         """Return whether the floor around points in W (n, 2) was seen empty (n,)."""
         points = np.ascontiguousarray(points, np.float64)
-        return local_map_kernel.free(points, self._corner, self.cell, self._log_odds)
+        return free(points, self._corner, self.cell, self._log_odds)
 
     def update(
         self,
@@ -101,7 +106,8 @@ class LocalMap:
         dt = min(time - self._time, p.max_look_time)
         self._time = time
         self._scroll(centre)
-        marks = viewpoint.observed_cells(self._corner, p.cell, self._count, obstacles, radii)
+        corner, seen_from = np.array(self._corner, float), (viewpoint.eye(0.0), viewpoint.sight.shadow)
+        marks = observed_cells(corner, p.cell, self._count, *seen_from, obstacles, radii)
         evidence = (dt * p.free_rate, dt * p.occupied_rate, p.max_log_odds)
         update_grid(marks, self._seen_at, self._log_odds, time, evidence)
 
@@ -152,3 +158,71 @@ def shifted(cells: Array, rows: int, columns: int, empty: float) -> Array:
         )
         moved[target] = cells[source]
     return moved
+
+
+@compiled
+def lookup(points: Array, corner: Corner, cell: float, cells: Array, outside: float) -> Array:
+    """Return the values of a square grid at points (m,).
+
+    Args:
+        points: in W (m, 2) [m].
+        corner: index of the first column and row, counted from the origin of W.
+        cell: side of a cell [m].
+        cells: rows along y, columns along x (n, n).
+        outside: value outside the grid.
+    """
+    n = len(cells)
+    values = np.empty(len(points))
+    for k in range(len(points)):
+        # Indices stay floats until they are known to be inside: points may be anywhere.
+        column = np.floor(points[k, 0] / cell) - corner[0]
+        row = np.floor(points[k, 1] / cell) - corner[1]
+        inside = 0.0 <= row < n and 0.0 <= column < n
+        values[k] = cells[int(row), int(column)] if inside else outside
+    return values
+
+
+@compiled
+def free(points: Array, corner: Corner, cell: float, log_odds: Array) -> Mask:
+    """Return whether the five cells in a cross around each point are free (m,).
+
+    Args:
+        points: in W (m, 2) [m].
+        corner: index of the first column and row, counted from the origin of W.
+        cell: side of a cell [m].
+        log_odds: of occupancy, rows along y, columns along x (n, n).
+    """
+    n = len(log_odds)
+    empty = np.zeros(len(points), np.bool_)
+    for k in range(len(points)):
+        column = np.floor(points[k, 0] / cell) - corner[0]
+        row = np.floor(points[k, 1] / cell) - corner[1]
+        if 0.0 < row < n - 1 and 0.0 < column < n - 1:
+            i, j = int(row), int(column)
+            highest = max(log_odds[i, j], log_odds[i - 1, j], log_odds[i + 1, j])
+            empty[k] = max(highest, log_odds[i, j - 1], log_odds[i, j + 1]) < 0.0
+    return empty
+
+
+@compiled
+def update_grid(
+    marks: Marks, seen_at: Array, log_odds: Array, time: float, evidence: tuple[float, float, float]
+) -> None:
+    """Update a grid by one frame, in place.
+
+    Args:
+        marks: of the frame (n, n), see `observed_cells`.
+        seen_at: time at which each cell was last seen (n, n) [s].
+        log_odds: of occupancy (n, n).
+        time: of the frame [s].
+        evidence: change of the log odds of a free and of an occupied cell, and their maximum
+            absolute value [1].
+    """
+    free, occupied, limit = evidence
+    for row in range(len(marks)):
+        for column in range(len(marks)):
+            mark = marks[row, column]
+            if mark != UNSEEN:
+                seen_at[row, column] = time
+                odds = log_odds[row, column] + (occupied if mark == OCCUPIED else free)
+                log_odds[row, column] = min(max(odds, -limit), limit)

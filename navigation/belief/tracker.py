@@ -22,8 +22,14 @@ from navigation.belief.tracked_object import (
     search_radius,
 )
 from navigation.belief.tracks import STATIC, UNKNOWN, VX, Tracks, X, Y
-from navigation.belief.visibility import Mask, Viewpoint
-from navigation.belief.visibility_kernel import Camera, in_view, occluded, relative_discs
+from navigation.belief.visibility import (
+    Mask,
+    Viewpoint,
+    clearly_visible,
+    in_view,
+    occluded,
+    relative_discs,
+)
 from navigation.parameters.belief import TrackingParameters
 from navigation.record import record
 
@@ -126,9 +132,10 @@ class Tracker:
         if (self._objects["last_time"] == time).all():
             return
         p, clouds, rng = self._parameters, self._clouds, self._rng
-        seen_from = viewpoint.packed(p.view_margin)
-        discs = self._discs(detections, viewpoint)
-        fates = misses(self._objects, clouds, *seen_from, discs, time, dt, self._limits)
+        seen_from = viewpoint.eye(p.view_margin), viewpoint.sight.shadow
+        fates = misses(
+            self._objects, clouds, detections.rows, *seen_from, time, dt, self._limits
+        )
         for i in np.flatnonzero(fates >= SPAWNS).tolist():
             if fates[i] == REFUTED:
                 clouds[i] = particles.resample(clouds[i], p, rng)
@@ -152,10 +159,8 @@ class Tracker:
             velocity = imm.mean(o["weights"], o["states"])[2:4]
             radius = search_radius(o, time, self._limits[0])
             cloud = particles.redistribute(o["last_seen"], radius, velocity, p, self._rng)
-            points = np.ascontiguousarray(cloud[X : Y + 1].T)
-            discs = self._discs(detections, viewpoint)
-            visible = in_clear_view(points, *viewpoint.packed(p.view_margin), discs)
-            hidden = np.flatnonzero(~visible)[: p.particles]
+            hidden = np.flatnonzero(~self._in_clear_view(cloud, detections, viewpoint))
+            hidden = hidden[: p.particles]
             o["existence"] = 1.0
             if len(hidden) < p.particles:
                 kept[i] = False
@@ -164,10 +169,13 @@ class Tracker:
                 self._clouds[i, 5] = 1.0 / p.particles
         self._keep(kept)
 
-    def _discs(self, detections: Detections, viewpoint: Viewpoint) -> Array:
-        """Return the occluding discs, detections and static tracks, relative to the camera."""
-        margin = self._parameters.occlusion_margin
-        return occluders(self._objects, detections.rows, viewpoint.position, margin)
+    def _in_clear_view(self, cloud: Array, detections: Detections, viewpoint: Viewpoint) -> Mask:
+        """Return whether each particle of a cloud (6, m) is in clear view (m,)."""
+        eye, points = viewpoint.eye(self._parameters.view_margin), cloud[X : Y + 1].T
+        discs = occluders(self._objects, detections.rows, eye, self._limits)
+        return clearly_visible(
+            np.ascontiguousarray(points), eye[0], viewpoint.sight.shadow, discs
+        )
 
 
 @compiled
@@ -236,14 +244,14 @@ def births(
 
 
 @compiled
-def occluders(objects: Rows, detections: Rows, eye: Array, margin: float) -> Array:
+def occluders(objects: Rows, detections: Rows, eyes: Rows, parameters: Rows) -> Array:
     """Return detections and static objects as discs relative to the camera, see `relative_discs`.
 
     Args:
         objects: records of type `OBJECT` (n,).
         detections: records of type `DETECTION` (m,).
-        eye: position of the camera in W (3,) [m].
-        margin: enlargement of every disc [m].
+        eyes: camera, record of type `EYE` (1,).
+        parameters: record of the parameters of tracking (1,).
     """
     m, size = len(detections), len(detections) + len(objects)
     centres, radii = np.empty((size, 2)), np.empty(size)
@@ -256,27 +264,16 @@ def occluders(objects: Rows, detections: Rows, eye: Array, margin: float) -> Arr
             centres[m, 0], centres[m, 1] = position_of(o)
             radii[m] = o.radius
             m += 1
-    return relative_discs(eye, centres[:m], radii[:m], margin)
-
-
-@compiled
-def in_clear_view(points: Array, eye: Array, camera: Camera, shadow: Array, discs: Array) -> Mask:
-    """Return whether points of the floor are in view and not occluded (n,)."""
-    clear = np.empty(len(points), np.bool_)
-    for i in range(len(points)):
-        dx, dy = points[i, 0] - eye[0], points[i, 1] - eye[1]
-        clear[i] = in_view(dx, dy, camera, shadow) and not occluded(dx, dy, discs)
-    return clear
+    return relative_discs(eyes[0], centres[:m], radii[:m], parameters[0].occlusion_margin)
 
 
 @compiled
 def misses(
     objects: Rows,
     clouds: Array,
-    eye: Array,
-    camera: Camera,
+    detections: Rows,
+    eyes: Rows,
     shadow: Array,
-    discs: Array,
     time: float,
     dt: float,
     parameters: Rows,
@@ -286,10 +283,9 @@ def misses(
     Args:
         objects: records of type `OBJECT` (n,).
         clouds: their particles (n, 6, k).
-        eye: position of the camera in W (3,) [m].
-        camera: see `visibility_kernel.in_view`.
-        shadow: see `visibility_kernel.in_shadow`.
-        discs: see `occluders`.
+        detections: records of type `DETECTION` (m,).
+        eyes: camera, record of type `EYE` (1,).
+        shadow: see `in_view`.
         time: time of the frame [s].
         dt: time since the last frame [s].
         parameters: record of the parameters of tracking (1,).
@@ -298,7 +294,8 @@ def misses(
         Fate of each object (n,): KEPT; DELETED; SPAWNS, it is lost now and particles are to be
         drawn; or REFUTED, its particles were not seen.
     """
-    p = parameters[0]
+    p, eye = parameters[0], eyes[0]
+    discs = occluders(objects, detections, eyes, parameters)
     fates = np.full(len(objects), KEPT)
     survival = (1.0 - p.detection_probability) ** (dt / p.detection_time)
     for i in range(len(objects)):
@@ -310,8 +307,8 @@ def misses(
             fates[i] = KEPT if age <= p.birth_time else DELETED
         elif o.motion == STATIC:
             x, y = position_of(o)
-            dx, dy = x - eye[0], y - eye[1]
-            expected = in_view(dx, dy, camera, shadow) and not occluded(dx, dy, discs)
+            dx, dy = x - eye.position[0], y - eye.position[1]
+            expected = in_view(dx, dy, eye, shadow) and not occluded(dx, dy, discs)
             o.unseen_time = o.unseen_time + dt if expected else 0.0
             if o.unseen_time >= p.miss_time:
                 o.unseen_time = 0.0
@@ -321,7 +318,7 @@ def misses(
             fates[i] = DELETED
         elif o.lost:
             points = np.ascontiguousarray(clouds[i, :VX].T)
-            visible = in_clear_view(points, eye, camera, shadow, discs)
+            visible = clearly_visible(points, eye, shadow, discs)
             o.existence *= particles.refute(clouds[i], visible, survival)
             fates[i] = REFUTED
         elif age > p.lost_time:

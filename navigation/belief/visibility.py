@@ -1,17 +1,182 @@
-"""Visibility: field of view, range and occlusion of the camera."""
+"""Visibility of points of the floor: field of view, range and occlusion of the camera."""
 
-from math import cos, pi, tan
+from math import atan2, cos, pi, sqrt, tan
 
 import numpy as np
 from numpy.typing import NDArray
 
-from navigation.belief import visibility_kernel
-from navigation.observation import CameraView, Sight
+from compilation import compiled
+from navigation.observation import CameraView, Sight, shadow_at
+from navigation.record import record_type
 from navigation.transform import yaw_rotation
 from navigation.value import value
 
 Array = NDArray[np.float64]
 Mask = NDArray[np.bool_]
+Marks = NDArray[np.uint8]
+Rows = NDArray[np.record]
+
+UNSEEN, FREE, OCCUPIED = 0, 1, 2
+
+EYE = record_type(
+    ("position", np.float64, 3),
+    ("rotation", np.float64, (3, 3)),
+    ("heading", np.float64),
+    ("width", np.float64),
+    ("height", np.float64),
+    ("range", np.float64),
+    ("top", np.float64),
+    ("panoramic", np.bool_),
+)
+"""Camera of one frame in W.
+
+Position [m]; R_WC, columns right, down, forward; heading of the robot [rad]; tangents of half the fields
+of view, of a panoramic camera the cosine of half its horizontal one [1]; maximum distance of a
+detection along the floor [m]; height of the top of an obstacle above the camera, 0 where only the
+foot counts [m].
+"""
+
+
+@compiled
+def in_image(dx: float, dy: float, dz: float, eye: np.record) -> bool:
+    """Return whether a point projects into the image; its position from the camera [m]."""
+    R = eye.rotation
+    forward = (R[0, 2] * dx + R[2, 2] * dz) + R[1, 2] * dy
+    if forward <= 0.0:
+        return False
+    right = (R[0, 0] * dx + R[2, 0] * dz) + R[1, 0] * dy
+    down = (R[0, 1] * dx + R[2, 1] * dz) + R[1, 1] * dy
+    return bool(abs(right) <= eye.width * forward and abs(down) <= eye.height * forward)
+
+
+@compiled
+def in_view(dx: float, dy: float, eye: np.record, shadow: Array) -> bool:
+    """Return whether the image shows an obstacle at a point of the floor: its top or its foot.
+
+    Args:
+        dx: position from the camera along x of W [m].
+        dy: position from the camera along y [m].
+        eye: record of type `EYE`.
+        shadow: distance up to which the body hides the floor, see `Sight` (n,) [m].
+    """
+    square = dx * dx + dy * dy
+    if square > eye.range * eye.range:
+        return False
+    if eye.panoramic:
+        x, y = eye.rotation[0, 2], eye.rotation[1, 2]
+        return bool(x * dx + y * dy >= eye.width * sqrt((x * x + y * y) * square))
+    if eye.top < 0.0 and in_image(dx, dy, eye.top, eye):
+        return True
+    if not in_image(dx, dy, -eye.position[2], eye):
+        return False
+    reach = shadow_at(atan2(dy, dx) - eye.heading, shadow)
+    return bool(square >= reach * reach)
+
+
+@compiled
+def occluded(dx: float, dy: float, discs: Array) -> bool:
+    """Return whether a nearer disc intersects the ray to a point.
+
+    Args:
+        dx: position from the camera along x of W [m].
+        dy: position from the camera along y [m].
+        discs: see `relative_discs`.
+    """
+    square = dx * dx + dy * dy
+    for j in range(len(discs)):
+        ax, ay = discs[j, 0], discs[j, 1]
+        # The ray passes the disc's centre at a distance of |across| / |p|.
+        if dx * ax + dy * ay > discs[j, 2]:
+            across = dx * ay - dy * ax
+            if across * across < discs[j, 3] * square:
+                return True
+    return False
+
+
+@compiled
+def relative_discs(eye: np.record, centres: Array, radii: Array, margin: float) -> Array:
+    """Return discs relative to the camera: x, y, squared distance and radius (m, 4) [m, m²].
+
+    Args:
+        eye: record of type `EYE`.
+        centres: centres in W (m, 2) [m].
+        radii: radii (m,) [m].
+        margin: enlargement of every disc [m].
+    """
+    discs = np.empty((len(radii), 4))
+    for j in range(len(radii)):
+        ax, ay = centres[j, 0] - eye.position[0], centres[j, 1] - eye.position[1]
+        discs[j, 0], discs[j, 1] = ax, ay
+        discs[j, 2] = ax * ax + ay * ay
+        discs[j, 3] = (radii[j] + margin) * (radii[j] + margin)
+    return discs
+
+
+@compiled
+def clearly_visible(points: Array, eye: np.record, shadow: Array, discs: Array) -> Mask:
+    """Return whether points of the floor (n, 2) [m] are in view and not occluded (n,)."""
+    clear = np.empty(len(points), np.bool_)
+    for i in range(len(points)):
+        dx, dy = points[i, 0] - eye.position[0], points[i, 1] - eye.position[1]
+        clear[i] = in_view(dx, dy, eye, shadow) and not occluded(dx, dy, discs)
+    return clear
+
+
+@compiled
+def clear_points(
+    points: Array, eyes: Rows, shadow: Array, centres: Array, radii: Array, margin: float
+) -> Mask:
+    """Return whether points of the floor are in view and not occluded (n,).
+
+    Args:
+        points: points in W (n, 2) [m].
+        eyes: record of type `EYE` (1,).
+        shadow: see `in_view`.
+        centres: centres of the occluding discs in W (m, 2) [m].
+        radii: their radii (m,) [m].
+        margin: enlargement of every disc [m].
+    """
+    discs = relative_discs(eyes[0], centres, radii, margin)
+    return clearly_visible(points, eyes[0], shadow, discs)
+
+
+@compiled
+def observed_cells(
+    corner: Array, cell: float, count: int, eyes: Rows, shadow: Array, centres: Array, radii: Array
+) -> Marks:
+    """Return which cells of a square grid a frame shows.
+
+    Args:
+        corner: index of the first column and row, counted from the origin of W (2,).
+        cell: side of a cell [m].
+        count: cells along a side.
+        eyes: record of type `EYE` (1,).
+        shadow: see `in_view`.
+        centres: centres of the detected discs in W (m, 2) [m].
+        radii: their radii (m,) [m].
+
+    Returns:
+        Rows along y, columns along x (count, count): UNSEEN, FREE, or OCCUPIED by a disc, whose
+        whole ground counts as seen although the disc occludes half of it.
+    """
+    eye = eyes[0]
+    discs = relative_discs(eye, centres, radii, 0.0)
+    marks = np.zeros((count, count), np.uint8)
+    for row in range(count):
+        y = (corner[1] + row + 0.5) * cell
+        for column in range(count):
+            x = (corner[0] + column + 0.5) * cell
+            dx, dy = x - eye.position[0], y - eye.position[1]
+            if not in_view(dx, dy, eye, shadow):
+                continue
+            for j in range(len(radii)):
+                across, up, reach = x - centres[j, 0], y - centres[j, 1], radii[j] + 0.5 * cell
+                if across * across + up * up < reach * reach:
+                    marks[row, column] = OCCUPIED
+                    break
+            if marks[row, column] == UNSEEN and not occluded(dx, dy, discs):
+                marks[row, column] = FREE
+    return marks
 
 
 @value
@@ -24,8 +189,8 @@ class Viewpoint:
         horizontal_half, vertical_half: half the fields of view [rad]. A horizontal half of pi/2
             or more means a panoramic camera, which also sees up and down.
         range: maximum distance of a detection along the floor, 0 for a blind camera [m].
-        heading: of the robot [rad].
-        sight: what an image must show of an obstacle.
+        heading: heading of the robot [rad].
+        sight: visible part of an obstacle.
     """
 
     rotation: Array
@@ -60,54 +225,33 @@ class Viewpoint:
             view.sight,
         )
 
+    def eye(self, margin: float) -> Rows:
+        """Return the camera as a record of type `EYE` (1,), its image less a border [rad]."""
+        panoramic, height = self.horizontal_half >= 0.5 * pi, float(self.position[2])
+        width = tan(max(self.horizontal_half - margin, 0.0))
+        row = (
+            self.position,
+            self.rotation,
+            self.heading,
+            cos(min(self.horizontal_half, pi)) if panoramic else width,
+            tan(max(self.vertical_half - margin, 0.0)),
+            self.range,
+            self.sight.top - height if self.sight.top > 0.0 else 0.0,
+            panoramic,
+        )
+        return np.array([row], EYE)
+
     def in_clear_view(
         self, points: Array, centres: Array, radii: Array, *, margin: float, occlusion_margin: float
     ) -> Mask:
         """Return whether an obstacle at each point is in clear view: its top or its foot (n,).
 
         Args:
-            points: in W (n, 2) [m].
-            centres: of the occluding discs (m, 2) [m].
-            radii: of these discs (m,) [m].
+            points: points in W (n, 2) [m].
+            centres: centres of the occluding discs (m, 2) [m].
+            radii: radii of these discs (m,) [m].
             margin: distance from the border of the image [rad].
             occlusion_margin: enlargement of every disc [m].
         """
-        return visibility_kernel.in_clear_view(
-            points, *self.packed(margin), centres, radii, occlusion_margin
-        )
-
-    def observed_cells(
-        self, corner: tuple[int, int], cell: float, count: int, centres: Array, radii: Array
-    ) -> visibility_kernel.Marks:
-        """Return which cells of a grid a frame shows: UNSEEN, FREE or OCCUPIED (count, count).
-
-        Args:
-            corner: index of the first column and row, counted from the origin of W.
-            cell: side of a cell [m].
-            count: cells along a side.
-            centres: of the detected discs in W (m, 2) [m].
-            radii: (m,) [m].
-        """
-        first = np.array(corner, np.float64)
-        return visibility_kernel.observed_cells(
-            first, cell, count, *self.packed(0.0), centres, radii
-        )
-
-    def packed(self, margin: float) -> tuple[Array, visibility_kernel.Camera, Array]:
-        """Return position, camera less a margin [rad] and shadow, as `in_view` takes them."""
-        return self.position, self._camera(margin), self.sight.shadow
-
-    def _camera(self, margin: float) -> visibility_kernel.Camera:
-        """Camera in the format of `visibility_kernel.in_view` (15)."""
-        panoramic = self.horizontal_half >= 0.5 * pi
-        return (
-            *self.rotation.ravel().tolist(),
-            -float(self.position[2]),
-            -1.0 if panoramic else tan(max(self.horizontal_half - margin, 0.0)),
-            cos(min(self.horizontal_half, pi))
-            if panoramic
-            else tan(max(self.vertical_half - margin, 0.0)),
-            float(self.range),
-            self.sight.top - float(self.position[2]) if self.sight.top > 0.0 else 0.0,
-            float(self.heading),
-        )
+        eye, shadow = self.eye(margin), self.sight.shadow
+        return clear_points(points, eye, shadow, centres, radii, occlusion_margin)

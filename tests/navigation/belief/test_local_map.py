@@ -1,12 +1,14 @@
 import numpy as np
 import pytest
 
+from navigation.belief import local_map
 from navigation.belief.local_map import LocalMap
 from navigation.belief.visibility import Viewpoint
 from navigation.parameters.belief import LocalMapParameters
 
 NONE = (np.empty((0, 2)), np.empty(0))
 P = LocalMapParameters()
+CELL, CORNER, SIDE = 0.1, (-7, 4), 12
 
 
 def look(grid, time, camera, pose=(0.0, 0.0, 0.0), obstacles=NONE):
@@ -148,12 +150,12 @@ def test_a_scrolled_map_equals_a_fixed_one(view):
 def test_occupancy_does_not_depend_on_the_frame_rate(view, rate):
     viewpoint = Viewpoint.of(view(), np.zeros(3), 2.5)
     position = np.array([[1.0, 0.0]])
-    local_map = LocalMap(LocalMapParameters(), (0.0, 0.0), 0.0)
+    grid = LocalMap(LocalMapParameters(), (0.0, 0.0), 0.0)
     for k in range(1, rate // 10 + 1):
-        local_map.update(k / rate, viewpoint, (0.0, 0.0), position, np.array([0.08]))
+        grid.update(k / rate, viewpoint, (0.0, 0.0), position, np.array([0.08]))
     odds = 15.0 * 0.1
-    assert occupancy_at(local_map, position) == pytest.approx(1 / (1 + np.exp(-odds)))
-    assert occupancy_at(local_map, [[1.5, 0.5]]) == pytest.approx(1 / (1 + np.exp(6.0 * 0.1)))
+    assert occupancy_at(grid, position) == pytest.approx(1 / (1 + np.exp(-odds)))
+    assert occupancy_at(grid, [[1.5, 0.5]]) == pytest.approx(1 / (1 + np.exp(6.0 * 0.1)))
 
 
 def test_free_is_where_the_cell_and_its_four_neighbours_were_seen_empty(view):
@@ -182,3 +184,33 @@ def test_evidence_of_one_look_and_of_all_is_bounded(view):
         grid.update(101.0 + k, viewpoint, (0.0, 0.0), position, np.array([0.08]))
     assert occupancy_at(grid, position) == pytest.approx(1 / (1 + np.exp(-P.max_log_odds)))
     assert occupancy_at(grid, [[1.5, 0.5]]) == pytest.approx(1 / (1 + np.exp(P.max_log_odds)))
+
+
+@pytest.fixture
+def grid():
+    rng = np.random.default_rng(3)
+    low = np.multiply(CORNER, CELL)
+    points = rng.uniform(low - 3 * CELL, low + (SIDE + 3) * CELL, (400, 2))
+    strange = np.array([[np.nan, 0.5], [np.inf, 0.5], [0.0, -1e300]])
+    return np.concatenate([points, strange]), rng.uniform(-3.0, 1.0, (SIDE, SIDE))
+
+
+def test_lookup_returns_the_cell_that_contains_a_point(grid):
+    points, cells = grid
+    result = local_map.lookup(points, CORNER, CELL, cells, 7.0)
+    padded = np.pad(cells, SIDE, constant_values=7.0)
+    column, row = (np.floor(points[:-3] / CELL).astype(int) - CORNER + SIDE).T
+    assert np.array_equal(result[:-3], padded[row, column])
+    assert (result[-3:] == 7.0).all()
+    assert 100 < (result != 7.0).sum() < 300
+
+
+def test_a_frame_adds_its_evidence():
+    rng = np.random.default_rng(6)
+    marks = rng.integers(0, 3, (20, 20)).astype(np.uint8)
+    before = np.linspace(-4, 4, 400).reshape(20, 20)
+    seen_at, log_odds = np.zeros((20, 20)), before.copy()
+    local_map.update_grid(marks, seen_at, log_odds, 3.0, (-0.4, 1.0, 4.0))
+    change = np.array([0.0, -0.4, 1.0])[marks]
+    assert np.array_equal(log_odds, np.clip(before + change, -4.0, 4.0))
+    assert np.array_equal(seen_at, 3.0 * (marks > 0))

@@ -1,10 +1,11 @@
 from dataclasses import replace
-from math import atan2, cos, pi, sin
+from math import atan2, cos, pi, sin, tan
 
 import numpy as np
 import pytest
 
-from navigation.belief.visibility import Viewpoint
+from navigation.belief.visibility import FREE, OCCUPIED, UNSEEN, Viewpoint, observed_cells
+from navigation.observation import Sight, shadow_at
 
 NOTHING = np.empty((0, 2)), np.empty(0)
 
@@ -78,3 +79,70 @@ def test_a_panoramic_camera_contains_a_sector(view):
     points = 1.5 * np.column_stack([np.cos(angles), np.sin(angles)])
     offset = np.abs(np.angle(np.exp(1j * (angles - 0.8))))
     assert np.array_equal(contains(sector, points), offset < 2.0)
+
+
+@pytest.fixture
+def scene(view):
+    """Points, viewpoint, discs."""
+
+    def drawn(seed):
+        rng = np.random.default_rng(seed)
+        sight = Sight(0.3, rng.uniform(0.0, 1.5, 36))
+        camera = view(pan=rng.uniform(-1, 1), tilt=-0.6, hfov=1.5, vfov=0.8)
+        camera = replace(camera, sight=sight)
+        viewpoint = Viewpoint.of(camera, rng.uniform(-1, 1, 3), 2.5)
+        points = rng.uniform(-3, 3, (200, 2))
+        centres, radii = rng.uniform(-2, 2, (20, 2)), rng.uniform(0.05, 0.2, 20)
+        return points, viewpoint, centres, radii
+
+    return drawn
+
+
+def contained(points, v, margin):
+    offset = points - v.position[:2]
+    distance = np.hypot(offset[:, 0], offset[:, 1])
+    bearing = np.arctan2(offset[:, 1], offset[:, 0]) - v.heading
+    foot = distance >= np.array([shadow_at(b, v.sight.shadow) for b in bearing])
+    foot &= shown(offset, -v.position[2], v, margin)
+    return (distance <= v.range) & (foot | shown(offset, v.sight.top - v.position[2], v, margin))
+
+
+def shown(offset, up, v, margin):
+    d = np.column_stack([offset, np.full(len(offset), up)])
+    right, down, forward = (d @ v.rotation).T
+    inside = np.abs(right) <= tan(v.horizontal_half - margin) * forward
+    inside &= np.abs(down) <= tan(v.vertical_half - margin) * forward
+    return inside & (forward > 0.0)
+
+
+def blocked(points, v, centres, radii, slack):
+    p, a = points[:, None] - v.position[:2], centres - v.position[:2]
+    along = np.sum(p * a, axis=2)
+    across = p[..., 0] * a[:, 1] - p[..., 1] * a[:, 0]
+    nearer = along > np.sum(a * a, axis=1)
+    return (nearer & (np.abs(across) < (radii + slack) * np.hypot(*p.T).T)).any(axis=1)
+
+
+@pytest.mark.parametrize("seed", range(4))
+def test_points_agree_with_the_formulas_over_arrays(scene, seed):
+    points, v, centres, radii = scene(seed)
+    inside, behind = contained(points, v, 0.05), blocked(points, v, centres, radii, 0.03)
+    clear = v.in_clear_view(points, centres, radii, margin=0.05, occlusion_margin=0.03)
+    assert np.array_equal(clear, inside & ~behind)
+    assert 0 < clear.sum() < inside.sum()
+
+
+@pytest.mark.parametrize("seed", range(4))
+def test_cells_agree_with_the_formulas_over_arrays(scene, seed):
+    _, v, centres, radii = scene(seed)
+    corner, cell, count = (-20, -17), 0.1, 40
+    eye, first = v.eye(0.0), np.array(corner, float)
+    marks = observed_cells(first, cell, count, eye, v.sight.shadow, centres, radii)
+    x, y = (cell * (first + np.arange(count) + 0.5) for first in corner)
+    points = np.stack(np.meshgrid(x, y), axis=-1).reshape(-1, 2)
+    apart = np.hypot(*(points[:, None] - centres).transpose(2, 0, 1))
+    on = (apart < radii + 0.5 * cell).any(axis=1)
+    observed = np.where(blocked(points, v, centres, radii, 0.0), UNSEEN, FREE)
+    wanted = contained(points, v, 0.0) * np.where(on, OCCUPIED, observed)
+    assert np.array_equal(marks.ravel(), wanted)
+    assert set(wanted.tolist()) == {UNSEEN, FREE, OCCUPIED}
