@@ -26,8 +26,7 @@ from hsr8.recorder.run import run_folder
 from hsr8.recorder.stream import CHECKSUMS, SUFFIX
 from hsr8.robots import models
 from hsr8.scenario.loader import BUILT_IN, built_in_names, load_scenario, loads
-from vision.color import COLOR_CLASSES, ColorTable
-from vision.color_file import load_table, save_table
+from vision.color import COLOR_CLASSES, ColorTable, load_table, save_table
 from vision.errors import VisionError
 
 from bad_input import keys, model_changed, mutated, near, value, values_changed, written

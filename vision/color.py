@@ -1,20 +1,25 @@
-"""Colour classes of obstacles and beacons, and colour classification by a look-up table."""
+"""Colour classes of obstacles and beacons, classification by a look-up table, and its files."""
 
+import zipfile
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from pathlib import Path
 from typing import Literal
 
 import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-from vision import color_kernel
+from compilation import compiled
 from vision.errors import VisionError
 
 Labels = NDArray[np.uint8]
 
 TABLE_SIZE = 1 << 15  # one entry for each RGB555 colour
 OUTSIDE = 255  # label of pixels outside the image or in the self mask
+
+SUFFIX = ".npz"
+MAX_SIZE = 1_000_000  # of a table, unpacked; it has 34 kB [byte]
 
 
 @dataclass(frozen=True, slots=True)
@@ -102,7 +107,7 @@ class ColorTable:
                 f"image: not RGB, got {image.dtype} of shape {image.shape}; "
                 "expected uint8 of shape (height, width, 3)"
             )
-        return color_kernel.classify(np.ascontiguousarray(image), self.labels)
+        return labels_of(np.ascontiguousarray(image), self.labels)
 
 
 def table_colors() -> NDArray[np.uint8]:
@@ -136,3 +141,70 @@ def _hsv_of_table() -> tuple[NDArray[np.float64], NDArray[np.float64], NDArray[n
     rgb = (table_colors()[None] / 255.0).astype(np.float32)
     hsv = cv2.cvtColor(rgb, cv2.COLOR_RGB2HSV)[0].astype(np.float64)
     return 0.5 * hsv[:, 0], 255.0 * hsv[:, 1], 255.0 * hsv[:, 2]
+
+
+@compiled
+def labels_of(image: Labels, table: Labels) -> Labels:
+    """Return the label of every pixel of an RGB image (h, w, 3): (h, w).
+
+    Args:
+        image: RGB.
+        table: label of every RGB555 colour (32768,).
+    """
+    height, width, _ = image.shape
+    labels, codes = np.empty((height, width), np.uint8), np.empty(width, np.uint16)
+    for row in range(height):
+        channels, of_row = image[row].reshape(-1), labels[row]
+        # A separate loop for the codes is vectorized.
+        for k in range(width):
+            # A code has 15 bits, a channel 8: compute with wider integers.
+            red, green = int(channels[3 * k]), int(channels[3 * k + 1])
+            blue = int(channels[3 * k + 2])
+            codes[k] = (red >> 3) << 10 | (green >> 3) << 5 | blue >> 3
+        for k in range(width):
+            of_row[k] = table[codes[k]]
+    return labels
+
+
+def save_table(table: ColorTable, path: Path) -> None:
+    """Write `table` to `path`.
+
+    Raises:
+        OSError: the file cannot be written.
+    """
+    with path.open("wb") as file:
+        np.savez_compressed(
+            file, labels=table.labels, names=np.array([c.name for c in table.classes])
+        )
+
+
+def load_table(path: Path) -> ColorTable:
+    """Read a table.
+
+    Raises:
+        VisionError: the file cannot be read, or is not a colour table of the present classes.
+    """
+    if path.exists() and not path.is_file():
+        raise VisionError(f"{path}: not a regular file; expected a colour table")
+    try:
+        with zipfile.ZipFile(path) as parts:
+            size = sum(part.file_size for part in parts.infolist())
+        if size > MAX_SIZE:
+            raise ValueError(size)
+        with np.load(path, allow_pickle=False) as archive:
+            labels, names = archive["labels"], archive["names"].tolist()
+    except OSError as error:
+        raise VisionError(f"{path}: {error.strerror or 'not a colour table'}") from None
+    except Exception:  # a damaged archive raises anything
+        raise VisionError(
+            f"{path}: not a colour table; expected a file written by `hsr8 color-table`"
+        ) from None
+    if names != list(COLOR_CLASSES):
+        raise VisionError(
+            f"{path}: other colour classes, got {', '.join(map(str, names))}; "
+            f"expected {', '.join(COLOR_CLASSES)}"
+        )
+    try:
+        return ColorTable(COLOR_CLASSES, labels)
+    except VisionError as error:
+        raise VisionError(f"{path}: {error}") from None

@@ -12,8 +12,7 @@ from numpy.typing import NDArray
 from vision.beacon import find_posts
 from vision.blob import Blob, find_blobs
 from vision.camera import CameraPose, PinholeCamera
-from vision.color import OUTSIDE, ColorTable, Labels
-from vision.color_file import load_table
+from vision.color import OUTSIDE, ColorTable, Labels, load_table
 from vision.cylinder import Candidate, Cylinder, RimCue, interpenetrate, locate, polar_in_robot
 from vision.detection import Detection
 from vision.errors import VisionError

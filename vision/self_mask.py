@@ -7,15 +7,21 @@ far away. Pixels of the self mask are treated as outside the image.
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from math import cos, inf, pi, sin, sqrt
 
 import cv2
 import numpy as np
 from numpy.typing import NDArray
 
+from compilation import compiled
 from vision.camera import CameraPose, PinholeCamera
-from vision.self_mask_kernel import outline
 
 Array = NDArray[np.float64]
+
+RIM_POINTS = 12
+MIN_DEPTH = 0.004  # points closer to the plane of the camera are clipped to this depth [m]
+FAR = 4096.0  # limit of the image coordinates [pixel]
+SWELL = 1.0 / cos(pi / RIM_POINTS)  # circumscribed polygon / circle
 
 
 @dataclass(frozen=True, slots=True)
@@ -37,7 +43,7 @@ class BodyPart:
         """
         middle = np.array([0.5 * camera.width, 0.5 * camera.height, camera.focal])
         position, rotation = map(np.ascontiguousarray, (pose.position, pose.rotation))
-        return outline(self.centres, self.radii, position, rotation, middle)
+        return silhouette(self.centres, self.radii, position, rotation, middle)
 
 
 def apply_self_mask(
@@ -75,3 +81,57 @@ def apply_self_mask(
     mask *= window == 0
     window += label * mask
     return True
+
+
+@compiled
+def silhouette(
+    centres: Array, radii: Array, position: Array, rotation: Array, camera: Array
+) -> Array:
+    """Return points whose convex hull contains the image of spheres (12 n, 2) [pixel].
+
+    Every sphere gives a polygon around its silhouette circle. Spheres behind the camera give no
+    points. There are no points at all if the camera is inside a sphere, or if all points are
+    outside the image on one side.
+
+    Args:
+        centres: of the spheres (n, 3) [m].
+        radii: of the spheres (n,) [m].
+        position: of the camera (3,) [m].
+        rotation: of the camera, columns are its right, down and forward axes (3, 3).
+        camera: half width, half height and focal length (3,) [pixel].
+    """
+    points = np.empty((RIM_POINTS * len(centres), 2))
+    n = 0
+    low_u, high_u, low_v, high_v = inf, -inf, inf, -inf
+    p = np.empty(3)
+    for i in range(len(centres)):
+        r = radii[i]
+        for j in range(3):
+            p[j] = 0.0
+            for k in range(3):
+                p[j] += (centres[i, k] - position[k]) * rotation[k, j]
+        distance = sqrt(p[0] * p[0] + p[1] * p[1] + p[2] * p[2])
+        if distance <= r:
+            return points[:0]
+        if p[2] <= -r:
+            continue
+        shrink = 1.0 - (r / distance) * (r / distance)
+        radius = SWELL * r * sqrt(shrink)
+        # Two axes perpendicular to the direction of the sphere, (x, y, z).
+        x, y, z = p[0] / distance, p[1] / distance, p[2] / distance
+        level = max(sqrt(z * z + x * x), 1e-9)
+        u, w = z / level, -x / level
+        for k in range(RIM_POINTS):
+            angle = 2.0 * pi * k / RIM_POINTS
+            c, s = radius * cos(angle), radius * sin(angle)
+            X = p[0] * shrink + c * u + s * y * w
+            Y = p[1] * shrink + s * (z * u - x * w)
+            Z = max(p[2] * shrink + c * w - s * y * u, MIN_DEPTH)
+            u_image = min(max(camera[0] + camera[2] * X / Z, -FAR), FAR)
+            v_image = min(max(camera[1] + camera[2] * Y / Z, -FAR), FAR)
+            points[n, 0], points[n, 1] = u_image, v_image
+            low_u, high_u = min(low_u, u_image), max(high_u, u_image)
+            low_v, high_v = min(low_v, v_image), max(high_v, v_image)
+            n += 1
+    outside = high_u < 0.0 or high_v < 0.0 or low_u > 2.0 * camera[0] or low_v > 2.0 * camera[1]
+    return points[:0] if outside else points[:n]

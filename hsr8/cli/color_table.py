@@ -13,8 +13,7 @@ from hsr8.cli import tables
 from hsr8.cli.output_file import require_file_name, writing
 from hsr8.errors import UsageError
 from hsr8.files import atomic
-from vision.color import COLOR_CLASSES, ColorTable, Labels
-from vision.color_file import SUFFIX, save_table
+from vision.color import COLOR_CLASSES, SUFFIX, ColorTable, Labels, save_table
 from vision.color_learning import IGNORED, learn
 from vision.errors import VisionError
 

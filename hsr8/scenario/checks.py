@@ -65,7 +65,7 @@ def _parameters(scenario: Scenario) -> Iterator[Problem]:
             f"must be at least size / {MAX_CELLS} = {grid.size / MAX_CELLS:g}, got {grid.cell:g}",
         )
     if scenario.vision.color_table:
-        from vision.color_file import load_table  # noqa: PLC0415 (OpenCV loads slowly)
+        from vision.color import load_table  # noqa: PLC0415 (OpenCV loads slowly)
 
         try:
             load_table(FilePath(scenario.vision.color_table))

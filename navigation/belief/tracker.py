@@ -133,9 +133,7 @@ class Tracker:
             return
         p, clouds, rng = self._parameters, self._clouds, self._rng
         seen_from = viewpoint.eye(p.view_margin), viewpoint.sight.shadow
-        fates = misses(
-            self._objects, clouds, detections.rows, *seen_from, time, dt, self._limits
-        )
+        fates = misses(self._objects, clouds, detections.rows, *seen_from, time, dt, self._limits)
         for i in np.flatnonzero(fates >= SPAWNS).tolist():
             if fates[i] == REFUTED:
                 clouds[i] = particles.resample(clouds[i], p, rng)
@@ -173,9 +171,7 @@ class Tracker:
         """Return whether each particle of a cloud (6, m) is in clear view (m,)."""
         eye, points = viewpoint.eye(self._parameters.view_margin), cloud[X : Y + 1].T
         discs = occluders(self._objects, detections.rows, eye, self._limits)
-        return clearly_visible(
-            np.ascontiguousarray(points), eye[0], viewpoint.sight.shadow, discs
-        )
+        return clearly_visible(np.ascontiguousarray(points), eye[0], viewpoint.sight.shadow, discs)
 
 
 @compiled

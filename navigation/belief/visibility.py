@@ -30,9 +30,9 @@ EYE = record_type(
 )
 """Camera of one frame in W.
 
-Position [m]; R_WC, columns right, down, forward; heading of the robot [rad]; tangents of half the fields
-of view, of a panoramic camera the cosine of half its horizontal one [1]; maximum distance of a
-detection along the floor [m]; height of the top of an obstacle above the camera, 0 where only the
+Position [m]; R_WC, columns right, down, forward; heading of the robot [rad]; tangents of half the
+fields of view, of a panoramic camera the cosine of half its horizontal one [1]; maximum distance of
+a detection along the floor [m]; height of the top of an obstacle above the camera, 0 where only the
 foot counts [m].
 """
 

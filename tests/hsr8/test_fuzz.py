@@ -20,7 +20,7 @@ from hsr8.evaluation.sweep.seeds import parse_seeds
 from hsr8.loop import Simulation
 from hsr8.render import viewer
 from hsr8.scenario.loader import dump, load_scenario, loads
-from vision.color_file import load_table
+from vision.color import load_table
 from vision.errors import VisionError
 
 CASES = 700  # of each of the three kinds

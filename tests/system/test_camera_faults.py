@@ -6,7 +6,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from vision.color_file import save_table
+from vision.color import save_table
 from vision.color_learning import learn
 
 MAX_ERROR = 0.12  # position error beyond which the belief must be lost [m]

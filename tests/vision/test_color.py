@@ -1,9 +1,21 @@
+import os
+
+import cv2
 import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from vision.color import COLOR_CLASSES, ColorClass, ColorTable
+from vision.color import (
+    COLOR_CLASSES,
+    MAX_SIZE,
+    TABLE_SIZE,
+    ColorClass,
+    ColorTable,
+    labels_of,
+    load_table,
+    save_table,
+)
 from vision.errors import VisionError
 
 TABLE = ColorTable()
@@ -65,3 +77,66 @@ def test_only_rgb_images_are_classified(image: np.ndarray) -> None:
 def test_a_view_that_is_not_contiguous_is_classified_like_its_copy() -> None:
     image = np.random.default_rng(1).integers(0, 256, (20, 30, 3), dtype=np.uint8)
     assert np.array_equal(TABLE.classify(image[::2, ::-1]), TABLE.classify(image[::2, ::-1].copy()))
+
+
+RNG = np.random.default_rng(0)
+
+
+def test_labels_are_those_of_the_rgb555_code_that_opencv_makes():
+    image = RNG.integers(0, 256, (37, 53, 3)).astype(np.uint8)
+    table = RNG.integers(0, 8, TABLE_SIZE).astype(np.uint8)
+    codes = cv2.cvtColor(image, cv2.COLOR_RGB2BGR555).view(np.uint16).reshape(image.shape[:2])
+    labels = labels_of(image, table)
+    assert np.array_equal(labels, table[codes])
+
+
+def test_a_table_comes_back_as_it_was(tmp_path) -> None:
+    save_table(ColorTable(), tmp_path / "t.npz")
+    back = load_table(tmp_path / "t.npz")
+    assert np.array_equal(back.labels, ColorTable().labels)
+    assert [c.name for c in back.classes] == list(COLOR_CLASSES)
+
+
+STORED = np.array(list(COLOR_CLASSES))
+
+
+@pytest.mark.parametrize(
+    ("arrays", "message"),
+    [
+        ({"names": STORED}, "not a colour table"),
+        ({"labels": np.zeros(1 << 15, np.uint8), "names": np.array(["pink"])}, "pink"),
+        ({"labels": np.zeros(7, np.uint8), "names": STORED}, "32768"),
+        ({"labels": np.full(1 << 15, 8, np.uint8), "names": STORED}, "label 8"),
+    ],
+)
+def test_wrong_archives_are_refused(tmp_path, arrays, message) -> None:
+    np.savez(tmp_path / "t.npz", **arrays)
+    with pytest.raises(VisionError, match=message):
+        load_table(tmp_path / "t.npz")
+
+
+@pytest.mark.parametrize("content", [b"", b"no archive", b"PK\x03\x04 broken"])
+def test_other_files_are_refused(tmp_path, content) -> None:
+    (tmp_path / "t.npz").write_bytes(content)
+    with pytest.raises(VisionError, match="not a colour table"):
+        load_table(tmp_path / "t.npz")
+
+
+def test_only_small_regular_files_are_read(tmp_path) -> None:
+    os.mkfifo(tmp_path / "fifo.npz")
+    (tmp_path / "zero.npz").symlink_to("/dev/zero")
+    (tmp_path / "folder.npz").mkdir()
+    for name in ("fifo", "zero", "folder"):
+        with pytest.raises(VisionError, match="not a regular file"):
+            load_table(tmp_path / f"{name}.npz")
+    (tmp_path / "long.npz").write_bytes(bytes(MAX_SIZE + 1))
+    np.savez_compressed(tmp_path / "bomb.npz", labels=np.zeros(MAX_SIZE, np.uint8), names=STORED)
+    assert (tmp_path / "bomb.npz").stat().st_size < MAX_SIZE
+    for name in ("long", "bomb"):
+        with pytest.raises(VisionError, match="not a colour table"):
+            load_table(tmp_path / f"{name}.npz")
+
+
+def test_a_missing_file_is_named(tmp_path) -> None:
+    with pytest.raises(VisionError, match=r"nowhere\.npz: No such file"):
+        load_table(tmp_path / "nowhere.npz")

@@ -2,8 +2,7 @@ import numpy as np
 import pytest
 
 from tests.vision.scene import CAMERA, at, beacon, paint, pose
-from vision.color import COLOR_CLASSES, ColorTable
-from vision.color_file import save_table
+from vision.color import COLOR_CLASSES, ColorTable, save_table
 from vision.color_learning import IGNORED, learn
 from vision.detector import Detector
 from vision.errors import VisionError

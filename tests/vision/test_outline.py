@@ -6,13 +6,13 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from tests.vision.scene import CAMERA, Cylinder, at, paint, pose
+from tests.vision.scene import CAMERA, Cylinder, at, paint, pose, traced
 from vision.blob import find_blobs
 from vision.camera import CameraPose
 from vision.color import COLOR_CLASSES, OUTSIDE, ColorTable
-from vision.cylinder_kernel import independent
-from vision.outline import Outline, trace
-from vision.view import View
+from vision.cylinder_fit import independent
+from vision.outline import Outline, envelopes, silhouettes, trace
+from vision.view import View, angles
 
 NAMES = ("", *COLOR_CLASSES)
 PIXEL = 1.0 / CAMERA.focal
@@ -107,3 +107,46 @@ def test_noise_at_the_border_of_the_image_makes_no_edge() -> None:
     spoiled = outlines_in(image, view)["green"]
     assert not spoiled.right.trusted
     assert astuple(spoiled.left) == astuple(clean.left)
+
+
+OBSTACLES = [
+    at(0.9, 4.0, "red", 0.09),
+    at(1.6, 0.0, "green", 0.10),
+    at(1.1, -30.0, "blue", 0.12),
+    at(2.4, 18.0, "red", 0.05),
+]
+
+
+def observed(pan, roll):
+    """Blobs, padded labels and packed view of the obstacles."""
+    gaze = pose(pan=pan, tilt=-0.3, roll=roll)
+    blobs, padded, _ = traced(OBSTACLES, gaze)
+    return blobs, padded, View(CAMERA, gaze).packed
+
+
+def test_envelopes_bound_the_directions_of_all_pixels():
+    """Lowest and highest slope of a blob near each azimuth, from the middles of its pixels."""
+    blobs, padded, view = observed(0.1, 0.05)
+    for blob in blobs:
+        box = np.array(blob.box, np.int32)
+        start, width, size, (low, high), _ = envelopes(box, blob.extents, blob.runs, padded, view)
+        middles = [
+            (column + 0.5, row + 0.5)
+            for row, first, last, _ in blob.runs.tolist()
+            for column in range(first, last)
+        ]
+        for u, v in middles:
+            azimuth, slope = angles(view, u, v)
+            column = int((azimuth - start) / width)
+            near = slice(max(column - 1, 0), column + 2)
+            assert low[near].min() - size < slope < high[near].max() + size
+
+
+def test_no_pixel_of_a_rim_is_without_size():
+    """Seen steeply, the ends of rows in the middle column run along one slope."""
+    labels = np.zeros((CAMERA.height, CAMERA.width), np.uint8)
+    labels[20:100, 40 : CAMERA.width // 2] = 1
+    (blob,) = find_blobs(labels, (20,))
+    box, padded = np.array([blob.box], np.int32), np.pad(labels, 1, constant_values=OUTSIDE)
+    _, _, sizes, *_ = silhouettes(box, blob.extents, padded, View(CAMERA, pose(tilt=1.2)).packed)
+    assert 0.0 < sizes.min() < 1e-3

@@ -6,10 +6,10 @@ import numpy as np
 from hypothesis import given
 from hypothesis import strategies as st
 
-from tests.vision.scene import CAMERA, at, paint, pose, true_polar
+from tests.vision.scene import CAMERA, at, paint, pose, rays, true_polar
 from vision.detector import Detector
 from vision.parameters import VisionParameters
-from vision.self_mask import BodyPart, apply_self_mask
+from vision.self_mask import MIN_DEPTH, BodyPart, apply_self_mask, silhouette
 
 SHOULDER = BodyPart(np.array([[0.0, 0.09, 0.38]]), np.array([0.03]))
 
@@ -86,3 +86,23 @@ def test_an_obstacle_behind_the_shoulder_is_located_by_its_upper_edge(distance, 
     assert abs(aware.distance - true_distance) < 0.015
     assert abs(aware.bearing - true_bearing) < 0.03
     assert aware.cut
+
+
+CENTRES, RADII = np.array([[0.0, 0.09, 0.38], [0.01, 0.1, 0.25]]), np.array([0.03, 0.045])
+MIDDLE = np.array([0.5 * CAMERA.width, 0.5 * CAMERA.height, CAMERA.focal])
+
+
+@given(pan=st.floats(0.9, 1.7), tilt=st.floats(-0.8, -0.2))
+def test_points_lie_beyond_the_tangents_to_their_sphere(pan, tilt):
+    """No ray through a point of the polygon meets the sphere, and its corners are not far off."""
+    view = pose(pan, tilt, position=(0.0, 0.03, 0.47))
+    points = silhouette(CENTRES, RADII, view.position, view.rotation, MIDDLE)
+    for centre, radius, polygon in zip(CENTRES, RADII, points.reshape(-1, 12, 2), strict=False):
+        local = (centre - view.position) @ view.rotation
+        if local[2] - 1.1 * radius < MIN_DEPTH or np.abs(polygon).max() >= 4096.0:
+            continue
+        tangents = rays(CAMERA, polygon[:, 0], polygon[:, 1])
+        tangents /= np.linalg.norm(tangents, axis=1)[:, None]
+        miss = np.linalg.norm(np.cross(tangents, local), axis=1)
+        assert (miss > radius).all()
+        assert (miss < 1.05 * radius).all()

@@ -4,7 +4,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from tests.vision.scene import CAMERA, pose, rays
-from vision.outline_kernel import angles, level, project, resolution
+from vision.outline import angles, level, project, resolution
 from vision.view import View
 
 gazes = st.builds(

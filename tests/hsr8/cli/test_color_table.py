@@ -8,7 +8,7 @@ from hsr8.cli.color_table import main, mask_colors
 from hsr8.cli.options import ColorTable
 from hsr8.errors import UsageError
 from hsr8.scenario.loader import load_scenario
-from vision.color_file import load_table
+from vision.color import load_table
 
 
 @pytest.fixture

@@ -1,4 +1,4 @@
-"""Compiled part of the pose estimation of cylinders: the Gauss-Newton steps."""
+"""Gauss-Newton steps of the pose estimation of cylinders."""
 
 from math import asin, cos, inf, sin, sqrt
 
@@ -6,11 +6,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from compilation import compiled
+from vision.outline import independent
 
 Array = NDArray[np.float64]
 Bools = NDArray[np.bool_]
 Table = NDArray[np.int64]
-Edges = tuple[Array, Table, Array, Array]  # rims, points, azimuth and slope, see `locate`
+Edges = tuple[Array, Table, Array, Array]  # rims, points, azimuth and slope, see `fit`
 
 ITERATIONS = 4
 MAX_RIMS = 3  # a beacon shows three
@@ -27,22 +28,6 @@ MIN_RADIUS, MAX_RADIUS = 0.01, 0.5  # bounds of the iteration [m]
 MIN_RUN = 0.02  # [m]
 MIN_SLOPE_OF_SIDE = -3.0  # minimum slope of the middle of a side
 PARTS = 4.0  # of a rim with independent errors by the roundness of the cylinder
-TURNS = 3.0  # an edge that crosses n pixels has a common error 1 + TURNS*n times smaller
-
-
-@compiled
-def independent(count: float, crossed: float) -> float:
-    """Return the number of points of an edge with independent errors.
-
-    The quantization error is uniform over a pixel. It is common to all points of an edge
-    parallel to the pixel grid and averages out along an edge that crosses pixels.
-
-    Args:
-        count: points of the edge, at least one.
-        crossed: number of pixels crossed, perpendicular to the edge.
-    """
-    common = 1.0 / (1.0 + TURNS * crossed)
-    return 1.0 / max(1.0 / count, common * common)
 
 
 @compiled
@@ -269,7 +254,7 @@ def _positive(P: Array) -> bool:
 def _outlier_fraction(
     residual: Array, means: Array, keep: Bools, rims: Array, points: Table, threshold: float
 ) -> float:
-    """Return the fraction of outliers among the used points of a candidate; see `locate`."""
+    """Return the fraction of outliers among the used points of a candidate; see `fit`."""
     total = outliers = 0
     for j in range(len(rims)):
         for i in range(points[j], points[j + 1]):
@@ -280,7 +265,7 @@ def _outlier_fraction(
 
 
 @compiled
-def locate(
+def fit(
     sides: Array,
     known: Array,
     rims: Array,

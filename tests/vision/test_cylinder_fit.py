@@ -3,9 +3,8 @@ from math import asin
 import numpy as np
 import pytest
 
-from vision.cylinder import LIMITS
-from vision.cylinder_guess_kernel import guess
-from vision.cylinder_kernel import OUTER, locate
+from vision.cylinder import LIMITS, guess
+from vision.cylinder_fit import OUTER, fit
 
 HEIGHT = 0.47
 OPTIONS = np.array([0.008, 0.02, 4.0, *LIMITS])
@@ -59,13 +58,13 @@ def packed(made):
 @pytest.mark.parametrize("seed", range(3))
 def test_compiled_and_plain_agree(seed):
     arguments = packed(candidates(seed, 12))
-    for compiled, plain in zip(locate(*arguments), locate.py_func(*arguments), strict=True):
+    for compiled, plain in zip(fit(*arguments), fit.py_func(*arguments), strict=True):
         np.testing.assert_allclose(compiled, plain, rtol=1e-9, atol=1e-15)
 
 
 def test_estimates_are_consistent():
     made = candidates(5, 200, share=1.0)
-    results, covariances = locate(*packed(made))
+    results, covariances = fit(*packed(made))
     errors = results[:, :3] - [candidate["truth"] for candidate in made]
     assert np.all(np.abs(errors) < 4.5 * np.sqrt(np.diagonal(covariances, axis1=1, axis2=2)))
     nees = np.einsum("ni,nij,nj->n", errors, np.linalg.inv(covariances), errors) / 3
@@ -98,7 +97,7 @@ def cut(seed, n):
 
 def test_the_foot_of_a_cut_cylinder_measures_its_axis_and_radius():
     made = cut(6, 300)
-    results, covariances = locate(*packed(made))
+    results, covariances = fit(*packed(made))
     errors = results[:, :3] - [candidate["truth"] for candidate in made]
     nees = np.einsum("ni,nij,nj->n", errors, np.linalg.inv(covariances), errors) / 3
     assert 0.1 < nees.mean() < 1.5
@@ -132,7 +131,7 @@ def one_side(seed, n, least):
 @pytest.mark.parametrize("least", [0.3, 0.6, 0.9])
 def test_the_distance_from_a_single_side_is_consistent(least):
     made = one_side(3, 200, least)
-    results, covariances = locate(*packed(made))
+    results, covariances = fit(*packed(made))
     error = results[:, 1] - [c["truth"][1] for c in made]
     sigma = np.sqrt(covariances[:, 1, 1])
     assert np.abs(error / sigma).max() < 3.5
@@ -143,7 +142,7 @@ def test_the_distance_from_a_single_side_is_consistent(least):
 
 def test_the_more_of_a_side_is_seen_the_surer_its_distance():
     sigmas = [
-        np.mean(np.sqrt(locate(*packed(one_side(4, 100, least)))[1][:, 1, 1]))
+        np.mean(np.sqrt(fit(*packed(one_side(4, 100, least)))[1][:, 1, 1]))
         for least in (0.3, 0.6, 0.9)
     ]
     assert sigmas == sorted(sigmas, reverse=True)
@@ -160,13 +159,13 @@ def test_edges_of_no_cylinder_have_a_covariance_all_the_same():
         azimuth = np.linspace(right, left, 28)[1:-1]
         slope = np.linspace(*rng.uniform(low, max(high, low + 0.05), 2), len(azimuth))
         candidate["rims"] = [(0.3, -1.0, 1e-3, azimuth, slope)]
-    _, covariances = locate(*packed(made))
+    _, covariances = fit(*packed(made))
     assert np.isfinite(covariances).all()
     np.linalg.cholesky(covariances)
 
 
 def test_a_cylinder_does_not_depend_on_other_candidates():
     made = candidates(7, 6)
-    together, _ = locate(*packed(made))
-    alone = np.concatenate([locate(*packed([candidate]))[0] for candidate in made])
+    together, _ = fit(*packed(made))
+    alone = np.concatenate([fit(*packed([candidate]))[0] for candidate in made])
     assert np.array_equal(together, alone)
