@@ -18,7 +18,7 @@ from hsr8.seeds import named_rng
 from hsr8.world.body.kinematic import KinematicBody
 from hsr8.world.camera.rendered import RenderedCamera
 from hsr8.world.field.generator import draw_layout
-from hsr8.world.model.assembly import Optics, assemble
+from hsr8.world.model.assembly import FIELD, Optics, assemble
 
 import cv2
 import mujoco
@@ -49,7 +49,7 @@ def labelled(seed: int, pan: float, tilt: float) -> tuple[Image, Image]:
         renderer.update_scene(body.data, camera=HEAD_CAMERA)
         geoms = renderer.render()[:, :, 0]
     mask = np.zeros((*geoms.shape, 3), np.uint8)
-    paints = {f"paint_{name}": rgb for name, rgb in mask_colors().items()}
+    paints = {f"{FIELD}paint_{name}": rgb for name, rgb in mask_colors().items()}
     for geom in np.unique(geoms[geoms >= 0]).tolist():
         material = int(model.geom_matid[geom])
         name = model.material(material).name if material >= 0 else ""

@@ -19,6 +19,7 @@ from hsr8.loop import Simulation
 from hsr8.record import TickRecord
 from hsr8.robots.normal_form import HEAD_CAMERA
 from hsr8.scenario.loader import load_scenario
+from hsr8.world.model.assembly import FIELD
 from vision.camera import PinholeCamera
 
 import mujoco
@@ -95,9 +96,11 @@ class Referee:
             obstacle = i < len(self.layout.obstacles)
             if not obstacle:
                 top, bottom = label.split("/")
-                name = f"beacon_{top}_{bottom}"
+                name = f"{FIELD}beacon_{top}_{bottom}"
             else:
-                name = f"obstacle_{i:02d}" if i < static else f"mover_{i - static:02d}"
+                name = (
+                    f"{FIELD}obstacle_{i:02d}" if i < static else f"{FIELD}mover_{i - static:02d}"
+                )
             body = self.model.body(name)
             first = int(body.geomadr[0])
             geoms = tuple(range(first, first + int(body.geomnum[0])))

@@ -14,7 +14,7 @@ from hsr8.robots.loaded import LoadedRobot
 from hsr8.suggestion import suggestion
 from hsr8.world.camera.offscreen import camera_option
 from hsr8.world.field.layout import Layout
-from hsr8.world.model.assembly import Optics, Quality, assemble
+from hsr8.world.model.assembly import FIELD, Optics, Quality, assemble
 
 Array = NDArray[np.float64]
 Image = NDArray[np.uint8]
@@ -58,7 +58,10 @@ class SceneRenderer:
         self.model = assemble(robot, layout, quality, optics)
         self.data = mujoco.MjData(self.model)
         self._movers = np.array(
-            [self.model.body(f"mover_{i:02d}").mocapid[0] for i in range(len(layout.movers))],
+            [
+                self.model.body(f"{FIELD}mover_{i:02d}").mocapid[0]
+                for i in range(len(layout.movers))
+            ],
             dtype=np.intp,
         )
         self._arrow_radius = ARROW_RADIUS * layout.scale
@@ -117,7 +120,8 @@ class SceneRenderer:
         Raises:
             UsageError: unknown camera.
         """
-        names = [self.model.camera(i).name for i in range(self.model.ncam)]
+        cameras = [self.model.camera(i).name for i in range(self.model.ncam)]
+        names = [camera.removeprefix(FIELD) for camera in cameras]
         if name not in names:
             choices = list(dict.fromkeys(("dashboard", "follow", "head", *names)))
             raise UsageError(
@@ -130,7 +134,8 @@ class SceneRenderer:
             return view
         camera = mujoco.MjvCamera()
         camera.type = mujoco.mjtCamera.mjCAMERA_FIXED
-        camera.fixedcamid = self.model.camera(view).id
+        names = [self.model.camera(i).name for i in range(self.model.ncam)]
+        camera.fixedcamid = names.index(f"{FIELD}{view}" if f"{FIELD}{view}" in names else view)
         return camera
 
     def close(self) -> None:

@@ -16,15 +16,16 @@ from numpy.typing import NDArray
 from hsr8.recorder.log.channel import BlockStream, Channel
 from hsr8.robots.normal_form import HEAD_CAMERA
 from hsr8.robots.shown import VISUAL_GROUPS
+from hsr8.world.model.assembly import FIELD
 from walking.body.sole import Sole
 
 Array = NDArray[np.float64]
 
 STATIC = {  # prefix of the names by entity; walls for the robot's camera are left out
-    "/world/beacons": "beacon",
-    "/world/obstacles": "obstacle",
-    "/world/rim": "rim",
-    "/world/bumps": "bump",
+    "/world/beacons": f"{FIELD}beacon",
+    "/world/obstacles": f"{FIELD}obstacle",
+    "/world/rim": f"{FIELD}rim",
+    "/world/bumps": f"{FIELD}bump",
 }
 _BOX, _CAPSULE, _CYLINDER, _ELLIPSOID = (
     int(mujoco.mjtGeom.mjGEOM_BOX),

@@ -16,6 +16,7 @@ from hsr8.world.camera.frustum import Frustum
 from hsr8.world.camera.image_noise import ImageNoise
 from hsr8.world.camera.motion_blur import MotionBlur
 from hsr8.world.camera.offscreen import Offscreen
+from hsr8.world.model.assembly import FIELD
 from vision.camera import PinholeCamera
 
 if TYPE_CHECKING:
@@ -24,7 +25,6 @@ if TYPE_CHECKING:
 Array = NDArray[np.float64]
 Image = NDArray[np.uint8]
 
-OBJECTS = ("obstacle_", "mover_", "beacon_")  # prefixes of the bodies that a fault can hide
 HIDDEN_GROUP = 5  # geom group that MuJoCo does not render
 
 
@@ -61,7 +61,7 @@ class RenderedCamera:
         self._lights = _Lights(model)
         self._frustum = Frustum(model, HEAD_CAMERA, settings.width / settings.height)
         self._group, self._original_group = model.geom_group, model.geom_group.copy()
-        bodies = [i for i in range(model.nbody) if model.body(i).name.startswith(OBJECTS)]
+        bodies = [i for i in range(model.nbody) if model.body(i).name.startswith(FIELD)]
         self._objects = [
             slice(model.body_geomadr[i], model.body_geomadr[i] + model.body_geomnum[i])
             for i in bodies

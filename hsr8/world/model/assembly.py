@@ -26,6 +26,9 @@ from vision.color import COLOR_CLASSES
 
 Quality = Literal["vision", "show"]
 
+FIELD = "field/"
+"""Prefix of the names of all parts of the field, which those of a robot do not have."""
+
 # Lengths are those in a world of scale 1.
 BORDER = 0.02  # half width of the line around the field [m]
 PAINT_HEIGHT = 0.0005  # of painted lines above the floor [m]
@@ -72,9 +75,10 @@ def assemble(
 ) -> mujoco.MjModel:
     """Compile the world of `layout` with a robot.
 
-    Static obstacles are bodies ``obstacle_00`` ..., movers are mocap bodies ``mover_00`` ...,
-    beacons are ``beacon_<top>_<bottom>``, bumps are geoms ``bump_00`` ... of the world. The
-    cameras ``top`` and ``corner`` are for people.
+    Static obstacles are bodies ``field/obstacle_00`` ..., movers are mocap bodies
+    ``field/mover_00`` ..., beacons are ``field/beacon_<top>_<bottom>``, bumps are geoms
+    ``field/bump_00`` ... of the world. The cameras ``field/top`` and ``field/corner`` are for
+    people. The names of the robot have no prefix.
 
     Raises:
         ModelError: a model file is invalid.
@@ -97,13 +101,13 @@ def assemble(
         _add_room(spec, layout.field_size, layout.scale)
     _add_cameras(spec, layout.field_size)
     for i, obstacle in enumerate(layout.static):
-        _add_obstacle(spec, f"obstacle_{i:02d}", obstacle, quality, layout.scale)
+        _add_obstacle(spec, f"{FIELD}obstacle_{i:02d}", obstacle, quality, layout.scale)
     for i, mover in enumerate(layout.movers):
-        _add_obstacle(spec, f"mover_{i:02d}", mover, quality, layout.scale)
+        _add_obstacle(spec, f"{FIELD}mover_{i:02d}", mover, quality, layout.scale)
     for beacon in layout.beacons:
         _add_beacon(spec, beacon, quality)
     for i, bump in enumerate(layout.bumps):
-        _add_bump(spec, f"bump_{i:02d}", bump)
+        _add_bump(spec, f"{FIELD}bump_{i:02d}", bump)
     with _unwarned():
         model = spec.compile()
     check_model(model)
@@ -151,7 +155,7 @@ def _cast_shadows(spec: mujoco.MjSpec, side: float, scale: float) -> None:
     """Make the sun cast shadows on the whole field."""
     spec.visual.quality.shadowsize = SHADOW_SIZE
     spec.visual.map.shadowclip = (0.5 * side + APRON * scale) / spec.stat.extent
-    _part(spec.light, "sun").castshadow = True
+    _part(spec.light, f"{FIELD}sun").castshadow = True
 
 
 def _add_border(spec: mujoco.MjSpec, field_size: tuple[float, float], scale: float) -> None:
@@ -159,7 +163,7 @@ def _add_border(spec: mujoco.MjSpec, field_size: tuple[float, float], scale: flo
     x, y = (0.5 * side for side in field_size)
     half, paint = BORDER * scale, PAINT_HEIGHT * scale
     halves = (half, y + half), (x - half, half)
-    _add_frame(spec, "rim", (x, y), halves, z=0.0, half_height=paint, material="line")
+    _add_frame(spec, "rim", (x, y), halves, z=0.0, half_height=paint, material=f"{FIELD}line")
 
 
 def _add_room(spec: mujoco.MjSpec, field_size: tuple[float, float], scale: float) -> None:
@@ -169,10 +173,10 @@ def _add_room(spec: mujoco.MjSpec, field_size: tuple[float, float], scale: float
     image. For contacts every plane is infinite.
     """
     x, y = (0.5 * side + APRON * scale for side in field_size)
-    _part(spec.geom, "floor").size = [x, y, 1.0]
+    _part(spec.geom, f"{FIELD}floor").size = [x, y, 1.0]
     z = 0.5 * WALL_HEIGHT * scale
     halves = (0.01 * scale, y), (x, 0.01 * scale)
-    _add_frame(spec, "wall", (x, y), halves, z=z, half_height=z, material="wall")
+    _add_frame(spec, "wall", (x, y), halves, z=z, half_height=z, material=f"{FIELD}wall")
 
 
 def _add_frame(
@@ -197,7 +201,7 @@ def _add_frame(
         ("right", (0.0, -y), halves[1]),
     ):
         spec.worldbody.add_geom(
-            name=f"{name}_{side}",
+            name=f"{FIELD}{name}_{side}",
             type=mujoco.mjtGeom.mjGEOM_BOX,
             pos=[*position, z],
             size=[*half, half_height],
@@ -209,20 +213,20 @@ def _add_frame(
 def _add_cameras(spec: mujoco.MjSpec, field_size: tuple[float, float]) -> None:
     size = max(field_size)
     spec.worldbody.add_camera(
-        name="top", pos=[0.0, 0.0, 1.55 * size], xyaxes=[0, -1, 0, 1, 0, 0], fovy=45.0
+        name=f"{FIELD}top", pos=[0.0, 0.0, 1.55 * size], xyaxes=[0, -1, 0, 1, 0, 0], fovy=45.0
     )
     # From a corner, towards the centre of the field.
     position = np.array([-0.80, -0.80, 0.62]) * size
     away = position / np.linalg.norm(position)
     right = np.array([-away[1], away[0], 0.0]) / hypot(away[0], away[1])
     spec.worldbody.add_camera(
-        name="corner", pos=position, xyaxes=[*right, *np.cross(away, right)], fovy=40.0
+        name=f"{FIELD}corner", pos=position, xyaxes=[*right, *np.cross(away, right)], fovy=40.0
     )
 
 
 def _paint(spec: mujoco.MjSpec, color: str, quality: Quality) -> str:
     """Return the name of the material of a colour class, which is created at first use."""
-    name = f"paint_{color}"
+    name = f"{FIELD}paint_{color}"
     if spec.material(name) is None:
         rgb = np.asarray(COLOR_CLASSES[color].rgb)
         if quality == "show":
@@ -255,14 +259,14 @@ def _add_obstacle(
             type=mujoco.mjtGeom.mjGEOM_CYLINDER,
             pos=[0.0, 0.0, 0.5 * obstacle.height - 4.0 * stripe],
             size=[obstacle.radius + 0.001 * scale, stripe, 0.0],
-            material="stripe",
+            material=f"{FIELD}stripe",
             **_VISUAL,
         )
 
 
 def _add_beacon(spec: mujoco.MjSpec, beacon: Beacon, quality: Quality) -> None:
     quarter = 0.25 * beacon.height
-    name = f"beacon_{beacon.top}_{beacon.bottom}"
+    name = f"{FIELD}beacon_{beacon.top}_{beacon.bottom}"
     body = spec.worldbody.add_body(name=name, pos=[*beacon.position, 0.0])
     for half, color, z in (("bottom", beacon.bottom, quarter), ("top", beacon.top, 3 * quarter)):
         body.add_geom(
@@ -282,7 +286,7 @@ def _add_bump(spec: mujoco.MjSpec, name: str, bump: Bump) -> None:
         type=mujoco.mjtGeom.mjGEOM_CYLINDER,
         pos=[*bump.position, 0.0],
         size=[bump.radius, bump.magnitude, 0.0],
-        material="line",
+        material=f"{FIELD}line",
         condim=4,
         **_SOLID,
     )

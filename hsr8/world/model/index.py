@@ -12,11 +12,14 @@ from numpy.typing import NDArray
 from hsr8.robots.models import reading_models
 from hsr8.robots.normal_form import ACCELEROMETER, FEET, PADS, SOLES, pad
 from hsr8.robots.tree import servos_of
+from hsr8.world.model.assembly import FIELD
 
 if TYPE_CHECKING:  # reading a run needs no robot
     from hsr8.robots.loaded import LoadedRobot
 
 Ints = NDArray[np.intp]
+
+BEACON, BUMP = f"{FIELD}beacon_", f"{FIELD}bump_"
 
 
 @dataclass(frozen=True, slots=True)
@@ -80,14 +83,14 @@ class ModelIndex:
         base = model.body(robot.roles.base).id
         root = model.joint(int(model.body_jntadr[base]))
         obstacle_names = [
-            *(f"obstacle_{i:02d}" for i in range(n_static)),
-            *(f"mover_{i:02d}" for i in range(n_moving)),
+            *(f"{FIELD}obstacle_{i:02d}" for i in range(n_static)),
+            *(f"{FIELD}mover_{i:02d}" for i in range(n_moving)),
         ]
         bodies = [model.body(name) for name in obstacle_names]
         obstacle_geoms = np.array([int(b.geomadr[0]) for b in bodies], dtype=np.intp)
         obstacle_of_geom = np.full(model.ngeom, -1, dtype=np.intp)
         obstacle_of_geom[obstacle_geoms] = np.arange(len(bodies))
-        posts = [b for b in map(model.body, range(model.nbody)) if b.name.startswith("beacon_")]
+        posts = [b for b in map(model.body, range(model.nbody)) if b.name.startswith(BEACON)]
         lower = np.array([int(b.geomadr[0]) for b in posts], dtype=np.intp)
         beacon_geoms = lower[:, None] + np.arange(2)
         obstacle_of_geom[beacon_geoms] = len(bodies) + np.arange(len(posts))[:, None]
@@ -107,8 +110,8 @@ class ModelIndex:
             accelerometer=np.arange(3, dtype=np.intp) + model.sensor(ACCELEROMETER).adr[0],
             foot_sites=(model.site(FEET[0]).id, model.site(FEET[1]).id),
             foot_geoms=(model.geom(SOLES[0]).id, model.geom(SOLES[1]).id),
-            floor=model.geom("floor").id,
-            bumps=tuple(g for g in range(model.ngeom) if model.geom(g).name.startswith("bump_")),
+            floor=model.geom(f"{FIELD}floor").id,
+            bumps=tuple(g for g in range(model.ngeom) if model.geom(g).name.startswith(BUMP)),
             base_body=base,
             trunk=model.body(robot.roles.trunk).id,
             robot_geoms=np.flatnonzero(collides & on_robot),

@@ -37,7 +37,7 @@ ROBOT = "hsr8/hsr8.xml"
         ),
         (ROBOT, 'kp="120"', 'kp="-120"', "'l_hip_yaw': kp, got -120; expected > 0"),
         (ROBOT, 'damping="0.1"', 'damping="inf"', "damping, got inf; expected finite numbers"),
-        ("field/vision.xml", 'name="floor"', 'name="ground"', "'floor'"),
+        ("field/vision.xml", 'name="field/floor"', 'name="ground"', "'field/floor'"),
         (None, "", "", "install hsr8 again"),
     ],
 )

@@ -67,7 +67,7 @@ def test_logged_shapes_are_where_the_geoms_are(model, tmp_path):
 
 
 def test_colors_come_from_the_material(model):
-    red = model.geom("obstacle_00").id
+    red = model.geom("field/obstacle_00").id
     material = model.geom_matid[red]
     assert material >= 0
     expected = np.round(255 * model.mat_rgba[material]).tolist()

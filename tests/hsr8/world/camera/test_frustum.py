@@ -31,8 +31,10 @@ def test_it_misses_what_is_behind_and_beside_but_not_what_is_ahead(body):
     look(body, 0.0, -0.2)
     missed = frustum.outside(body.data)
     names = {body.model.geom(geom).name for geom in np.flatnonzero(missed)}
-    assert {"obstacle_06", "obstacle_03", "obstacle_09", "l_sole_visual"} <= names
-    assert not {"obstacle_00", "obstacle_01", "obstacle_11", "floor"} & names
+    assert {"field/obstacle_06", "field/obstacle_03", "field/obstacle_09", "l_sole_visual"} <= names
+    assert (
+        not {"field/obstacle_00", "field/obstacle_01", "field/obstacle_11", "field/floor"} & names
+    )
 
 
 @pytest.mark.gl

@@ -32,7 +32,9 @@ def test_near_obstacles_are_found_where_they_are_expected(world, silent):
     body = KinematicBody(model, robot, layout, silent, np.random.default_rng(0))
     detector = Detector(camera, scenario.vision, tuple(BodyPart(*arm) for arm in robot.arms))
     eyes = RenderedCamera(model, scenario.camera, np.random.default_rng(0))
-    obstacle = next(b for b in range(model.nbody) if model.body(b).name.startswith("obstacle_"))
+    obstacle = next(
+        b for b in range(model.nbody) if model.body(b).name.startswith("field/obstacle_")
+    )
     rng, found = np.random.default_rng(2), {True: [], False: []}
     for _ in range(400):
         pan, tilt = rng.uniform(-1.5, 1.5), rng.uniform(-1.0, -0.2)

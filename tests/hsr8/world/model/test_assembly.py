@@ -1,3 +1,5 @@
+from dataclasses import replace
+
 import mujoco
 import numpy as np
 import pytest
@@ -60,6 +62,46 @@ def test_the_world_keeps_the_robot_and_names_everything(models):
         assert model.opt.disableflags & mujoco.mjtDisableBit.mjDSBL_AUTORESET
 
 
+NAMED = ("BODY", "GEOM", "SITE", "CAMERA", "LIGHT", "MATERIAL", "TEXTURE", "MESH")
+
+
+def all_names(model):
+    """Names of all parts of a model, with their kind."""
+    kinds = [getattr(mujoco.mjtObj, f"mjOBJ_{kind}") for kind in NAMED]
+    counts = (model.nbody, model.ngeom, model.nsite, model.ncam, model.nlight)
+    counts += (model.nmat, model.ntex, model.nmesh)
+    pairs = zip(kinds, counts, strict=True)
+    return {(k, name) for k, count in pairs for name in names(model, k, count) if name}
+
+
+@pytest.mark.parametrize("quality", ["vision", "show"])
+def test_a_robot_may_have_the_names_of_the_field(layout, quality):
+    robot = load_robot("hsr8")
+    plain = assemble(robot, layout, quality, Optics())
+    field = [part for part in all_names(plain) if part[1].startswith("field/")]
+    assert len(field) > 20
+    spec = robot.spec.copy()
+    trunk = spec.body(robot.roles.trunk)
+    for kind, name in ((kind, name.removeprefix("field/")) for kind, name in field):
+        if kind == mujoco.mjtObj.mjOBJ_BODY:
+            body = trunk.add_body(name=name, mass=1e-3, inertia=[1e-6, 1e-6, 1e-6])
+            body.explicitinertial = True
+        elif kind == mujoco.mjtObj.mjOBJ_GEOM:
+            visual = {"contype": 0, "conaffinity": 0, "mass": 0.0}
+            trunk.add_geom(name=name, size=[0.01, 0.0, 0.0], **visual)
+        elif kind == mujoco.mjtObj.mjOBJ_CAMERA:
+            trunk.add_camera(name=name)
+        elif kind == mujoco.mjtObj.mjOBJ_LIGHT:
+            trunk.add_light(name=name)
+        elif kind == mujoco.mjtObj.mjOBJ_MATERIAL:
+            spec.add_material(name=name)
+    model = assemble(replace(robot, spec=spec), layout, quality, Optics())
+    index = ModelIndex.of(model, robot, len(layout.static), len(layout.movers))
+    assert len(index.beacon_geoms) == len(layout.beacons)
+    assert len(index.bumps) == len(layout.bumps)
+    assert not {int(g) for g in index.obstacle_geoms} & set(index.robot_geoms.tolist())
+
+
 @pytest.mark.parametrize("quality", ["vision", "show"])
 def test_obstacles_and_beacons_have_the_poses_of_the_layout(models, layout, quality):
     model = models[quality]
@@ -76,7 +118,7 @@ def test_obstacles_and_beacons_have_the_poses_of_the_layout(models, layout, qual
     radii = model.geom_size[index.obstacle_geoms, 0]
     np.testing.assert_allclose(radii, [o.radius for o in layout.obstacles])
     for beacon in layout.beacons:
-        top = data.geom(f"beacon_{beacon.top}_{beacon.bottom}_top")
+        top = data.geom(f"field/beacon_{beacon.top}_{beacon.bottom}_top")
         np.testing.assert_allclose(top.xpos, [*beacon.position, 0.45])
 
 
@@ -85,7 +127,7 @@ def test_the_robot_stands_on_the_floor_without_warnings(models, layout):
     data = ready(model, layout)
     mujoco.mj_step(model, data, nstep=100)
     assert data.warning.number.sum() == 0
-    floor = model.geom("floor").id
+    floor = model.geom("field/floor").id
     touching = {g for pair in data.contact.geom for g in pair if floor in pair} - {floor}
     assert touching == {model.geom(sole).id for sole in SOLES}
 
@@ -93,7 +135,7 @@ def test_the_robot_stands_on_the_floor_without_warnings(models, layout):
 @pytest.mark.parametrize("geom", [*SOLES, "torso_collision", "l_forearm_collision"])
 def test_obstacles_are_solid_for_every_part_of_the_robot(models, geom):
     model = models["vision"]
-    for other in ("obstacle_00", "mover_00", "beacon_yellow_cyan_top"):
+    for other in ("field/obstacle_00", "field/mover_00", "field/beacon_yellow_cyan_top"):
         one, two = model.geom(geom), model.geom(other)
         assert (one.contype & two.conaffinity) | (two.contype & one.conaffinity)
 
@@ -124,4 +166,4 @@ def test_the_head_camera_sees_a_bright_field_and_no_empty_space(models, layout):
 def test_field_models_compile_without_a_robot(quality):
     model = mujoco.MjModel.from_xml_path(str(models_dir() / "field" / f"{quality}.xml"))
     assert model.nq == model.nu == 0
-    assert model.geom("floor").contype[0] == 3
+    assert model.geom("field/floor").contype[0] == 3
