@@ -1,6 +1,7 @@
 """Robot description: the file ``robot.toml`` next to a model, its keys and their meaning."""
 
 import json
+from itertools import islice
 from pathlib import Path
 from typing import Annotated, Any, Literal
 
@@ -17,9 +18,10 @@ from pydantic import (
 )
 
 from hsr8.errors import ModelError
+from hsr8.files.key_lines import lines_of
 from hsr8.files.regular import read_text
 from hsr8.files.toml import TomlError, parse_toml
-from hsr8.robots.description_mistakes import NAME, NAMES, TABLE, mistakes_of
+from hsr8.mistakes import MAX_LISTED, NAME, NAMES, TABLE, dotted, form, mistakes_of
 
 MODEL_SUFFIXES = (".xml", ".mjcf", ".urdf")
 
@@ -34,15 +36,6 @@ def _rising(limits: tuple[float, float]) -> tuple[float, float]:
     if not limits[0] < limits[1]:
         raise ValueError(f"empty range, got {list(limits)}; expected lower < upper [rad]")
     return limits
-
-
-def _form(value: object) -> str:
-    """Return the form of a key that has several; the name of its type if it is wrong."""
-    if isinstance(value, dict | BaseModel):
-        return TABLE
-    if isinstance(value, list | tuple):
-        return NAMES
-    return NAME if isinstance(value, str) else type(value).__name__
 
 
 Name = Annotated[str, Len(1, 200)]
@@ -122,14 +115,14 @@ class ServoRule(Table):
 
 
 Sole = Annotated[
-    Annotated[Names, Tag(NAMES)] | Annotated[SoleRectangle, Tag(TABLE)], Discriminator(_form)
+    Annotated[Names, Tag(NAMES)] | Annotated[SoleRectangle, Tag(TABLE)], Discriminator(form)
 ]
 Camera = Annotated[
-    Annotated[Name, Tag(NAME)] | Annotated[CameraMount, Tag(TABLE)], Discriminator(_form)
+    Annotated[Name, Tag(NAME)] | Annotated[CameraMount, Tag(TABLE)], Discriminator(form)
 ]
 Servo = Annotated[
     Annotated[Literal["own", "rule"], Tag(NAME)] | Annotated[ServoRule, Tag(TABLE)],
-    Discriminator(_form),
+    Discriminator(form),
 ]
 
 
@@ -181,7 +174,8 @@ class RobotDescription(Table):
     robot_descriptions: Annotated[
         Annotated[str, Field(pattern=r"^[a-z0-9_]+$")] | None,
         doc(
-            "Module of the package `robot_descriptions` that fetches the model where it is missing."
+            "lower-case letters, digits and underscores: module of the package "
+            "`robot_descriptions` that fetches the model where it is missing."
         ),
     ] = None
     base: Annotated[
@@ -304,15 +298,21 @@ def read_description(file: Path) -> RobotDescription:
             "--write FILE` makes"
         )
     try:
-        data = parse_toml(read_text(file))
+        text = read_text(file)
+        data = parse_toml(text)
     except (OSError, TomlError) as error:
         reason = error.strerror if isinstance(error, OSError) else error
         raise ModelError(f"{file}: cannot be read: {reason}") from error
-    return checked(data, str(file))
+    return checked(data, str(file), text)
 
 
-def checked(data: dict[str, Any], source: str) -> RobotDescription:
+def checked(data: dict[str, Any], source: str, text: str = "") -> RobotDescription:
     """Return the description with these keys.
+
+    Args:
+        data: keys and values.
+        source: file, for messages.
+        text: of the file, for the lines of the keys.
 
     Raises:
         ModelError: a key is wrong; the message begins with `source` and lists every mistake.
@@ -320,8 +320,15 @@ def checked(data: dict[str, Any], source: str) -> RobotDescription:
     try:
         return RobotDescription.model_validate_json(json.dumps(data, default=str))
     except ValidationError as error:
-        mistakes = mistakes_of(error, RobotDescription)
-        if len(mistakes) == 1:
-            raise ModelError(f"{source}: {mistakes[0]}") from error
-        lines = [f"{source}: {len(mistakes)} mistakes", *mistakes]
+        mistakes = list(islice(mistakes_of(error, RobotDescription, data), MAX_LISTED))
+        places = lines_of(text, [mistake.path for mistake in mistakes])
+        lines = [
+            f"{source}:{places[m.path]}: " if m.path in places else f"{source}: " for m in mistakes
+        ]
+        lines = [
+            f"{line}{dotted(m.path)}{': ' * bool(m.path)}{m.text}"
+            for line, m in zip(lines, mistakes, strict=True)
+        ]
+        if len(lines) > 1:
+            lines.insert(0, f"{source}: {error.error_count()} mistakes")
         raise ModelError("\n  ".join(lines)) from error

@@ -4,10 +4,10 @@ from collections.abc import Iterator
 from math import cos, hypot, radians, sin
 from pathlib import Path as FilePath
 
+from hsr8.keys import Path
+from hsr8.mistakes import Mistake
 from hsr8.scenario.fault_checks import fault_problems, robot_problems
-from hsr8.scenario.key_lines import Path
 from hsr8.scenario.mission import Course, Points, Tour, Walk
-from hsr8.scenario.problem import Problem
 from hsr8.scenario.schema import Scenario
 from hsr8.scenario.section import Point
 from hsr8.scenario.track_checks import track_problems
@@ -20,7 +20,7 @@ MAX_LEG_RATIO = 0.7
 """Maximum of the shortest leg of a drawn mission, relative to the diagonal of the field [1]."""
 
 
-def check(scenario: Scenario) -> Iterator[Problem]:
+def check(scenario: Scenario) -> Iterator[Mistake]:
     """Yield all inconsistencies."""
     checks = (
         *(_parameters, _mission, _command, fault_problems, robot_problems),
@@ -35,19 +35,19 @@ def check(scenario: Scenario) -> Iterator[Problem]:
         yield from track_problems(scenario)
 
 
-def _parameters(scenario: Scenario) -> Iterator[Problem]:
+def _parameters(scenario: Scenario) -> Iterator[Mistake]:
     """Parameters that contradict each other."""
     speed, limits, navigation = scenario.robot.speed, scenario.walking.limits, scenario.navigation
     for axis in ("vx", "vx_backward", "vy", "wz"):
         given, limit = getattr(speed, axis), getattr(limits, axis)
         if given > limit:
-            yield Problem(
+            yield Mistake(
                 ("robot", "speed", axis),
                 f"must be at most walking.limits.{axis} = {limit:g}, got {given:g}",
             )
     low, high = scenario.vision.min_radius, scenario.vision.max_radius
     if low >= high:
-        yield Problem(("vision", "min_radius"), f"must be below max_radius = {high:g}, got {low:g}")
+        yield Mistake(("vision", "min_radius"), f"must be below max_radius = {high:g}, got {low:g}")
     for section, lower, upper in (
         ("mission", "r_goal", "r_release"),
         ("evaluation", "d_nm", "d_fm"),
@@ -55,12 +55,12 @@ def _parameters(scenario: Scenario) -> Iterator[Problem]:
         part = getattr(navigation, section)
         low, high = getattr(part, lower), getattr(part, upper)
         if low > high:
-            yield Problem(
+            yield Mistake(
                 ("navigation", section, lower), f"must be at most {upper} = {high:g}, got {low:g}"
             )
     grid = scenario.belief.local_map
     if grid.size > MAX_CELLS * grid.cell:
-        yield Problem(
+        yield Mistake(
             ("belief", "local_map", "cell"),
             f"must be at least size / {MAX_CELLS} = {grid.size / MAX_CELLS:g}, got {grid.cell:g}",
         )
@@ -70,15 +70,15 @@ def _parameters(scenario: Scenario) -> Iterator[Problem]:
         try:
             load_table(FilePath(scenario.vision.color_table))
         except VisionError as error:
-            yield Problem(("vision", "color_table"), str(error))
+            yield Mistake(("vision", "color_table"), str(error))
     fixed = navigation.gaze.mode == "fixed" and not scenario.plugin.gaze
     if scenario.camera.source == "neck-reach" and not fixed:
-        yield Problem(("camera", "source"), 'neck-reach requires navigation.gaze.mode = "fixed"')
+        yield Mistake(("camera", "source"), 'neck-reach requires navigation.gaze.mode = "fixed"')
     if scenario.robot.body != "full" and not scenario.disturbance.empty:
-        yield Problem(("disturbance",), 'requires robot.body = "full"')
+        yield Mistake(("disturbance",), 'requires robot.body = "full"')
 
 
-def _mission(scenario: Scenario) -> Iterator[Problem]:
+def _mission(scenario: Scenario) -> Iterator[Mistake]:
     mission, criteria, size = scenario.mission, scenario.criteria, scenario.world.size
     kind = f'a mission of kind "{mission.kind}"'
     before_goal: int | None = None  # via points; None without a goal
@@ -88,50 +88,50 @@ def _mission(scenario: Scenario) -> Iterator[Problem]:
         before_goal = len(mission.points) - 1
     if criteria.goal_reached and before_goal is None:
         endless = "an endless mission" if isinstance(mission, Points) else kind
-        yield Problem(("criteria", "goal_reached"), f"{endless} has no goal")
+        yield Mistake(("criteria", "goal_reached"), f"{endless} has no goal")
     if before_goal is not None and criteria.min_via_points > before_goal:
-        yield Problem(
+        yield Mistake(
             ("criteria", "min_via_points"),
             f"must be at most the number of via points before the goal, {before_goal}, "
             f"got {criteria.min_via_points}",
         )
     if isinstance(mission, Walk):
         if criteria.min_via_points:
-            yield Problem(("criteria", "min_via_points"), f"{kind} has no via points")
+            yield Mistake(("criteria", "min_via_points"), f"{kind} has no via points")
         if scenario.plugin.planner:
-            yield Problem(("plugin", "planner"), f"{kind} has no planner")
+            yield Mistake(("plugin", "planner"), f"{kind} has no planner")
         if scenario.world.encounters.n:
-            yield Problem(("world", "encounters", "n"), f"{kind} has no route to encounter on")
+            yield Mistake(("world", "encounters", "n"), f"{kind} has no route to encounter on")
     if isinstance(mission, Points) and mission.endless and len(mission.points) == 1:
-        yield Problem(("mission", "points"), "an endless tour needs at least 2 points, got 1")
+        yield Mistake(("mission", "points"), "an endless tour needs at least 2 points, got 1")
     if isinstance(mission, Tour | Course) and mission.leg[0] > MAX_LEG_RATIO * hypot(*size):
-        yield Problem(
+        yield Mistake(
             ("mission", "leg"),
             f"legs of at least {mission.leg[0]:g} m do not fit into a field of "
             f"{size[0]:g} m x {size[1]:g} m",
         )
 
 
-def _command(scenario: Scenario) -> Iterator[Problem]:
+def _command(scenario: Scenario) -> Iterator[Mistake]:
     walks = isinstance(scenario.mission, Walk)
     if walks and scenario.command.empty:
-        yield Problem(
+        yield Mistake(
             ("command",),
             "is missing; expected vx, vy, wz, footstep, random or stretch, "
             "for example --set command.vx=0.2",
         )
     if not walks and not scenario.command.empty:
-        yield Problem(
+        yield Mistake(
             ("command",), f'requires mission.kind = "walk", got "{scenario.mission.kind}"'
         )
 
 
-def _outside(scenario: Scenario) -> Iterator[Problem]:
+def _outside(scenario: Scenario) -> Iterator[Mistake]:
     """Places outside the field."""
     half_x, half_y = (0.5 * side for side in scenario.world.size)
     for path, point, room in _places(scenario):
         if abs(point[0]) > half_x - room or abs(point[1]) > half_y - room:
-            yield Problem(
+            yield Mistake(
                 path,
                 f"{list(point)} is outside the field from {[-half_x, -half_y]} to "
                 f"{[half_x, half_y]}" + (f", less {room:g} m at each side" if room else ""),
@@ -163,30 +163,30 @@ def _places(scenario: Scenario) -> Iterator[tuple[Path, Point, float]]:
             yield ("mission", "points", i), point, scenario.robot.radius
 
 
-def _gaps(scenario: Scenario) -> Iterator[Problem]:
+def _gaps(scenario: Scenario) -> Iterator[Mistake]:
     """Gaps in walls wide enough for the robot."""
     diameter = 2.0 * scenario.robot.radius
     for i, wall in enumerate(scenario.world.wall):
         if wall.gap is not None and wall.gap >= diameter:
-            yield Problem(
+            yield Mistake(
                 ("world", "wall", i, "gap"),
                 f"must be less than 2 robot.radius = {diameter:g}, got {wall.gap:g}",
             )
 
 
-def _long_walls(scenario: Scenario) -> Iterator[Problem]:
+def _long_walls(scenario: Scenario) -> Iterator[Mistake]:
     """Walls of too many cylinders."""
     for i, wall in enumerate(scenario.world.wall):
         n = wall.intervals(scenario.robot.radius) + 1
         if n > MAX_CYLINDERS:
-            yield Problem(
+            yield Mistake(
                 ("world", "wall", i, "radius"),
                 f"too many cylinders, got {n}; expected at most {MAX_CYLINDERS}, from a larger "
                 "radius or gap",
             )
 
 
-def _overlaps(scenario: Scenario) -> Iterator[Problem]:
+def _overlaps(scenario: Scenario) -> Iterator[Mistake]:
     """Static obstacles on the start of the robot, on a point of the mission or on each other."""
     world, robot, mission = scenario.world, scenario.robot, scenario.mission
     start = robot.start.position
@@ -202,24 +202,24 @@ def _overlaps(scenario: Scenario) -> Iterator[Problem]:
         cylinders.append((path, a.radius, [a.position]))
         for k, b in enumerate(world.obstacle[:i]):
             if _distance(a.position, b.position) < a.radius + b.radius:
-                yield Problem(path, f"overlaps world.obstacle[{k}] at {list(b.position)}")
+                yield Mistake(path, f"overlaps world.obstacle[{k}] at {list(b.position)}")
     for path, radius, positions in cylinders:
         reach = radius + robot.radius
         for name, point in places:
             if any(_distance(position, point) < reach for position in positions):
-                yield Problem(path, f"must be at least {reach:g} m from {name} = {list(point)}")
+                yield Mistake(path, f"must be at least {reach:g} m from {name} = {list(point)}")
 
 
-def _movers(scenario: Scenario) -> Iterator[Problem]:
+def _movers(scenario: Scenario) -> Iterator[Mistake]:
     start = scenario.robot.start.position
     for i, mover in enumerate(scenario.world.mover):
         if isinstance(mover, TrackMover):
             continue
         if isinstance(mover, ShuttleMover) and mover.start == mover.end:
-            yield Problem(("world", "mover", i, "end"), "must differ from start")
+            yield Mistake(("world", "mover", i, "end"), "must differ from start")
         key, first = _initial_position(mover)
         if start is not None and _distance(first, start) < mover.radius + scenario.robot.radius:
-            yield Problem(("world", "mover", i, key), "begins at the start of the robot")
+            yield Mistake(("world", "mover", i, key), "begins at the start of the robot")
 
 
 def _initial_position(mover: ShuttleMover | LineMover | CircleMover) -> tuple[str, Point]:

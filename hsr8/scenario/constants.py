@@ -8,9 +8,9 @@ from dataclasses import asdict
 from functools import cache
 from typing import Any
 
+from hsr8.mistakes import Mistake
 from hsr8.robots.scale import DEFAULT_ROBOT
 from hsr8.scenario.presets import PROFILES, followers, under
-from hsr8.scenario.problem import Problem
 from hsr8.scenario.reference import LIBRARIES, parameters, public_keys
 from hsr8.scenario.schema import Scenario
 from hsr8.suggestion import suggestion
@@ -19,22 +19,22 @@ CONSTANTS = "constants"
 Table = dict[str, Any]
 
 
-def misplaced(data: Table) -> Iterator[Problem]:
+def misplaced(data: Table) -> Iterator[Mistake]:
     """Yield constants given as settings, and settings or unknown keys given as constants."""
     for key in _flat({name: data[name] for name in LIBRARIES if name in data}):
         if key in constant_names():
             text = f"a constant, not a setting; for studies, {CONSTANTS}.{key}"
-            yield Problem(tuple(key.split(".")), text)
+            yield Mistake(tuple(key.split(".")), text)
     given = data.get(CONSTANTS, {})
     if not isinstance(given, dict):
-        yield Problem((CONSTANTS,), "must be a table")
+        yield Mistake((CONSTANTS,), "must be a table")
         return
     for key in _flat(given):
         path = (CONSTANTS, *key.split("."))
         if key in public_keys():
-            yield Problem(path, f"a setting, not a constant; expected {key}")
+            yield Mistake(path, f"a setting, not a constant; expected {key}")
         elif key not in constant_names():
-            yield Problem(path, f"unknown constant{suggestion(key, constant_names())}")
+            yield Mistake(path, f"unknown constant{suggestion(key, constant_names())}")
 
 
 @cache

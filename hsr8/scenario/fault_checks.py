@@ -3,6 +3,8 @@
 from collections.abc import Iterator, Sequence
 from math import ceil
 
+from hsr8.keys import Path
+from hsr8.mistakes import Mistake
 from hsr8.robots.description import TRUNK
 from hsr8.robots.scale import DEFAULT_ROBOT
 from hsr8.scenario.crowd import n_placed
@@ -18,8 +20,6 @@ from hsr8.scenario.fault import (
     WorldFault,
     ticks,
 )
-from hsr8.scenario.key_lines import Path
-from hsr8.scenario.problem import Problem
 from hsr8.scenario.schema import Scenario
 from hsr8.scenario.section import CONTROL_PERIOD_MS
 from hsr8.suggestion import suggestion
@@ -29,7 +29,7 @@ MAX_LATENCY_MS = 500
 """Maximum latency of an image [ms]."""
 
 
-def fault_problems(scenario: Scenario) -> Iterator[Problem]:
+def fault_problems(scenario: Scenario) -> Iterator[Mistake]:
     """Yield every fault that contradicts the rest of the scenario."""
     world, camera = scenario.world, scenario.camera
     movers = n_placed(scenario) + world.n_moving + world.encounters.n
@@ -37,15 +37,15 @@ def fault_problems(scenario: Scenario) -> Iterator[Problem]:
     appearing: set[int] = set()
     for i, fault in enumerate(scenario.fault):
         if fault.start >= scenario.duration:
-            yield Problem(
+            yield Mistake(
                 ("fault", i, "start"),
                 f"must be before the end of the run at {scenario.duration:g} s, "
                 f"got {fault.start:g}",
             )
         if isinstance(fault, WorldFault) and scenario.robot.body != "full":
-            yield Problem(("fault", i, "kind"), f'"{fault.kind}" requires robot.body = "full"')
+            yield Mistake(("fault", i, "kind"), f'"{fault.kind}" requires robot.body = "full"')
         if isinstance(fault, Lighting) and camera.source != "rendered":
-            yield Problem(
+            yield Mistake(
                 ("fault", i, "kind"), f'"{fault.kind}" requires camera.source = "rendered"'
             )
         if isinstance(fault, CameraLatency):
@@ -53,7 +53,7 @@ def fault_problems(scenario: Scenario) -> Iterator[Problem]:
             periods = ceil(latency_ticks * CONTROL_PERIOD_MS / camera.period_ms)
             latency = camera.latency_ms + periods * camera.period_ms
             if latency > MAX_LATENCY_MS:
-                yield Problem(
+                yield Mistake(
                     ("fault", i, "magnitude"),
                     f"total latency with camera.latency_ms, in whole camera periods, must be at "
                     f"most {MAX_LATENCY_MS} ms, got {latency}",
@@ -61,23 +61,23 @@ def fault_problems(scenario: Scenario) -> Iterator[Problem]:
         if isinstance(fault, MoverAppears):
             if fault.mover >= movers:
                 expected = f"0 to {movers - 1}" if movers else "a world with moving obstacles"
-                yield Problem(
+                yield Mistake(
                     ("fault", i, "mover"),
                     f"unknown mover {fault.mover}; expected {expected}",
                 )
             if fault.mover in appearing:
-                yield Problem(("fault", i, "mover"), f"mover {fault.mover} appears twice")
+                yield Mistake(("fault", i, "mover"), f"mover {fault.mover} appears twice")
             appearing.add(fault.mover)
         if isinstance(fault, Bump | LowFriction) and fault.position is not None:
             x, y = (0.5 * side for side in world.size)
             if abs(fault.position[0]) > x or abs(fault.position[1]) > y:
-                yield Problem(
+                yield Mistake(
                     ("fault", i, "position"),
                     f"{list(fault.position)} is outside the field from {[-x, -y]} to {[x, y]}",
                 )
 
 
-def robot_problems(scenario: Scenario) -> Iterator[Problem]:
+def robot_problems(scenario: Scenario) -> Iterator[Mistake]:
     """Yield every joint and body of a fault or push that the robot does not have."""
     joints: list[tuple[Path, str]] = [
         (("fault", i, "joint"), f.joint)
@@ -104,13 +104,13 @@ def robot_problems(scenario: Scenario) -> Iterator[Problem]:
             if name not in names:
                 yield _unknown(path, name, names)
     if gets_up and robot.model.names != JOINT_NAMES:
-        yield Problem(
+        yield Mistake(
             ("walking", "get_up", "enabled"),
             f'the motions are for robot.model = "{DEFAULT_ROBOT}" only, got "{robot.name}"',
         )
 
 
-def _unknown(path: Path, name: str, names: Sequence[str]) -> Problem:
+def _unknown(path: Path, name: str, names: Sequence[str]) -> Mistake:
     hint, part = suggestion(name, names), path[-1]
     expected = f"expected one of {', '.join(names)}"
-    return Problem(path, f"the robot has no {part} {name!r}{hint}{'' if hint else ';'} {expected}")
+    return Mistake(path, f"the robot has no {part} {name!r}{hint}{'' if hint else ';'} {expected}")

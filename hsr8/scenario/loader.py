@@ -15,15 +15,17 @@ import tomlkit
 from pydantic import ValidationError
 
 from hsr8.errors import ModelError, ScenarioError
+from hsr8.files.key_lines import lines_of
 from hsr8.files.regular import read_text
 from hsr8.files.toml import MAX_SIZE, TomlError, parse_toml
+from hsr8.keys import Path, depth
+from hsr8.mistakes import MAX_LISTED, Mistake, dotted, mistakes_of
 from hsr8.robots.scale import DEFAULT_ROBOT, RobotDefaults, RobotScale
 from hsr8.scenario.checks import check
 from hsr8.scenario.constants import CONSTANTS, misplaced, placed, separated, with_constants
-from hsr8.scenario.key_lines import Path, depth, lines_of
 from hsr8.scenario.plugin import KINDS, located_plugins
 from hsr8.scenario.presets import expand_presets, followers, merged, under
-from hsr8.scenario.problem import Problem, dotted, problems_of
+from hsr8.scenario.reference import FILE_KEYS
 from hsr8.scenario.robot import located
 from hsr8.scenario.scaling import is_complete, scaled, with_scaled_defaults
 from hsr8.scenario.schema import Scenario
@@ -31,7 +33,6 @@ from hsr8.scenario.track_file import legible, located_tracks, read_tracks
 from hsr8.suggestion import suggestion
 
 BUILT_IN = FilePath(__file__).resolve().parents[1] / "scenarios"
-MAX_LISTED = 20  # mistakes in a message
 MAX_EXTENDED = 16  # files that extend each other
 
 Table = dict[str, Any]
@@ -196,7 +197,7 @@ class _Sources:
         try:
             defaults = robot_defaults(draft.robot)
         except ModelError as error:
-            raise draft.error(name, [Problem(("robot", "model"), str(error))]) from error
+            raise draft.error(name, [Mistake(("robot", "model"), str(error))]) from error
         return self._draft(defaults)
 
     def _draft(self, defaults: RobotDefaults) -> "_Draft":
@@ -238,7 +239,7 @@ class _Draft:
         """Whether all quantities are given."""
         return is_complete(self._tables())
 
-    def misplaced_keys(self) -> list[Problem]:
+    def misplaced_keys(self) -> list[Mistake]:
         """Return the keys of the libraries that are not where they belong."""
         return _first(misplaced(self.data))
 
@@ -262,7 +263,7 @@ class _Draft:
             raise self.error(name, problems)
         return scenario
 
-    def _validated(self) -> tuple[Scenario | None, list[Problem]]:
+    def _validated(self) -> tuple[Scenario | None, list[Mistake]]:
         if problems := self.misplaced_keys():
             return None, problems
         data = self._tables()
@@ -274,14 +275,14 @@ class _Draft:
         try:
             scenario = Scenario.model_validate_json(json.dumps(data, default=str))
         except ValidationError as error:
-            return None, _first(problems_of(error, data))
+            return None, _first(mistakes_of(error, Scenario, data, FILE_KEYS))
         return scenario, _first(check(scenario))
 
     def _tables(self) -> Table:
         """Tables with the constants in their sections."""
         return with_constants(under(self.data, followers(self.data)))
 
-    def error(self, name: str, problems: Sequence[Problem]) -> ScenarioError:
+    def error(self, name: str, problems: Sequence[Mistake]) -> ScenarioError:
         """Return the error that lists the first problems with their places."""
         count = "1 mistake" if len(problems) == 1 else f"{len(problems)} mistakes"
         if len(problems) > MAX_LISTED:
@@ -289,7 +290,7 @@ class _Draft:
         lines = [f"{count} in scenario {name!r}"]
         paths = [self._path(problem.path) for problem in problems]
         for source, path, problem in zip(self.sources(paths), paths, problems, strict=True):
-            lines.append(f"  {source}{dotted(path)}: {problem.text}")
+            lines.append(f"  {source}{dotted(path) or 'scenario'}: {problem.text}")
         return ScenarioError("\n".join(lines))
 
     def _path(self, path: Path) -> Path:
@@ -316,7 +317,7 @@ class _Draft:
         return [sources[path] for path in paths]
 
 
-def _first(problems: Iterable[Problem]) -> list[Problem]:
+def _first(problems: Iterable[Mistake]) -> list[Mistake]:
     """The problems of a message, and one more if there are more."""
     return list(islice(problems, MAX_LISTED + 1))
 

@@ -10,7 +10,6 @@ from functools import cache
 from typing import Any, get_args, get_type_hints
 
 from hsr8.keys import texts
-from hsr8.scenario.key_lines import Path, holds
 from hsr8.scenario.schema import Scenario
 from hsr8.scenario.section import Section
 
@@ -21,7 +20,7 @@ EXPERIMENTAL = "Experimental. "
 """Beginning of the text of a key that selects a variant under study."""
 
 _BOUNDS = {"exclusiveMinimum": ">", "minimum": "≥", "exclusiveMaximum": "<", "maximum": "≤"}
-_OWN = {
+FILE_KEYS: Node = {  # of files alone, not of a scenario
     "extends": {
         "type": "string",
         "description": "Scenario to start from: a built-in name or a file in the same folder.",
@@ -69,7 +68,7 @@ def json_schema() -> Node:
             properties[key]["description"] = text
     for name in LIBRARIES:
         _remove_constants(schema["$defs"], schema["properties"][name], name)
-    schema["properties"].update(_OWN)
+    schema["properties"].update(FILE_KEYS)
     return schema
 
 
@@ -101,28 +100,6 @@ def _remove_constants(definitions: Node, node: Node, path: str) -> bool:
     if not properties:
         del definitions[name]
     return bool(properties)
-
-
-def node_at(path: Path, data: Any) -> Node | None:
-    """Return the schema of the value at `path` in `data`; None for an unknown key."""
-    node: Node | None = resolve(json_schema(), data)
-    for part in path:
-        data = data[part] if holds(data, part) else None
-        if node is None:
-            return None
-        if isinstance(part, int):
-            items = node.get("prefixItems", [])
-            node = items[part] if part < len(items) else node.get("items")
-        else:
-            node = node.get("properties", {}).get(part)
-        node = None if node is None else resolve(node, data)
-    return node
-
-
-def keys_at(path: Path, data: Any) -> list[str]:
-    """Return the allowed keys of the table at `path`."""
-    node = node_at(path, data)
-    return [] if node is None else list(node.get("properties", {}))
 
 
 def allowed(node: Node) -> str:

@@ -5,13 +5,11 @@ The built-in scenarios and all defaults are those for HSR-VIII. A user's values 
 
 from collections.abc import Callable, Mapping
 from dataclasses import MISSING, fields, is_dataclass
-from functools import cache
-from types import NoneType, UnionType
-from typing import Annotated, Any, Literal, Union, get_args, get_origin
+from typing import Any, get_args
 
 from pydantic_core import PydanticUndefined
 
-from hsr8.keys import hints
+from hsr8.keys import chosen, entries, hints
 from hsr8.scenario.presets import PROFILES
 from hsr8.scenario.schema import Navigation, Scenario
 from hsr8.scenario.section import Section
@@ -19,7 +17,6 @@ from hsr8.scenario.section import Section
 Factor = Callable[[str], float]
 """Ratio of the quantities in some unit, see `hsr8.robots.scale.RobotScale.factor`."""
 Table = dict[str, Any]
-TAGS = ("kind", "motion")  # keys that choose one of several sections
 
 
 def scaled(tables: Mapping[str, Any], factor: Factor) -> Table:
@@ -53,17 +50,17 @@ def _scaled(value: Any, annotation: Any, factor: Factor) -> Any:
     if unit is not None:
         return _product(value, factor(unit))
     if isinstance(value, dict):
-        hints = _hints(kind)
-        return {k: _scaled(v, hints[k], factor) if k in hints else v for k, v in value.items()}
+        of = hints(kind)
+        return {k: _scaled(v, of[k], factor) if k in of else v for k, v in value.items()}
     if isinstance(value, list | tuple):
-        return [_scaled(v, hint, factor) for v, hint in _entries(value, kind)]
+        return [_scaled(v, hint, factor) for v, hint in entries(value, kind)]
     return value
 
 
 def _completed(table: Table, kind: Any, factor: Factor, defaults: Any = None) -> Table:
     """`table` of some kind with the scaled values of `defaults`, or else of the kind."""
     full = dict(table)
-    for key, hint in _hints(kind).items():
+    for key, hint in hints(kind).items():
         default = getattr(defaults, key, None) if defaults is not None else _default(kind, key)
         if key in table:
             full[key] = _with_defaults_inside(table[key], hint, factor, default)
@@ -78,57 +75,23 @@ def _completed(table: Table, kind: Any, factor: Factor, defaults: Any = None) ->
 def _with_defaults_inside(value: Any, annotation: Any, factor: Factor, default: Any) -> Any:
     """A given value, with the scaled defaults of the tables in it."""
     kind, _ = _chosen(annotation, value)
-    if isinstance(value, dict) and _hints(kind):
+    if isinstance(value, dict) and hints(kind):
         return _completed(value, kind, factor, default)
     if isinstance(value, list | tuple):
-        return [_with_defaults_inside(v, hint, factor, None) for v, hint in _entries(value, kind)]
+        return [_with_defaults_inside(v, hint, factor, None) for v, hint in entries(value, kind)]
     return value
 
 
 def _chosen(annotation: Any, value: Any) -> tuple[Any, str | None]:
-    """Type of a value without its annotations and alternatives, and its unit."""
-    unit = None
-    while True:
-        if get_origin(annotation) is Annotated:
-            annotation, *marks = get_args(annotation)
-            unit = next((mark for mark in marks if isinstance(mark, str)), unit)
-        elif get_origin(annotation) in (Union, UnionType):
-            kinds = [kind for kind in get_args(annotation) if kind is not NoneType]
-            annotation = kinds[0] if len(kinds) == 1 else _tagged(kinds, value)
-        else:
-            return annotation, unit
+    """Type of a value and its unit."""
+    kind, marks = chosen(annotation, value)
+    return kind, next((mark for mark in reversed(marks) if isinstance(mark, str)), None)
 
 
 def _has_unit(annotation: Any) -> bool:
     """Whether values of a type, or entries of such lists, have a unit."""
     marked = any(isinstance(mark, str) for mark in getattr(annotation, "__metadata__", ()))
     return marked or any(map(_has_unit, get_args(annotation)))
-
-
-def _tagged(kinds: list[Any], value: Any) -> Any:
-    """Section that a table chooses by its tag; None for an unknown one."""
-    tag = next((tag for tag in TAGS if isinstance(value, dict) and tag in value), None)
-    for kind in kinds:
-        hint = _hints(kind).get(tag or "")
-        if get_origin(hint) is Literal and value[tag] in get_args(hint):
-            return kind
-    return None
-
-
-def _entries(values: list[Any] | tuple[Any, ...], kind: Any) -> list[tuple[Any, Any]]:
-    """Entries of a list, each with its annotation."""
-    hints = get_args(kind) if get_origin(kind) is tuple else ()
-    if len(hints) == 2 and hints[1] is Ellipsis:
-        return [(value, hints[0]) for value in values]
-    return [(v, hints[k] if k < len(hints) else None) for k, v in enumerate(values)]
-
-
-@cache
-def _hints(kind: Any) -> dict[str, Any]:
-    """Annotations of a section or a parameter class by key; empty for other types."""
-    if isinstance(kind, type) and (issubclass(kind, Section) or is_dataclass(kind)):
-        return hints(kind)
-    return {}
 
 
 def _default(kind: Any, key: str) -> Any:

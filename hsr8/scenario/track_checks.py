@@ -6,8 +6,8 @@ from math import inf, isfinite
 import numpy as np
 from numpy.typing import NDArray
 
+from hsr8.mistakes import Mistake
 from hsr8.scenario.crowd import Recording, recordings
-from hsr8.scenario.problem import Problem
 from hsr8.scenario.schema import Scenario
 from hsr8.scenario.section import Point
 from hsr8.scenario.track import Track
@@ -22,7 +22,7 @@ STEP = 0.05  # between checks of overlaps, in a world with the time scale 1 [s]
 CHUNK = 2000  # of these checks, evaluated together
 
 
-def track_problems(scenario: Scenario) -> Iterator[Problem]:
+def track_problems(scenario: Scenario) -> Iterator[Mistake]:
     """Yield the mistakes of every recording, one of each kind."""
     crowds: list[tuple[_Crowd, tuple[Track, ...]]] = []
     for i, recording in recordings(scenario):
@@ -47,15 +47,15 @@ class _Crowd:
         self.mover, self.recording = mover, recording
         self._scenario, self._index = scenario, index
 
-    def problem(self, key: str, text: str) -> Problem:
+    def problem(self, key: str, text: str) -> Mistake:
         """Return a problem with the name of the file."""
-        return Problem(("world", "mover", self._index, key), f"{self.mover.file}, {text}")
+        return Mistake(("world", "mover", self._index, key), f"{self.mover.file}, {text}")
 
     def sample(self, track: Track, moment: float) -> str:
         """Return id and time in the file of a time of the recording [s]."""
         return f"id {track.id}, t = {moment / self.recording.time_scale:.3f} s"
 
-    def start_problems(self) -> Iterator[Problem]:
+    def start_problems(self) -> Iterator[Mistake]:
         """Yield a start that is not in the recording."""
         recording = self.recording
         low = recording.first
@@ -70,7 +70,7 @@ class _Crowd:
                 return
             low = time
 
-    def count_problems(self, tracks: tuple[Track, ...]) -> Iterator[Problem]:
+    def count_problems(self, tracks: tuple[Track, ...]) -> Iterator[Mistake]:
         """Yield too many movers, or none."""
         if not tracks:
             (x, y), (to_x, to_y) = (corner.tolist() for corner in self.recording.extent())
@@ -88,14 +88,14 @@ class _Crowd:
                 f"most {MAX_MOVERS}: a shorter duration, a smaller field or a part of the file",
             )
 
-    def problems(self, tracks: tuple[Track, ...]) -> Iterator[Problem]:
+    def problems(self, tracks: tuple[Track, ...]) -> Iterator[Mistake]:
         """Yield the first mover that is too fast, appears in the field or overlaps an object."""
         for check in (self._speed, self._appearance, self._static, self._robot):
             problem = next((p for track in tracks for p in check(track)), None)
             if problem is not None:
                 yield problem
 
-    def _speed(self, track: Track) -> Iterator[Problem]:
+    def _speed(self, track: Track) -> Iterator[Mistake]:
         limit = MAX_SPEED_RATIO * self._scenario.robot.speed.vx
         if track.speed > limit * (1.0 + 1e-9):
             points = np.array(track.points)
@@ -108,7 +108,7 @@ class _Crowd:
                 "larger time_scale",
             )
 
-    def _appearance(self, track: Track) -> Iterator[Problem]:
+    def _appearance(self, track: Track) -> Iterator[Mistake]:
         if track.stays:
             return
         low, high = self.recording.window
@@ -126,7 +126,7 @@ class _Crowd:
                     'or end = "stay"',
                 )
 
-    def _static(self, track: Track) -> Iterator[Problem]:
+    def _static(self, track: Track) -> Iterator[Mistake]:
         world = self._scenario.world
         cylinders = [
             (f"world.obstacle[{k}]", o.radius, o.position) for k, o in enumerate(world.obstacle)
@@ -145,7 +145,7 @@ class _Crowd:
                     f"the axes; expected at least {radius + self.mover.radius:.3f} m",
                 )
 
-    def _robot(self, track: Track) -> Iterator[Problem]:
+    def _robot(self, track: Track) -> Iterator[Mistake]:
         start = self._scenario.robot.start.position
         if start is None or self.mover.latest_start is not None or not track.present(0.0):
             return  # a drawn start is checked when it is drawn
@@ -163,7 +163,7 @@ class _Crowd:
 
 def _meetings(
     scenario: Scenario, crowds: list[tuple[_Crowd, tuple[Track, ...]]]
-) -> Iterator[Problem]:
+) -> Iterator[Mistake]:
     """Yield the closest overlap of two movers in the field for each recording.
 
     Recordings whose start is drawn are checked in themselves only.

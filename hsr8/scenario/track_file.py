@@ -18,7 +18,7 @@ from typing import Any
 import tomlkit
 
 from hsr8.files.regular import read_text
-from hsr8.scenario.problem import Problem
+from hsr8.mistakes import Mistake
 from hsr8.scenario.section import Point
 from hsr8.scenario.world import TrackMover
 
@@ -73,7 +73,7 @@ def _located(mover: Table, folder: Path) -> Table:
     return {**mover, "file": next(paths, mover["file"])}
 
 
-def read_tracks(tables: Table) -> list[Problem]:
+def read_tracks(tables: Table) -> list[Mistake]:
     """Put the content of track files into their movers; return the invalid files.
 
     The content replaces the file: its name alone is kept.
@@ -91,7 +91,7 @@ def read_tracks(tables: Table) -> list[Problem]:
             room -= len(text)
             movers[i] = {**mover, "file": name, "data": content(text)}
         except TrackFileError as error:
-            problems.append(Problem(("world", "mover", i, "file"), f"{name}, {error}"))
+            problems.append(Mistake(("world", "mover", i, "file"), f"{name}, {error}"))
     tables["world"] = {**world, "mover": movers}
     return problems
 

@@ -3,8 +3,10 @@ from typing import Annotated
 
 from annotated_types import doc
 
-from hsr8.keys import texts
-from hsr8.robots.description import RobotDescription
+from hsr8.keys import annotation_at, chosen, texts
+from hsr8.robots.description import Name, RobotDescription, SoleRectangle
+from hsr8.scenario.command import Stretch
+from hsr8.scenario.mission import Walk
 from hsr8.scenario.schema import Navigation, Scenario
 from navigation.parameters.navigation import NavigationParameters
 
@@ -37,3 +39,15 @@ def test_all_kinds_of_tables_are_described():
     assert texts(Scenario)["duration"] == "Maximum simulated time [s]."
     assert texts(NavigationParameters).items() < texts(Navigation).items()
     assert texts(RobotDescription).keys() == RobotDescription.model_fields.keys()
+
+
+def test_the_annotation_of_a_value_follows_from_the_tables_around_it():
+    data = {"mission": {"kind": "walk"}, "command": {"stretch": [{"duration": 1.0}]}}
+    assert chosen(annotation_at(("mission",), Scenario, data), data["mission"])[0] is Walk
+    assert annotation_at(("mission", "points"), Scenario, data) is None
+    assert chosen(annotation_at(("command", "stretch", 0), Scenario, data))[0] is Stretch
+    kind, marks = chosen(annotation_at(("command", "stretch", 0, "duration"), Scenario, data))
+    assert (kind, "s" in marks) == (float, True)
+    for value, expected in (({"front": 1.0}, SoleRectangle), (["a", "b"], tuple[Name, Name])):
+        annotation = annotation_at(("sole",), RobotDescription, {"sole": value})
+        assert chosen(annotation, value)[0] == expected

@@ -45,7 +45,7 @@ def test_a_constant_is_changed_and_written_where_it_differs_from_the_profile(pro
         ),
         (
             f'[constants]\n{LOOK_TIME} = "two"',
-            f'3: constants.{LOOK_TIME}: must be a valid number, got "two"',
+            f'3: constants.{LOOK_TIME}: wrong value, got "two"; expected a number',
         ),
         ("[constants]\ncamera.width = 3", "3: constants.camera.width: unknown constant"),
         ("constants = 3", "2: constants: must be a table"),

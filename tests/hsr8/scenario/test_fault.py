@@ -86,7 +86,7 @@ def test_all_kinds_can_be_given_together():
     ("settings", "expected"),
     [
         ([f"fault=[{fault_of('low-fricton')}]"], "did you mean 'low-friction'"),
-        (["fault=[{start=1.0}]"], "fault[0].kind: is missing"),
+        (["fault=[{start=1.0}]"], "fault[0].kind: missing"),
         ([f"fault=[{fault_of('attitude-bias', magnitude='0.9')}]"], "fault[0].magnitude"),
         ([f"fault=[{fault_of('attitude-bias', axis='0')}]"], "pitch"),
         (['fault=[{kind="servo-weak",magnitude=0.5,joint="l_kne"}]'], "'l_knee'"),

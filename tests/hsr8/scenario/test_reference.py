@@ -1,4 +1,4 @@
-from hsr8.scenario.reference import json_schema, keys_at, node_at
+from hsr8.scenario.reference import json_schema
 
 
 def test_every_key_is_explained_and_every_quantity_has_a_unit():
@@ -9,14 +9,3 @@ def test_every_key_is_explained_and_every_quantity_has_a_unit():
             assert text or "$ref" in node or name in ("kind", "motion"), (table["title"], name)
             numeric = node.get("items", node).get("type") in ("number", "integer")
             assert not numeric or text.rstrip(".").endswith("]"), (table["title"], name, text)
-
-
-def test_alternatives_are_chosen_by_their_kind():
-    data = {"mission": {"kind": "walk"}, "command": {"stretch": [{"duration": 1.0}]}}
-    assert keys_at(("mission",), data) == ["kind"]
-    node = node_at(("command", "stretch", 0, "duration"), data)
-    assert node is not None
-    assert node["description"].endswith("[s].")
-    assert node_at(("mission", "points"), data) is None
-    course = {"mission": {"kind": "course"}}
-    assert keys_at(("mission",), course) == ["kind", "via_points", "leg", "goal_heading_deg"]

@@ -181,7 +181,10 @@ def test_a_wrong_robot_is_reported_with_its_place(defaults, tmp_path):
     file.write_text('extends = "course"\n[robot]\nmodel = "bigg"\n')
     with pytest.raises(ScenarioError, match=r"mine\.toml:3: robot\.model: unknown robot 'bigg'"):
         load_scenario(str(file))
-    with pytest.raises(ScenarioError, match=r"--set robot\.model=7: robot\.model: must be a"):
+    with pytest.raises(
+        ScenarioError,
+        match=r"--set robot\.model=7: robot\.model: wrong value, got 7; ",
+    ):
         load_scenario("course", ["robot.model=7"])
 
 
@@ -189,12 +192,12 @@ def test_a_wrong_robot_is_reported_with_its_place(defaults, tmp_path):
     ("words", "expected"),
     [
         (["constants=3"], "constants: must be a table"),
-        (["world=3"], "world: must be a table"),
-        (["world.size=4"], "world.size: must be a list"),
+        (["world=3"], "world: wrong value, got 3; expected a table"),
+        (["world.size=4"], "world.size: wrong value, got 4; expected a list"),
         (["mission.kind=tours"], "did you mean 'tour'"),
-        (["camera.preset=[1]"], "camera.preset: must be one of"),
-        (["world.mover=[{motion=3}]"], "world.mover[0].motion: must be one of"),
-        (["navigation=[]"], "navigation: must be a table"),
+        (["camera.preset=[1]"], "camera.preset: wrong value"),
+        (["world.mover=[{motion=3}]"], "world.mover[0].motion: wrong value, got 3; expected"),
+        (["navigation=[]"], "navigation: wrong value, got []; expected a table"),
         (["world.n_statics=1"], "did you mean 'n_static'"),
     ],
 )

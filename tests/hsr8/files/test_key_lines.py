@@ -5,7 +5,8 @@ import tomlkit
 from hypothesis import given
 from hypothesis import strategies as st
 
-from hsr8.scenario.key_lines import depth, lines_of
+from hsr8.files.key_lines import lines_of
+from hsr8.keys import depth
 
 TEXT = '''\
 name = "x"   # a = 1

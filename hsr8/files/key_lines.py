@@ -3,9 +3,8 @@
 import re
 import tomllib
 from collections.abc import Iterable, Iterator
-from typing import Any
 
-Path = tuple[str | int, ...]
+from hsr8.keys import Path
 
 _BLANK = re.compile(r"(?:[ \t\r\n]++|#[^\n]*+)*+")
 _PART = re.compile(r"""[ \t]*+([\w-]++|"(?:[^"\\\n]|\\.)*+"|'[^'\n]*+')[ \t]*+""")
@@ -122,19 +121,3 @@ class _Scanner:
         assert match is not None  # the text is valid
         self._at = match.end()
         return match
-
-
-def holds(data: Any, part: str | int) -> bool:
-    """Whether `data` is a table with the key, or a list with the entry `part`."""
-    if isinstance(data, dict):
-        return part in data
-    return isinstance(data, list) and isinstance(part, int) and part < len(data)
-
-
-def depth(data: Any, path: Path) -> int:
-    """Number of leading parts of `path` that `data` contains."""
-    for k, part in enumerate(path):
-        if not holds(data, part):
-            return k
-        data = data[part]
-    return len(path)
