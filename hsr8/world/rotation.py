@@ -5,7 +5,11 @@ from math import atan2, cos, sin, sqrt
 import numpy as np
 from numpy.typing import NDArray
 
+from compilation import compiled
+
 Array = NDArray[np.float64]
+Quaternion = tuple[float, float, float, float]
+Vector = tuple[float, float, float]
 
 
 def quaternion_from_yaw(yaw: float) -> Array:
@@ -13,18 +17,37 @@ def quaternion_from_yaw(yaw: float) -> Array:
     return np.array([cos(0.5 * yaw), 0.0, 0.0, sin(0.5 * yaw)])
 
 
+@compiled
+def product(a: Quaternion, b: Quaternion) -> Quaternion:
+    """Return the Hamilton product: first `b`, then `a`."""
+    aw, ax, ay, az = a
+    bw, bx, by, bz = b
+    return (
+        aw * bw - ax * bx - ay * by - az * bz,
+        aw * bx + ax * bw + ay * bz - az * by,
+        aw * by - ax * bz + ay * bw + az * bx,
+        aw * bz + ax * by - ay * bx + az * bw,
+    )
+
+
+@compiled
+def rotate(q: Quaternion, v: Vector) -> Vector:
+    """Rotate a vector by a unit quaternion."""
+    w, x, y, z = q
+    # Twice the cross product of the quaternion's axis with the vector.
+    a = 2.0 * (y * v[2] - z * v[1])
+    b = 2.0 * (z * v[0] - x * v[2])
+    c = 2.0 * (x * v[1] - y * v[0])
+    return (
+        v[0] + w * a + y * c - z * b,
+        v[1] + w * b + z * a - x * c,
+        v[2] + w * c + x * b - y * a,
+    )
+
+
 def quaternion_product(a: Array, b: Array) -> Array:
     """Hamilton product: first `b`, then `a`."""
-    aw, ax, ay, az = a.tolist()
-    bw, bx, by, bz = b.tolist()
-    return np.array(
-        [
-            aw * bw - ax * bx - ay * by - az * bz,
-            aw * bx + ax * bw + ay * bz - az * by,
-            aw * by - ax * bz + ay * bw + az * bx,
-            aw * bz + ax * by - ay * bx + az * bw,
-        ]
-    )
+    return np.array(product(tuple(a.tolist()), tuple(b.tolist())))
 
 
 def small_rotation(roll: float, pitch: float) -> Array:

@@ -4,18 +4,20 @@ Footsteps land where the joint targets put them, with a small seeded slip at eac
 support. The loop around the body is the same as with physics.
 """
 
+from math import asin, atan2, cos, sin, sqrt
+
 import mujoco
 import numpy as np
 from numpy.typing import NDArray
 
+from compilation import compiled
 from hsr8.robots.loaded import LoadedRobot
 from hsr8.scenario.sensor_noise import SensorNoise
-from hsr8.world.body.kinematic_kernel import GRAVITY, base_pose, imu_motion
 from hsr8.world.body.physics import has_fallen, place_robot
 from hsr8.world.body.sensors import SensorSuite
 from hsr8.world.body.surroundings import Surroundings
 from hsr8.world.field.layout import Layout
-from hsr8.world.rotation import heading
+from hsr8.world.rotation import Quaternion, heading, product, rotate
 from hsr8.world.truth.truth import Truth
 from walking.parameters import CONTROL_PERIOD
 from walking.sensing import BodySensors
@@ -35,6 +37,10 @@ BOTH = 2
 LOAD_FRACTIONS = np.array([[1.0, 0.0], [0.0, 1.0], [0.5, 0.5]])
 ORIGIN = (0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0)
 CONTACT_TICKS = 4  # control ticks between checks for contacts [1]
+
+Ints = NDArray[np.intp]
+PI = 3.141592653589793
+GRAVITY = 9.81  # [m/s²]
 
 
 class KinematicBody:
@@ -211,3 +217,88 @@ class KinematicBody:
             pose,
             self._other_sole,
         )
+
+
+@compiled
+def base_pose(
+    positions: Array,
+    attitudes: Array,
+    feet: Ints,
+    soles: Array,
+    stance: int,
+    anchor: Array,
+    pose: Array,
+    other: Array,
+) -> tuple[float, float]:
+    """Set the base pose with which the planted foot lies flat on the floor at its anchor.
+
+    Args:
+        positions: of all bodies in the base frame (n, 3) [m].
+        attitudes: of all bodies in the base frame, quaternions (n, 4).
+        feet: body indices of the left and the right foot (2,).
+        soles: pose of the sole frame in each foot (2, 7).
+        stance: planted foot, 0 or 1.
+        anchor: x, y and yaw of the planted foot in W (3,) [m, m, rad].
+        pose: set to the pose of the base in W (7,).
+        other: set to x, y, yaw and height of the other sole in W (4,) [m, m, rad, m].
+
+    Returns:
+        tilt of the planted sole against the base, minus that of the other sole [rad]; height of
+        the other sole above the planted one if the other one lay flat [m].
+    """
+    sole_positions = [(0.0, 0.0, 0.0), (0.0, 0.0, 0.0)]
+    sole_attitudes = [(1.0, 0.0, 0.0, 0.0), (1.0, 0.0, 0.0, 0.0)]
+    for side in range(2):
+        body, sole = feet[side], soles[side]
+        q = (attitudes[body, 0], attitudes[body, 1], attitudes[body, 2], attitudes[body, 3])
+        x, y, z = rotate(q, (sole[0], sole[1], sole[2]))
+        origin = positions[body]
+        sole_positions[side] = (origin[0] + x, origin[1] + y, origin[2] + z)
+        sole_attitudes[side] = product(q, (sole[3], sole[4], sole[5], sole[6]))
+    w, x, y, z = sole_attitudes[stance]
+    half = 0.5 * anchor[2]
+    base = product((cos(half), 0.0, 0.0, sin(half)), (w, -x, -y, -z))
+    foot = rotate(base, sole_positions[stance])
+    pose[0], pose[1], pose[2] = anchor[0] - foot[0], anchor[1] - foot[1], -foot[2]
+    pose[3], pose[4], pose[5], pose[6] = base
+    offset = rotate(base, sole_positions[1 - stance])
+    x_axis = rotate(product(base, sole_attitudes[1 - stance]), (1.0, 0.0, 0.0))
+    other[0], other[1] = pose[0] + offset[0], pose[1] + offset[1]
+    other[2], other[3] = atan2(x_axis[1], x_axis[0]), pose[2] + offset[2]
+    w, x, y, z = sole_attitudes[1 - stance]
+    (ax, ay, az), (bx, by, bz) = sole_positions[stance], sole_positions[1 - stance]
+    apart = rotate((w, -x, -y, -z), (bx - ax, by - ay, bz - az))
+    return _tilt(sole_attitudes[stance]) - _tilt(sole_attitudes[1 - stance]), apart[2]
+
+
+@compiled
+def _tilt(q: Quaternion) -> float:
+    """Return the angle between the vertical axes of a frame and its parent [rad]."""
+    return 2.0 * asin(min(1.0, sqrt(q[1] * q[1] + q[2] * q[2])))
+
+
+@compiled
+def imu_motion(
+    before: Array, after: Array, period: float, velocity: Array, gyro: Array, force: Array
+) -> None:
+    """Set mean velocity and turn rate between two poses, and the specific force of a body at rest.
+
+    Args:
+        before: pose (7,).
+        after: pose (7,), `period` later.
+        period: time between them [s].
+        velocity: set to the velocity of the origin in W (3,) [m/s].
+        gyro: set to the angular velocity in the body's frame (3,) [rad/s].
+        force: set to the specific force in the body's frame (3,) [m/s²].
+    """
+    for k in range(3):
+        velocity[k] = (after[k] - before[k]) / period
+    q = (after[3], after[4], after[5], after[6])
+    w, x, y, z = product((before[3], -before[4], -before[5], -before[6]), q)
+    size = sqrt(x * x + y * y + z * z)
+    angle = 2.0 * atan2(size, w)
+    if angle > PI:  # shorter rotation
+        angle -= 2.0 * PI
+    rate = angle / (size * period) if size > 0.0 else 0.0
+    gyro[0], gyro[1], gyro[2] = rate * x, rate * y, rate * z
+    force[0], force[1], force[2] = rotate((q[0], -q[1], -q[2], -q[3]), (0.0, 0.0, GRAVITY))

@@ -10,9 +10,12 @@ import mujoco
 import numpy as np
 from numpy.typing import NDArray
 
-from hsr8.world.camera import frustum_kernel
+from compilation import compiled
 
 Bools = NDArray[np.bool_]
+
+Array = NDArray[np.float64]
+Ints = NDArray[np.intp]
 
 
 class Frustum:
@@ -50,7 +53,7 @@ class Frustum:
 
     def outside(self, data: mujoco.MjData) -> Bools:
         """Return which geoms lie entirely outside, by bounding spheres or as boxes (ngeom,)."""
-        return frustum_kernel.outside(
+        return culled(
             data.geom_xpos,
             data.cam_xpos[self._camera],
             data.cam_xmat[self._camera],
@@ -59,3 +62,43 @@ class Frustum:
             self._boxes,
             self._halves,
         )
+
+
+@compiled
+def culled(
+    positions: Array,
+    eye: Array,
+    rotation: Array,
+    normals: Array,
+    reach: Array,
+    boxes: Ints,
+    halves: Array,
+) -> Bools:
+    """Return which geoms lie entirely beyond one of the sides (n,).
+
+    Args:
+        positions: centre of each geom in W (n, 3) [m].
+        eye: apex of the frustum in W (3,) [m].
+        rotation: from the camera to W, row by row (9,).
+        normals: of the sides in the camera frame, inward (m, 3).
+        reach: bounding radius of each geom (n,) [m].
+        boxes: geoms that are boxes along the axes of W (k,).
+        halves: half sides of the boxes (k, 3) [m].
+    """
+    beyond = np.zeros(len(positions), np.bool_)
+    for side in range(len(normals)):
+        a, b, c = normals[side]
+        x = rotation[0] * a + rotation[1] * b + rotation[2] * c
+        y = rotation[3] * a + rotation[4] * b + rotation[5] * c
+        z = rotation[6] * a + rotation[7] * b + rotation[8] * c
+        apex = x * eye[0] + y * eye[1] + z * eye[2]
+        for k in range(len(positions)):
+            depth = x * positions[k, 0] + y * positions[k, 1] + z * positions[k, 2] - apex
+            if depth < -reach[k]:
+                beyond[k] = True
+        for i in range(len(boxes)):
+            k = boxes[i]
+            depth = x * positions[k, 0] + y * positions[k, 1] + z * positions[k, 2] - apex
+            if depth < -(abs(x) * halves[i, 0] + abs(y) * halves[i, 1] + abs(z) * halves[i, 2]):
+                beyond[k] = True
+    return beyond

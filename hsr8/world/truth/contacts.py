@@ -1,20 +1,22 @@
 """True contacts of the robot with obstacles and beacons, and of its feet with the floor."""
 
-from math import inf
+from math import inf, sqrt
 
 import mujoco
 import numpy as np
 from numpy.typing import NDArray
 
+from compilation import compiled
 from hsr8.world.field.layout import Layout
 from hsr8.world.model.index import ModelIndex
-from hsr8.world.truth.clearance_kernel import gap_bounds
 from hsr8.world.truth.truth import Contact
 
 Array = NDArray[np.float64]
 
 CLOSING_SPEED = 0.02  # of a robot at fault towards an obstacle, in a world of scale 1 [m/s]
 MAX_CLEARANCE = 100.0  # [m]
+
+Ints = NDArray[np.intp]
 
 
 class ContactWatch:
@@ -141,3 +143,26 @@ class ContactWatch:
         total = load[0] + load[1]
         pressure = np.array([x, y]) / total if total > 0.0 else np.full(2, np.nan)
         return np.array(load), pressure
+
+
+@compiled
+def gap_bounds(
+    positions: Array, obstacles: Ints, radii: Array, geoms: Ints, spheres: Array
+) -> Array:
+    """Return lower bounds of the gaps between n obstacles and m geoms, from above (n, m) [m].
+
+    Args:
+        positions: of all geoms in W (ngeom, 3) [m].
+        obstacles: geom of each obstacle (n,).
+        radii: of the obstacles (n,) [m].
+        geoms: of the robot (m,).
+        spheres: bounding radius of each geom of the robot (m,) [m].
+    """
+    bounds = np.empty((len(obstacles), len(geoms)))
+    for i in range(len(obstacles)):
+        x, y = positions[obstacles[i], 0], positions[obstacles[i], 1]
+        for k in range(len(geoms)):
+            dx, dy = positions[geoms[k], 0] - x, positions[geoms[k], 1] - y
+            distance = sqrt(dx * dx + dy * dy)
+            bounds[i, k] = distance - spheres[k] - radii[i]
+    return bounds
