@@ -21,7 +21,7 @@ def policy(observation):
     """Return vx, vy, wz, pan and tilt, each from -1 to 1."""
     x, y, _ = observation["target"]
     bearing = np.arctan2(y, x)
-    tracks = observation["tracks"].reshape(-1, 9)[observation["track_mask"] == 1]
+    tracks = observation["tracks"][observation["track_mask"] == 1]
     ahead = tracks[(np.abs(tracks[:, 1]) < 0.3) & (tracks[:, 0] > 0.0)]
     blocked = bool((np.hypot(*ahead[:, :2].T) < STOP).any())
     vx = 0.0 if blocked else max(0.0, np.cos(bearing))

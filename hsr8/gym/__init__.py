@@ -5,8 +5,8 @@
 
     env = gymnasium.make("hsr8.gym:hsr8/Gaze-v0", scenario="crowd")
 
-`make_vec` runs several environments in processes. `as_gaze` and `as_planner` turn a policy into
-a plugin for ``hsr8 run``, ``sweep`` and ``bench``. See ``docs/gym.md``.
+`as_gaze` and `as_planner` turn a policy into a plugin for ``hsr8 run``, ``sweep`` and ``bench``,
+see ``docs/gym.md``.
 """
 
 try:
@@ -16,9 +16,8 @@ except ImportError as error:
 
 from hsr8.gym.environment import Environment
 from hsr8.gym.policy import as_gaze, as_planner
-from hsr8.gym.vector import make_vec
 
-__all__ = ["Environment", "as_gaze", "as_planner", "make_vec"]
+__all__ = ["Environment", "as_gaze", "as_planner"]
 
 for _name, _decides in (
     ("Gaze", ("gaze",)),

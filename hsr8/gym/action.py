@@ -15,7 +15,6 @@ Array = NDArray[np.float64]
 Part = Literal["motion", "gaze"]
 
 SIZES = {"motion": 3, "gaze": 2}
-ROUNDING = 1e-6  # of the bounds of an action
 
 
 class ActionMap:
@@ -67,22 +66,16 @@ class ActionMap:
         return pan, tilt
 
 
-def check_action(action: NDArray[Any], *allowed: spaces.Box) -> Array:
-    """Return the action as floats.
+def clipped(action: NDArray[Any], *allowed: spaces.Box) -> Array:
+    """Return the action as floats within the space of its shape.
 
     Raises:
-        UsageError: it is outside of the allowed spaces.
+        UsageError: it is not a vector of finite numbers of one of the shapes.
     """
     values = numbers(action)
-    for space in allowed:
-        if values is not None and values.shape == space.shape:
-            low, high = space.low.astype(np.float64), space.high.astype(np.float64)
-            if ((low - ROUNDING <= values) & (values <= high + ROUNDING)).all():
-                return values
-    expected = " or ".join(
-        f"{space.shape[0]} numbers from {space.low.tolist()} to {space.high.tolist()}"
-        for space in allowed
-    )
-    raise UsageError(
-        f"action: outside of the action space, got {shown(action)}; expected {expected}"
-    )
+    if values is not None and np.isfinite(values).all():
+        for space in allowed:
+            if values.shape == space.shape:
+                return np.clip(values, space.low, space.high)
+    expected = " or ".join(str(space.shape[0]) for space in allowed)
+    raise UsageError(f"action: got {shown(action)}; expected {expected} finite numbers")

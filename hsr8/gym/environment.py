@@ -3,7 +3,7 @@
 from collections.abc import Mapping, Sequence
 from contextlib import ExitStack
 from pathlib import Path
-from typing import Any, Never
+from typing import Any
 
 import gymnasium
 import numpy as np
@@ -11,10 +11,9 @@ from numpy.typing import NDArray
 
 from hsr8 import arithmetic
 from hsr8.errors import UsageError
-from hsr8.gym.action import SIZES, ActionMap, Part, check_action
+from hsr8.gym.action import SIZES, ActionMap, Part, clipped
 from hsr8.gym.episode import FAILURES, Episode
-from hsr8.gym.observation import MAX_TRACKS, Observation, Observer
-from hsr8.gym.options import check_flag, check_names, flat_settings, require_known, reward_weights
+from hsr8.gym.observation import MAX_TRACKS, Observation, Observer, require_names
 from hsr8.gym.outside_view import OutsideView
 from hsr8.gym.reward import WEIGHTS, Reward
 from hsr8.robot_builder import decision_limits, require_planner
@@ -42,7 +41,6 @@ class Environment(gymnasium.Env[Observation, NDArray[Any]]):
         reward: weights that replace those of `hsr8.gym.reward.WEIGHTS`.
         end_on_contact: end at the first contact with an obstacle; if not, as ``hsr8 run``.
         render_mode: ``rgb_array`` for images from outside; None for no images.
-        unknown: refused.
 
     Attributes:
         scenario: with its settings.
@@ -66,20 +64,17 @@ class Environment(gymnasium.Env[Observation, NDArray[Any]]):
         reward: Mapping[str, float] | None = None,
         end_on_contact: bool = True,
         render_mode: str | None = None,
-        **unknown: Never,
     ) -> None:
-        require_known(unknown, Environment.__init__.__annotations__)
         if render_mode not in (None, *RENDER_MODES):
             raise UsageError(
                 f"render_mode: unknown mode, got {render_mode!r}; expected "
                 f"{', '.join(RENDER_MODES)} or None"
             )
-        check_names("decides", decides, SIZES, empty=False)
+        require_names("decides", decides, SIZES)
+        require_names("reward", reward or (), WEIGHTS)
         observer = Observer(observe, max_tracks)
-        weights = reward_weights({} if reward is None else reward, WEIGHTS)
-        check_flag("end_on_contact", end_on_contact)
-        check_flag("normalized", normalized)
-        self.scenario = load_scenario(str(scenario), flat_settings(settings))
+        weights = {**WEIGHTS, **(reward or {})}
+        self.scenario = load_scenario(str(scenario), settings)
         _require_decisions(self.scenario, decides)
         camera = self.scenario.camera
         if "image" in observe and camera.source != "rendered":
@@ -108,7 +103,7 @@ class Environment(gymnasium.Env[Observation, NDArray[Any]]):
 
         Args:
             seed: of the run; by default drawn, reproducibly after a given seed.
-            options: ignored.
+            options: must be empty; the options of a run are those of the environment.
 
         Returns:
             The observation at the first decision, and info.
@@ -116,8 +111,10 @@ class Environment(gymnasium.Env[Observation, NDArray[Any]]):
         Raises:
             ScenarioError: the world cannot be drawn.
             RenderingUnavailable: the camera needs OpenGL and there is none.
-            UsageError: the run ends before the first decision.
+            UsageError: the run ends before the first decision, or `options` are given.
         """
+        if options:
+            raise UsageError(f"options: got {options}; expected None: settings are arguments")
         super().reset(seed=seed)
         self.close()
         with ExitStack() as failed:
@@ -141,17 +138,17 @@ class Environment(gymnasium.Env[Observation, NDArray[Any]]):
         return self._observe(episode), self._info(episode)
 
     def step(self, action: NDArray[Any]) -> tuple[Observation, float, bool, bool, dict[str, Any]]:
-        """Decide, and run to the next decision.
+        """Decide, and run to the next decision; an action is clipped to its space.
 
         Raises:
-            UsageError: `action` is outside of the action space.
+            UsageError: `action` has another shape, or a value is not finite.
             RuntimeError: the run has ended.
         """
         episode = self._episode
         if episode is None or episode.exit_reason:
             reason = "the run has ended" if episode else "no run has begun"
             raise RuntimeError(f"step: {reason}; expected reset()")
-        values = check_action(action, self._box)
+        values = clipped(action, self._box)
         if "gaze" in self._decides:
             episode.simulation.look(*self._actions.gaze(values))
         if "motion" in self._decides and episode.situation.motion_due:

@@ -1,6 +1,6 @@
 """Observations: the belief of the robot in its own frame, as arrays of fixed size."""
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from math import cos, pi, sin
 from typing import Any, cast
 
@@ -8,7 +8,8 @@ import numpy as np
 from gymnasium import spaces
 from numpy.typing import NDArray
 
-from hsr8.gym.options import TRACK_LIMIT, check_integer, check_names
+from hsr8.errors import UsageError
+from hsr8.suggestion import suggestion
 from navigation.angles import wrap
 from navigation.belief.belief import Belief, Motion, Track
 from navigation.decision import Task
@@ -45,14 +46,16 @@ class Observer:
         velocity: latest motion decision (3,) [m/s, m/s, rad/s].
 
     Raises:
-        UsageError: an optional part is unknown, or `max_tracks` is not from 1 to 128.
+        UsageError: an optional part is unknown, or `max_tracks` is not positive.
     """
 
     def __init__(self, observe: Sequence[str] = (), max_tracks: int = MAX_TRACKS) -> None:
-        check_names("observe", observe, OPTIONAL)
-        check_integer("max_tracks", max_tracks, 1, TRACK_LIMIT)
+        require_names("observe", observe, OPTIONAL)
+        if max_tracks < 1:
+            raise UsageError(f"max_tracks: out of range, got {max_tracks}; expected at least 1")
         self._parts = set(observe)
-        self._tracks = np.tile(np.array(TRACK_BOUNDS), (max_tracks, 1)).T
+        self._max_tracks = max_tracks
+        self._track_bounds = np.array(TRACK_BOUNDS).T
         self._bounds = {key: np.array(bounds).T for key, bounds in BOUNDS.items()}
         self._cells = np.mgrid[0:MAP_CELLS, 0:MAP_CELLS].reshape(2, -1) - 0.5 * (MAP_CELLS - 1)
         self.velocity = np.zeros(3)
@@ -60,10 +63,12 @@ class Observer:
     def space(self, width: int, height: int) -> spaces.Space[Observation]:
         """Return the space of the observations; `width` and `height` of images [pixel]."""
         boxes: dict[str, spaces.Space[Any]] = {
-            key: spaces.Box(*bounds.astype(np.float32))
-            for key, bounds in (self._bounds | {"tracks": self._tracks}).items()
+            key: spaces.Box(*bounds.astype(np.float32)) for key, bounds in self._bounds.items()
         }
-        boxes["track_mask"] = spaces.MultiBinary(self._tracks.shape[1] // len(TRACK_BOUNDS))
+        low, high = self._track_bounds.astype(np.float32)
+        tracks = (self._max_tracks, len(TRACK_BOUNDS))
+        boxes["tracks"] = spaces.Box(np.broadcast_to(low, tracks), np.broadcast_to(high, tracks))
+        boxes["track_mask"] = spaces.MultiBinary(self._max_tracks)
         if "local_map" in self._parts:
             boxes["local_map"] = spaces.Box(0, 255, (MAP_CELLS, MAP_CELLS, 1), np.uint8)
         if "image" in self._parts:
@@ -95,7 +100,7 @@ class Observer:
             key: np.clip(value, *self._bounds[key]).astype(np.float32)
             for key, value in values.items()
         }
-        observation["tracks"] = np.clip(rows, *self._tracks).astype(np.float32)
+        observation["tracks"] = np.clip(rows, *self._track_bounds).astype(np.float32)
         observation["track_mask"] = mask
         if "local_map" in self._parts:
             points = (x, y) + belief.local_map.cell * (self._cells.T @ to_R)
@@ -108,8 +113,8 @@ class Observer:
     def _rows(
         self, tracks: Sequence[Track], position: Array, to_R: Array
     ) -> tuple[Array, NDArray[np.int8]]:
-        """Return the nearest tracks, one after the other, and which rows are in use."""
-        rows = np.zeros((self._tracks.shape[1] // len(TRACK_BOUNDS), len(TRACK_BOUNDS)))
+        """Return the nearest tracks (n, 9), and which rows are in use (n,)."""
+        rows = np.zeros((self._max_tracks, len(TRACK_BOUNDS)))
         mask = np.zeros(len(rows), np.int8)
         if tracks:
             offsets = np.array([track.position for track in tracks]) - position
@@ -129,4 +134,19 @@ class Observer:
                 )
                 for t in chosen
             ]
-        return rows.ravel(), mask
+        return rows, mask
+
+
+def require_names(option: str, names: Iterable[str], known: Iterable[str]) -> None:
+    """Require known names.
+
+    Raises:
+        UsageError: one is unknown.
+    """
+    choices = tuple(known)
+    for name in names:
+        if name not in choices:
+            raise UsageError(
+                f"{option}: unknown name, got {name!r}; expected {', '.join(choices)}"
+                f"{suggestion(str(name), choices)}"
+            )

@@ -3,7 +3,7 @@
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from inspect import signature
-from typing import Any, ClassVar, Never
+from typing import Any, ClassVar
 
 import numpy as np
 from gymnasium import spaces
@@ -11,9 +11,8 @@ from numpy.typing import NDArray
 
 from hsr8.decisions import GazeController, MotionPlanner
 from hsr8.errors import UsageError
-from hsr8.gym.action import ActionMap, Part, check_action
+from hsr8.gym.action import ActionMap, Part, clipped
 from hsr8.gym.observation import MAX_TRACKS, Observation, Observer
-from hsr8.gym.options import check_flag, require_known
 from hsr8.plugin_decisions import Limits
 from hsr8.plugin_method import shown
 from navigation.belief.belief import Belief
@@ -28,7 +27,6 @@ def as_gaze(
     observe: Sequence[str] = (),
     max_tracks: int = MAX_TRACKS,
     normalized: bool = True,
-    **unknown: Never,
 ) -> type[GazeController]:
     """Return the gaze plugin of a policy, decided from the observations of ``hsr8/Gaze-v0``.
 
@@ -39,12 +37,10 @@ def as_gaze(
         observe: optional parts of the observation, without ``image``.
         max_tracks: number of observed tracks.
         normalized: whether actions are from -1 to 1, as in the environments.
-        unknown: refused.
 
     Raises:
         UsageError: an argument is invalid.
     """
-    require_known(unknown, as_gaze.__annotations__)
     chosen = _Options(policy, observe, max_tracks, normalized)
 
     class PolicyGaze(_Plugin):
@@ -68,7 +64,6 @@ def as_planner(
     observe: Sequence[str] = (),
     max_tracks: int = MAX_TRACKS,
     normalized: bool = True,
-    **unknown: Never,
 ) -> type[MotionPlanner]:
     """Return the planner plugin of a policy, decided from the observations of ``hsr8/Navigate-v0``.
 
@@ -77,12 +72,10 @@ def as_planner(
         observe: optional parts of the observation, without ``image``.
         max_tracks: number of observed tracks.
         normalized: whether actions are from -1 to 1, as in the environments.
-        unknown: refused.
 
     Raises:
         UsageError: an argument is invalid.
     """
-    require_known(unknown, as_planner.__annotations__)
     chosen = _Options(policy, observe, max_tracks, normalized)
 
     class PolicyPlanner(_Plugin):
@@ -113,7 +106,6 @@ class _Options:
 
     def __post_init__(self) -> None:
         _require_policy(self.policy)
-        check_flag("normalized", self.normalized)
         Observer(self.observe, self.max_tracks)
         if "image" in self.observe:
             raise UsageError("observe: plugins receive the belief, got 'image'; expected local_map")
@@ -180,14 +172,14 @@ class _Policy:
         self._first = True
 
     def __call__(self, observation: Observation, allowed: Sequence[spaces.Box]) -> Array:
-        """Return the action for an observation.
+        """Return the action for an observation, clipped to its space.
 
         Args:
             observation: of the belief.
             allowed: spaces of the action.
 
         Raises:
-            UsageError: the action is outside of the spaces.
+            UsageError: the action has another shape, or a value is not finite.
         """
         options = {
             "state": self._state,
@@ -199,4 +191,4 @@ class _Policy:
         if self._has_state:
             action, self._state = action
         self._first = False
-        return check_action(action, *allowed)
+        return clipped(action, *allowed)

@@ -105,7 +105,7 @@ def test_a_file_with_a_policy_takes_part_in_commands(tmp_path, monkeypatch, caps
     )
     words = ["--body", "kinematic", "--camera", "analytic", "--duration", "3", "--no-log"]
     assert entry(["run", "quick", *words, "--set", "plugin.gaze=mine.py:Mine"]) in (0, 1)
-    assert entry(["verify", "runs/quick"]) == 0
+    assert entry(["verify", "runs/quick", "--trust"]) == 0
     assert capsys.readouterr().out.count("bit for bit") == 3
 
 
@@ -116,10 +116,9 @@ def test_a_file_with_a_policy_takes_part_in_commands(tmp_path, monkeypatch, caps
         (3, "policy: got int 3; expected an object with predict"),
         (
             lambda: lambda _: np.zeros(3),
-            "action: .*ndarray of shape .*expected 2 .* or 5",
+            "action: .*ndarray of shape .*expected 2 or 5 finite numbers",
         ),
-        (lambda: lambda _: np.array([1.5, 0.0]), "action: outside of the action space"),
-        (lambda: lambda _: np.array([0.0, np.nan]), "action: outside of the action space"),
+        (lambda: lambda _: np.array([0.0, np.nan]), "action: got .*finite numbers"),
     ],
 )
 def test_invalid_policies_are_refused(policy, message):
