@@ -26,6 +26,7 @@ from hsr8.recorder.run.run import Run
 from hsr8.recorder.table import Table
 from hsr8.robot_builder import head_camera
 from hsr8.robots.loaded import LoadedRobot, load_robot
+from hsr8.robots.shown import stature
 
 Array = NDArray[np.float64]
 
@@ -140,7 +141,7 @@ def _topics(run: Run, messages: Messages, robot: LoadedRobot, urdf: str) -> Iter
     yield from _sensors(run.ticks, messages)
     yield from _motion(run.records, messages)
     yield from _camera(run, messages)
-    yield from _belief(run.frames, messages, robot.stature)
+    yield from _belief(run.frames, messages, stature(robot))
 
 
 def _tf(messages: Messages, times: NDArray[np.int64], tf: Transforms) -> list[bytes]:

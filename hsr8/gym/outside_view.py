@@ -6,6 +6,7 @@ from hsr8.loop import Simulation
 from hsr8.render.follow import FollowCamera
 from hsr8.render.scene_renderer import Image, SceneRenderer
 from hsr8.robots.scale import DEFAULT_STATURE
+from hsr8.robots.shown import stature
 from hsr8.world.model.assembly import Optics
 from hsr8.world.truth.truth import Truth
 
@@ -27,7 +28,7 @@ class OutsideView:
     def __init__(self, simulation: Simulation, fps: float) -> None:
         robot, world = simulation.humanoid, simulation.scenario.world
         self._movers = len(simulation.layout.movers)
-        self._fps, self._size = fps, robot.stature / DEFAULT_STATURE
+        self._fps, self._size = fps, stature(robot) / DEFAULT_STATURE
         self._qpos: list[np.ndarray] = []
         self._drawn: Truth | None = None
         self._renderer = SceneRenderer(

@@ -9,7 +9,7 @@ from hsr8.render.push_arrows import Arrow
 from hsr8.render.scene_renderer import Image, SceneRenderer
 from hsr8.robots.loaded import LoadedRobot
 from hsr8.robots.normal_form import SOLES
-from hsr8.robots.shown import SHOWN_GROUP
+from hsr8.robots.shown import SHOWN_GROUP, stature
 from hsr8.world.body.physics import place_robot
 from hsr8.world.field.layout import Layout
 from hsr8.world.model.assembly import Optics
@@ -46,7 +46,7 @@ def portrait(robot: LoadedRobot) -> Image:
             geom = model.geom(name)
             geom.group, geom.rgba, geom.matid = SHOWN_GROUP, SOLE, -1
         renderer.set_state(data.qpos.copy(), np.zeros((0, 2)))
-        height = robot.stature
+        height = stature(robot)
         return renderer.draw(_camera(height), _arrows(model, data, robot, height))
 
 

@@ -23,6 +23,7 @@ from hsr8.render.top_down import TRAIL
 from hsr8.robots.loaded import load_robot
 from hsr8.robots.normal_form import HEAD_CAMERA
 from hsr8.robots.scale import DEFAULT_STATURE
+from hsr8.robots.shown import stature
 from hsr8.world.field.generator import draw_layout
 from hsr8.world.model.assembly import Optics, Quality
 from walking.robot_measures import HSR_VIII
@@ -76,7 +77,7 @@ class RunImages:
         self._events = [*zip(run.events["time"].tolist(), run.events["kind"], strict=True)]
         self._event_times = [time for time, _ in self._events]
         self._pushes: tuple[PushArrow, ...] = ()
-        size_ratio = self._robot.stature / DEFAULT_STATURE
+        size_ratio = stature(self._robot) / DEFAULT_STATURE
         if any(kind == "push" for _, kind in self._events):
             weight = self._robot.model.measures().weight / HSR_VIII.weight
             self._pushes = push_arrows(pushes_of(run.records), self._motion, size_ratio, weight)

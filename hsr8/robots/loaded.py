@@ -17,10 +17,10 @@ from hsr8.robots.linkage import drive_serially
 from hsr8.robots.locate import find_description, find_model, model_files
 from hsr8.robots.models import reading_models
 from hsr8.robots.normal_form import normalise
-from hsr8.robots.posed_shapes import arm_spheres, exclude_neighbours, robot_height, robot_radius
+from hsr8.robots.posed_shapes import arm_spheres, exclude_neighbours, robot_radius
 from hsr8.robots.posture import check_joint_names, completed_posture, stated_posture
 from hsr8.robots.prepare import LEG_JOINTS, Prepared, prepare
-from hsr8.robots.read import compile_spec, read_spec
+from hsr8.robots.read import compile_spec, drop_drawn_meshes, read_spec
 from hsr8.robots.refusals import check_roles
 from hsr8.robots.roles import Roles, base_note, find_roles, present
 from hsr8.robots.servos import choose_servos
@@ -59,7 +59,6 @@ class LoadedRobot:
         radius: of the walking robot seen from above [m].
         held: angles of the joints that walking does not move [rad].
         height: of the base above the floor in the ready posture [m].
-        stature: height of the standing robot [m].
         notes: derived facts, a line each.
     """
 
@@ -75,7 +74,6 @@ class LoadedRobot:
     radius: float
     held: dict[str, float]
     height: float
-    stature: float
     notes: tuple[str, ...]
 
     def body_names(self) -> list[str]:
@@ -187,6 +185,8 @@ def _read(description: RobotDescription, folder: Path, model_file: Path) -> RawR
         carried, linkage_notes = drive_serially(prepared, description, speed)
         speed = {**carried, **speed}
     fresh = spec.copy()  # a compiled specification is slow to change
+    if description.camera is not None:
+        drop_drawn_meshes(spec, [prepared.where(foot).body for foot in description.feet])
     model, notes = compile_spec(source, spec)
     if notes:  # meshes were left out
         fresh = spec.copy()
@@ -234,7 +234,9 @@ def _built(description: RobotDescription, file: Path, raw: RawRobot) -> LoadedRo
     )
     with reading_models(source):
         normal = normalise(spec, zero, roles, soles, description=description, prepared=prepared)
-        compiled = normal.spec.copy().compile()
+        light = normal.spec.copy()
+        drop_drawn_meshes(light, roles.feet)
+        compiled = light.compile()
     _compare(zero, Posed.at(compiled, straight), source)
     tree = tree_of(
         compiled, roles, normal.parts, posture, effort=description.effort, speed=raw.speed
@@ -255,12 +257,11 @@ def _built(description: RobotDescription, file: Path, raw: RawRobot) -> LoadedRo
         spec=normal.spec,
         model=robot,
         parameters=parameters,
-        arms=arm_spheres(standing, roles),
-        has_meshes=bool(compiled.nmesh),
+        arms=arm_spheres(standing, roles, has_meshes=bool(normal.spec.meshes)),
+        has_meshes=bool(normal.spec.meshes),
         radius=description.radius or robot_radius(standing),
         held=held,
         height=base,
-        stature=robot_height(standing),
         notes=(
             *notes,
             *mirror_notes,

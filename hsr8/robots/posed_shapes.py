@@ -30,19 +30,20 @@ NEIGHBOURS = 3  # joints between links whose shapes may overlap by the maker's c
 FAR = 100.0  # reach of the shadow of an arm that the camera sees above the horizon [m]
 
 
-def arm_spheres(robot: Posed, roles: Roles) -> list[tuple[Array, Array]]:
+def arm_spheres(robot: Posed, roles: Roles, *, has_meshes: bool) -> list[tuple[Array, Array]]:
     """Return centres (n, 3) [m] and radii (n,) [m] of spheres around each arm.
 
     Args:
         robot: in the ready posture, on the floor.
         roles: of the robot's parts.
+        has_meshes: whether meshes show its shapes.
     """
     model, data = robot.model, robot.data
     arms = []
     for shoulder in roles.shoulders or ():
         root = int(model.joint(shoulder).bodyid[0])
         geoms = [g for g in range(model.ngeom) if _below(model, int(model.geom_bodyid[g]), root)]
-        visible = [g for g in geoms if _seen(model, g)]
+        visible = [g for g in geoms if _seen(model, g, has_meshes=has_meshes)]
         spheres = [sphere for g in visible for sphere in _spheres(model, data, g)]
         centres = np.array([centre for centre, _ in spheres]).reshape(-1, 3)
         away = np.linalg.norm(centres - data.xanchor[model.joint(shoulder).id], axis=1)
@@ -73,10 +74,10 @@ def ground_shadow(arms: Sequence[tuple[Array, Array]], height: float) -> Array:
     return shadow
 
 
-def _seen(model: mujoco.MjModel, geom: int) -> bool:
+def _seen(model: mujoco.MjModel, geom: int, *, has_meshes: bool) -> bool:
     """Return whether the head camera sees a geom: of meshes it sees the colliding ones only."""
     solid = bool(model.geom_contype[geom] or model.geom_conaffinity[geom])
-    if solid and model.nmesh:
+    if solid and has_meshes:
         return True
     mesh = model.geom_type[geom] == mujoco.mjtGeom.mjGEOM_MESH
     return bool(model.geom_group[geom] < COLLISION_GROUP) and not mesh

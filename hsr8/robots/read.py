@@ -1,6 +1,6 @@
 """Reading of model files: MJCF or URDF as a MuJoCo model whose bodies and joints all have names."""
 
-from collections.abc import Mapping
+from collections.abc import Collection, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -60,6 +60,40 @@ def read_spec(file: Path, packages: Mapping[str, Path]) -> ModelFile:
     if not spec.joints:
         raise ModelError(f"{file}: the model has no joints; expected a robot")
     return ModelFile(file, spec, speed, tuple(notes))
+
+
+def drop_drawn_meshes(spec: mujoco.MjSpec, kept: Collection[str]) -> None:
+    """Remove meshes that are only drawn, which take most of the time of compilation.
+
+    Args:
+        spec: changed in place.
+        kept: bodies whose meshes remain, also on those fixed to them.
+
+    Raises:
+        ModelError: the file of a removed mesh is missing.
+    """
+    kinds = mujoco.mjtInertiaFromGeom
+    if spec.compiler.inertiafromgeom == kinds.mjINERTIAFROMGEOM_TRUE:
+        return
+    used = set()
+    for geom in [g for g in spec.geoms if g.type == mujoco.mjtGeom.mjGEOM_MESH]:
+        body = geom.parent
+        weighs = not body.explicitinertial and (
+            spec.compiler.inertiafromgeom != kinds.mjINERTIAFROMGEOM_FALSE
+        )
+        while body.name not in kept and body.parent is not None and not body.joints:
+            body = body.parent
+        if geom.contype or geom.conaffinity or weighs or body.name in kept:
+            used.add(geom.meshname)
+        else:
+            spec.delete(geom)
+    for mesh in [mesh for mesh in spec.meshes if mesh.name not in used]:
+        folder = Path(spec.modelfiledir) / spec.meshdir
+        if mesh.file and not (folder / mesh.file).is_file():
+            raise ModelError(
+                f"{spec.modelname}: mesh {mesh.name!r}: missing, got {mesh.file!r}; expected a file"
+            )
+        spec.delete(mesh)
 
 
 def compile_spec(source: ModelFile, spec: mujoco.MjSpec) -> tuple[mujoco.MjModel, list[str]]:

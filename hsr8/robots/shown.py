@@ -15,6 +15,8 @@ from numpy.typing import NDArray
 from hsr8.robots.loaded import LoadedRobot
 from hsr8.robots.meshes import Array, Triangles, decimated
 from hsr8.robots.normal_form import COLLISION_GROUP
+from hsr8.robots.posed_shapes import robot_height
+from hsr8.robots.skeleton import Posed
 
 VISUAL_GROUPS = (0, 1, 2)
 """Groups of geoms that MuJoCo draws; those from 3 are collision shapes."""
@@ -41,6 +43,12 @@ _MESH = mujoco.mjtGeom.mjGEOM_MESH
 def visual_model(robot: LoadedRobot) -> mujoco.MjModel:
     """Return the compiled model of `visual_spec`, without a world."""
     return visual_spec(robot).compile()
+
+
+def stature(robot: LoadedRobot) -> float:
+    """Return the height of a robot's highest shape in its ready posture above the floor [m]."""
+    angles = dict(zip(robot.model.names, robot.model.ready.tolist(), strict=True))
+    return robot_height(Posed.at(visual_model(robot), {**robot.held, **angles}, robot.height))
 
 
 def visual_spec(robot: LoadedRobot) -> mujoco.MjSpec:

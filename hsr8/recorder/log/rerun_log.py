@@ -26,7 +26,7 @@ from hsr8.recorder.table import Table
 from hsr8.recorder.throttle import Throttle
 from hsr8.robots.loaded import LoadedRobot
 from hsr8.robots.scale import DEFAULT_ROBOT, DEFAULT_STATURE
-from hsr8.robots.shown import visual_model
+from hsr8.robots.shown import stature, visual_model
 from hsr8.scenario.schema import Scenario
 from hsr8.world.field.layout import Layout
 
@@ -273,4 +273,4 @@ def _view(robot: LoadedRobot) -> RobotView:
     """Return a robot as the views need it."""
     name = "HSR-VIII" if robot.name == DEFAULT_ROBOT else robot.name
     entity = followed_entity(visual_model(robot), robot.roles.base)
-    return RobotView(name, entity, robot.stature / DEFAULT_STATURE)
+    return RobotView(name, entity, stature(robot) / DEFAULT_STATURE)
