@@ -6,10 +6,9 @@ from math import cos, pi, sin
 from navigation.belief.belief import Motion, Track
 from navigation.belief.tracks import Tracks
 from navigation.motion.avoid_obstacle import avoid_obstacle
-from navigation.motion.extended_radius import extended_radius, physical_radius
 from navigation.motion.motion_field import FieldScene, MotionField
 from navigation.motion.move_to_goal import move_to_goal, muf
-from navigation.motion.univector import normalized
+from navigation.motion.univector import extended_radius, normalized, physical_radius
 from navigation.parameters.navigation import NavigationParameters
 
 import numpy as np

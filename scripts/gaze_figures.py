@@ -6,7 +6,7 @@ from math import cos, degrees, sin
 from hsr8.frame_record import FrameRecord
 from hsr8.render.walk_panels import INK
 from navigation.gaze.scene import GazeScene, gaze_scene
-from navigation.motion.extended_radius import extended_radius
+from navigation.motion.univector import extended_radius
 from navigation.parameters.navigation import NavigationParameters
 from navigation.partial_evaluation import SamplePoints
 from navigation.transform import points_to_world

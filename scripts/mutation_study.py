@@ -57,7 +57,6 @@ MODULES = (
     "navigation/motion/move_to_goal",
     "navigation/motion/avoid_obstacle",
     "navigation/motion/motion_field",
-    "navigation/motion/extended_radius",
     "navigation/motion/virtual_obstacle",
     "navigation/motion/velocity_modification",
     "navigation/belief/localization",

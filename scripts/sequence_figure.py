@@ -20,7 +20,7 @@ from hsr8.world.field.generator import draw_layout
 from hsr8.world.field.layout import Layout
 from navigation.belief.belief import Motion, Track
 from navigation.belief.tracks import Tracks
-from navigation.motion.extended_radius import extended_radius
+from navigation.motion.univector import extended_radius
 from navigation.partial_evaluation import psi_obstacle
 from walking.body.robot_model import RobotModel
 

@@ -11,9 +11,8 @@ from navigation.baselines.planning_scene import PlanningScene
 from navigation.belief.belief import Belief
 from navigation.belief.tracks import Tracks
 from navigation.decision import MotionDecision, SpeedLimits, Task, read_only
-from navigation.motion.facing import arriving, towards
 from navigation.motion.move_to_goal import ArrivalSide, arrival_gain, move_to_goal
-from navigation.motion.velocity_mapping import idle_velocity
+from navigation.motion.velocity_mapping import arriving, idle_velocity, towards
 from navigation.parameters.navigation import NavigationParameters
 
 Array = NDArray[np.float64]

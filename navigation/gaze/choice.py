@@ -1,5 +1,6 @@
 """Choice of the gaze policy by its name."""
 
+from collections.abc import Callable
 from dataclasses import replace
 
 import numpy as np
@@ -10,9 +11,8 @@ from navigation.gaze.blind import BlindGaze, SineSweep, StepSweep, TriangleSweep
 from navigation.gaze.gaze_map import GazeGrid, Votes
 from navigation.gaze.information import information_votes
 from navigation.gaze.integrated import integrated_votes
-from navigation.gaze.policy import GazeContext, GazePolicy
+from navigation.gaze.policy import Gaze, GazeContext, GazePolicy
 from navigation.gaze.risk import RiskGaze
-from navigation.gaze.voting import VotingGaze
 from navigation.parameters.gaze import GazeParameters
 from navigation.parameters.navigation import NavigationParameters
 
@@ -77,3 +77,32 @@ def single_weight(p: GazeParameters) -> GazeParameters:
         w_ob=float(p.mode == "psi-ob"),
         w_way=float(p.mode == "psi-way"),
     )
+
+
+class VotingGaze(GazePolicy):
+    """Gaze at the highest centre of the gaze map.
+
+    The gaze stays if the highest centre does not exceed it by the switch ratio. With a ratio of 1
+    it always moves to the highest centre, as printed.
+
+    Args:
+        votes: voting rule.
+        grid: cells of the gaze map.
+        switch_ratio: gain in the gaze map that moves the gaze, at least 1.
+    """
+
+    steady = True
+    stabilized = True
+
+    def __init__(
+        self, votes: Callable[[GazeContext], Votes], grid: GazeGrid, switch_ratio: float
+    ) -> None:
+        self._votes = votes
+        self._grid = grid
+        self._ratio = switch_ratio
+
+    def look(self, context: GazeContext, now: Gaze) -> tuple[Array, Gaze]:
+        gaze_map = self._grid.gaze_map(self._votes(context))
+        if float(gaze_map.max()) >= self._ratio * self._grid.value_at(gaze_map, *now):
+            return gaze_map, self._grid.highest_centre(gaze_map, *now)
+        return gaze_map, now

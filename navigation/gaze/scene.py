@@ -10,7 +10,7 @@ from navigation.angles import wrap_array
 from navigation.belief.belief import Belief
 from navigation.belief.tracks import Tracks
 from navigation.decision import MotionDecision
-from navigation.motion.extended_radius import extended_radius
+from navigation.motion.univector import extended_radius
 from navigation.parameters.navigation import NavigationParameters
 from navigation.partial_evaluation import (
     MapEvaluation,

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from compilation import compiled
 from navigation.belief.local_map import LocalMap, shifted
 from navigation.motion.rollout import contact_time
-from navigation.parameters.risk import RiskParameters, UndetectedParameters
+from navigation.parameters.gaze import RiskParameters, UndetectedParameters
 from navigation.record import record
 
 Array = NDArray[np.float64]

@@ -8,9 +8,14 @@ from numpy.typing import NDArray
 from navigation.belief.tracks import Tracks
 from navigation.decision import VirtualObstacle
 from navigation.motion.avoid_obstacle import avoid_obstacle, spiral_turn, turning_sign
-from navigation.motion.extended_radius import physical_radius
 from navigation.motion.move_to_goal import move_to_goal, muf
-from navigation.motion.univector import blended_sum, nearness, shrunk_for_goal, weighted_sum
+from navigation.motion.univector import (
+    blended_sum,
+    nearness,
+    physical_radius,
+    shrunk_for_goal,
+    weighted_sum,
+)
 from navigation.motion.virtual_obstacle import (
     PathPoint,
     VirtualSides,
@@ -162,20 +167,22 @@ class MotionField:
         virtual = []
         tracks_in_band = set()
         for index in np.nonzero(scene.obstacles.speed >= self._moving.min_speed)[0].tolist():
-            foot = self._foot(pose, scene, index)
+            projection = self._projection(pose, scene, index)
             s_oe = float(scene.s_oe[index])
-            if foot is None or abs(foot.lateral) >= s_oe:
+            if projection is None or abs(projection.lateral) >= s_oe:
                 continue
             relative = scene.obstacles.velocity[index] - velocity
             length = self._moving.path_time * hypot(*relative.tolist())
             length += self._univector.eta_imp * float(scene.psi[index])
-            if foot.along >= length:
+            if projection.along >= length:
                 continue
             track = int(scene.obstacles.ids[index])
             tracks_in_band.add(track)
-            side = self._sides.update(track, foot, self._to_goal(pose, scene))
-            f = oval(foot.along / length, self._moving.xi)
-            virtual.append(self._active(pose, scene, index, foot, side, weight=f, radius=f * s_oe))
+            side = self._sides.update(track, projection, self._to_goal(pose, scene))
+            f = oval(projection.along / length, self._moving.xi)
+            virtual.append(
+                self._active(pose, scene, index, projection, side, weight=f, radius=f * s_oe)
+            )
         self._sides.keep(tracks_in_band)
         return tuple(virtual)
 
@@ -193,8 +200,8 @@ class MotionField:
         virtual = []
         u_muf = self._to_goal(pose, scene)
         for index in indices:
-            foot = self._foot(pose, scene, index)
-            if foot is None:
+            projection = self._projection(pose, scene, index)
+            if projection is None:
                 continue
             relative = scene.obstacles.velocity[index] - velocity
             length = printed_path_length(
@@ -204,15 +211,15 @@ class MotionField:
                 self._univector.eta_vo,
                 self._univector.eta_imp,
             )
-            radius = printed_radius(foot, float(scene.s_oe[index]), length, self._moving.xi)
+            radius = printed_radius(projection, float(scene.s_oe[index]), length, self._moving.xi)
             if radius is not None:
-                side = -1 if foot.left_of_path(u_muf) < 0.0 else 1
+                side = -1 if projection.left_of_path(u_muf) < 0.0 else 1
                 virtual.append(
-                    self._active(pose, scene, index, foot, side, weight=1.0, radius=radius)
+                    self._active(pose, scene, index, projection, side, weight=1.0, radius=radius)
                 )
         return tuple(virtual)
 
-    def _foot(self, pose: Array, scene: FieldScene, index: int) -> PathPoint | None:
+    def _projection(self, pose: Array, scene: FieldScene, index: int) -> PathPoint | None:
         o = scene.obstacles
         return path_point(pose[:2], o.position[index], o.velocity[index])
 
@@ -221,7 +228,7 @@ class MotionField:
         pose: Array,
         scene: FieldScene,
         index: int,
-        foot: PathPoint,
+        projection: PathPoint,
         side: int,
         *,
         weight: float,
@@ -229,11 +236,11 @@ class MotionField:
     ) -> ActiveVirtualObstacle:
         """Direct the robot out of the path, more along the path the farther it is from the oval."""
         p = self._univector
-        nx, ny = foot.normal(side)
+        nx, ny = projection.normal(side)
         outward = atan2(ny, nx)
-        gap = max(0.0, side * foot.lateral - radius)
+        gap = max(0.0, side * projection.lateral - radius)
         turn = float(spiral_turn(gap, radius, p.d_e, p.k_r))
-        centre = np.array([foot.x, foot.y])
+        centre = np.array([projection.x, projection.y])
         sign = float(turning_sign(scene.target - centre, pose[:2] - centre))
         return ActiveVirtualObstacle(
             VirtualObstacle(centre, radius, int(scene.obstacles.ids[index])),

@@ -18,15 +18,20 @@ from navigation.decision import (
     read_only,
 )
 from navigation.motion.collision_band import CollisionCase, Encounter
-from navigation.motion.extended_radius import extended_radius, physical_radius
-from navigation.motion.facing import Facing, arriving, towards
 from navigation.motion.hypotheses import collision_discs
 from navigation.motion.motion_field import ActiveVirtualObstacles, FieldScene, MotionField
 from navigation.motion.move_to_goal import ArrivalSide, arrival_gain
 from navigation.motion.passing_side import PassingSides
 from navigation.motion.safety_filter import RolloutStart, SafetyFilter
+from navigation.motion.univector import extended_radius, physical_radius
 from navigation.motion.unseen_ground import ground_seen
-from navigation.motion.velocity_mapping import body_velocity, idle_velocity
+from navigation.motion.velocity_mapping import (
+    Facing,
+    arriving,
+    body_velocity,
+    idle_velocity,
+    towards,
+)
 from navigation.motion.velocity_modification import ModifiedSpeed, modify_speed, sample_speed
 from navigation.motion.waypoint_search import search_waypoint
 from navigation.parameters.navigation import NavigationParameters

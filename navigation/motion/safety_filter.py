@@ -11,9 +11,8 @@ from numpy.typing import NDArray
 
 from navigation.decision import SpeedLimits
 from navigation.motion import rollout
-from navigation.motion.facing import Facing
 from navigation.motion.hypotheses import within_reach
-from navigation.motion.velocity_mapping import envelope
+from navigation.motion.velocity_mapping import Facing, envelope
 from navigation.parameters.motion import SafetyFilterParameters, VelocityMappingParameters
 from navigation.record import record
 from navigation.transform import velocity_in_world

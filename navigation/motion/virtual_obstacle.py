@@ -85,14 +85,14 @@ def printed_path_length(
     return omega_dist * (eta_vo * relative_speed + eta_imp * psi)
 
 
-def printed_radius(foot: PathPoint, s_oe: float, length: float, xi: float) -> float | None:
+def printed_radius(projection: PathPoint, s_oe: float, length: float, xi: float) -> float | None:
     """Return R_vo = min(f S_oe, |p_vo - p_r|) (Yoo & Kim, eq. (11)) [m]; None beyond the length.
 
     On the path the radius is zero: the robot is on the circle, which still turns it away.
     """
-    if foot.along >= length:
+    if projection.along >= length:
         return None
-    return min(oval(foot.along / length, xi) * s_oe, abs(foot.lateral))
+    return min(oval(projection.along / length, xi) * s_oe, abs(projection.lateral))
 
 
 class VirtualSides:
@@ -102,23 +102,23 @@ class VirtualSides:
         self._parameters = parameters
         self._sides: dict[int, int] = {}
 
-    def update(self, track: int, foot: PathPoint, u_muf: tuple[float, float]) -> int:
+    def update(self, track: int, projection: PathPoint, u_muf: tuple[float, float]) -> int:
         """Return the side (+1 left of the path, -1 right) for a mover with the robot in its band.
 
         Args:
             track: number of the mover.
-            foot: robot and path.
+            projection: robot and path.
             u_muf: move-to-goal direction, which decides near the path.
         """
         p = self._parameters
         side = self._sides.get(track)
-        present = 1 if foot.lateral >= 0.0 else -1
+        present = 1 if projection.lateral >= 0.0 else -1
         if side is None:
-            goal_side = foot.left_of_path(u_muf)
+            goal_side = projection.left_of_path(u_muf)
             side = present
-            if abs(foot.lateral) < p.side_switch and abs(goal_side) > p.side_aligned:
+            if abs(projection.lateral) < p.side_switch and abs(goal_side) > p.side_aligned:
                 side = 1 if goal_side > 0.0 else -1
-        elif side != present and abs(foot.lateral) > p.side_hold:
+        elif side != present and abs(projection.lateral) > p.side_hold:
             side = present
         self._sides[track] = side
         return side

@@ -11,9 +11,9 @@ import numpy as np
 from navigation.belief.estimator import Estimator
 from navigation.decision import SpeedLimits, Task
 from navigation.gaze.planner import GazePlanner
-from navigation.motion.facing import Facing
 from navigation.motion.planner import Planner
 from navigation.motion.safety_filter import RolloutStart, SafetyFilter
+from navigation.motion.velocity_mapping import Facing
 from navigation.observation import CameraView, Frame, Observation, Sight
 from navigation.parameters.belief import BeliefParameters
 from navigation.parameters.navigation import NavigationParameters

@@ -4,10 +4,9 @@ from typing import get_args
 import numpy as np
 import pytest
 
-from navigation.gaze.choice import BLIND, gaze_policy, single_weight
+from navigation.gaze.choice import BLIND, VotingGaze, gaze_policy, single_weight
 from navigation.gaze.gaze_map import GazeGrid, Votes
 from navigation.gaze.planner import GazePlanner
-from navigation.gaze.voting import VotingGaze
 from navigation.parameters.gaze import GazeMode, GazeParameters
 from navigation.parameters.navigation import NavigationParameters
 

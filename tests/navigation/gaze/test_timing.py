@@ -1,4 +1,4 @@
-from navigation.gaze.timing import GazeTiming
+from navigation.gaze.planner import GazeTiming
 from navigation.parameters.gaze import GazeParameters
 
 LEFT, AHEAD = (1.0, -0.4), (0.0, -0.4)

@@ -7,7 +7,7 @@ from navigation.belief.local_map import LocalMap
 from navigation.belief.visibility import Viewpoint
 from navigation.gaze.undetected import Undetected
 from navigation.parameters.belief import LocalMapParameters
-from navigation.parameters.risk import RiskParameters, UndetectedParameters
+from navigation.parameters.gaze import RiskParameters, UndetectedParameters
 
 P, RISK = UndetectedParameters(), RiskParameters()
 STILL = np.zeros(2)

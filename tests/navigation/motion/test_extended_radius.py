@@ -3,7 +3,7 @@ import pytest
 
 from navigation.belief.belief import Motion
 from navigation.belief.tracks import Tracks
-from navigation.motion.extended_radius import extended_radius, physical_radius
+from navigation.motion.univector import extended_radius, physical_radius
 from navigation.parameters.motion import UnivectorParameters
 
 P = UnivectorParameters()

@@ -1,7 +1,7 @@
 import numpy as np
 import pytest
 
-from navigation.motion.facing import Facing, arriving, towards
+from navigation.motion.velocity_mapping import Facing, arriving, towards
 
 
 @pytest.mark.parametrize("course", [-2.0, 0.0, 0.7])

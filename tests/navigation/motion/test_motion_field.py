@@ -5,10 +5,9 @@ import pytest
 
 from navigation.belief.tracks import Tracks
 from navigation.motion.avoid_obstacle import avoid_obstacle
-from navigation.motion.extended_radius import extended_radius
 from navigation.motion.motion_field import FieldScene, MotionField
 from navigation.motion.move_to_goal import move_to_goal, muf
-from navigation.motion.univector import normalized, weighted_sum
+from navigation.motion.univector import extended_radius, normalized, weighted_sum
 from navigation.motion.virtual_obstacle import oval
 from navigation.parameters.navigation import NavigationParameters
 

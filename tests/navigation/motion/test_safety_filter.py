@@ -1,10 +1,10 @@
 import numpy as np
 import pytest
 
-from navigation.motion.facing import Facing
 from navigation.motion.hypotheses import DISC
 from navigation.motion.rollout import contact_times
 from navigation.motion.safety_filter import RolloutStart, SafetyFilter
+from navigation.motion.velocity_mapping import Facing
 from navigation.parameters.motion import SafetyFilterParameters, VelocityMappingParameters
 
 HERE = np.zeros(3)
