@@ -123,7 +123,13 @@ class Table(Mapping[str, Any]):
         return Table(self.name, self._whole, chosen)
 
     def at(self, times: Any) -> NDArray[np.intp]:
-        """Return the index of the last row not after each of the times (m,) [s], at least 0."""
+        """Return the index of the last row not after each of the times (m,) [s], at least 0.
+
+        Raises:
+            UsageError: the table has no rows, as after damage.
+        """
+        if np.size(times) and not len(self):
+            raise UsageError(f"{self.name}: no rows, got times of other tables of the run")
         rows: NDArray[np.intp] = np.searchsorted(self["time"], np.asarray(times) + 1e-9, "right")
         return np.maximum(rows - 1, 0)
 

@@ -193,6 +193,7 @@ def test_a_camera_that_fails_leaves_no_open_file(tmp_path, monkeypatch):
 
     monkeypatch.setattr("hsr8.loop.RenderedCamera", failing)
     monkeypatch.setattr("hsr8.api.renderer_of", lambda scenario: "none")
-    with pytest.raises(RenderingUnavailable):
+    with pytest.raises(RenderingUnavailable) as error:  # whose frames hold the recorder
         api_run("quick", out=tmp_path, log=False)
+    assert error.traceback
     assert not [file for file in psutil.Process().open_files() if str(tmp_path) in file.path]

@@ -11,6 +11,7 @@ import pytest
 from hsr8.errors import UsageError
 from hsr8.recorder.rows import TABLES
 from hsr8.recorder.stream import CHECKSUMS, read_table
+from hsr8.recorder.table import Table
 from hsr8.recorder.unpacked_size import rows_and_size
 
 ROWS = 900_000
@@ -101,3 +102,10 @@ def test_rows_and_size_are_those_of_the_batch(compression):
     rows, size = rows_and_size(message)
     assert rows == 300
     assert batch.nbytes <= size <= batch.nbytes + 64 * 9
+
+
+def test_a_table_without_rows_has_none_at_a_time():
+    table = Table("ticks", times(0))
+    assert len(table.at([])) == 0
+    with pytest.raises(UsageError, match="ticks: no rows"):
+        table.at([0.0])
