@@ -5,8 +5,7 @@ from collections.abc import Iterator, Sequence
 from hsr8.frame_record import FrameRecord
 from hsr8.record import Event
 from hsr8.scenario.fault import Fault
-from hsr8.world.truth.collision_counter import CollisionCounter
-from hsr8.world.truth.falls import Falls
+from hsr8.world.truth.counters import CollisionCounter, Falls
 from hsr8.world.truth.truth import Truth
 
 SAME_TIME = 1e-6  # times closer than this are equal [s]

@@ -19,8 +19,7 @@ from hsr8.recorder.derived import truth_at
 from hsr8.recorder.table import Table
 from hsr8.world.field.certificate import Certificate
 from hsr8.world.field.layout import Layout
-from hsr8.world.truth.collision_counter import CollisionCounter
-from hsr8.world.truth.falls import RECOVERY_TIME, Falls
+from hsr8.world.truth.counters import RECOVERY_TIME, CollisionCounter, Falls
 from hsr8.world.truth.truth import Contact
 from navigation.angles import wrap
 from navigation.parameters.navigation import MissionParameters

@@ -21,7 +21,6 @@ from hsr8.robots.normal_form import HEAD_CAMERA
 from hsr8.robots.shown import camera_spec, visual_spec
 from hsr8.scenario.fault import Bump
 from hsr8.world.field.layout import Beacon, Layout, Obstacle
-from hsr8.world.model.model_check import check_model
 from vision.color import COLOR_CLASSES
 
 Quality = Literal["vision", "show"]
@@ -49,6 +48,35 @@ _SOLID: dict[str, Any] = {
     "solimp": [0.9, 0.95, 0.001, 0.5, 2.0],
 }
 _VISUAL: dict[str, Any] = {"contype": 0, "conaffinity": 0, "mass": 0.0}
+
+FINITE = (
+    "body_pos",
+    "body_mass",
+    "body_inertia",
+    "jnt_range",
+    "geom_size",
+    "geom_friction",
+    "dof_armature",
+    "dof_damping",
+    "dof_frictionloss",
+    "actuator_gainprm",
+    "actuator_forcerange",
+)
+
+
+def check_model(model: mujoco.MjModel) -> None:
+    """Check that numbers are finite and servo gains positive.
+
+    Raises:
+        ValueError: a check failed; the message names the part, the attribute and the value.
+    """
+    for name in FINITE:
+        if not np.isfinite(getattr(model, name)).all():
+            raise ValueError(f"{name}: a value is not finite")
+    for servo in (model.actuator(i) for i in range(model.nu)):
+        who = f"actuator {servo.name!r}"
+        if servo.gainprm[0] <= 0.0:
+            raise ValueError(f"{who}: kp: got {servo.gainprm[0]:g}; expected > 0")
 
 
 @dataclass(frozen=True, slots=True)
