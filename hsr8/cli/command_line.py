@@ -4,12 +4,12 @@ from collections.abc import Iterable, Sequence
 from dataclasses import fields, replace
 from typing import Any
 
-from hsr8.cli.options import Bench, Check, Run, Sweep
+from hsr8.cli.options import Bench, Check, Run, RunOptions, ScenarioOptions, Sweep
 from hsr8.errors import UsageError
 from hsr8.recorder.log_level import LogLevel
 
 
-def settings(options: Run | Check | Sweep | Bench) -> tuple[str, ...]:
+def settings(options: ScenarioOptions | Bench) -> tuple[str, ...]:
     """Return every ``key=value`` of every ``--set``.
 
     Raises:
@@ -43,22 +43,16 @@ def command_words(options: Run | Sweep | Bench) -> tuple[str, ...]:
 
 def run_options(options: Check | Sweep, seed: int | None, more: Sequence[str] = ()) -> Run:
     """Return the options of ``hsr8 run`` for the same scenario and further settings."""
-    run = Run(
-        options.scenario,
-        seed,
-        robot=options.robot,
-        set=(*options.set, *((setting,) for setting in more)),
-    )
-    if isinstance(options, Sweep):
-        given = {name: getattr(options, name) for name in ("duration", "body", "camera", "trust")}
-        run = replace(run, **given)
-    return run
+    shared = RunOptions if isinstance(options, Sweep) else ScenarioOptions
+    given = {field.name: getattr(options, field.name) for field in fields(shared)}
+    given["set"] = (*options.set, *((setting,) for setting in more))
+    return Run(**given, seed=seed)
 
 
-def option_tables(options: Run | Check | Sweep) -> dict[str, dict[str, Any]]:
+def option_tables(options: ScenarioOptions) -> dict[str, dict[str, Any]]:
     """Return the settings that each option stands for, by option; ``--set`` overrides them."""
     tables: dict[str, dict[str, Any]] = {"--robot": {"robot": {"model": options.robot}}}
-    if not isinstance(options, Check):
+    if isinstance(options, RunOptions):
         tables |= {
             "--duration": {"duration": options.duration},
             "--body": {"robot": {"body": options.body}},

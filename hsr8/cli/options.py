@@ -29,25 +29,37 @@ from hsr8.cli.option_types import (
 
 
 @dataclass(frozen=True)
-class Run:
-    """Run a scenario and record it: physics, head camera, belief, gaze, walking."""
+class ScenarioOptions:
+    """Scenario and changes of its settings."""
 
     scenario: Scenario
-    seed: Integer = None
-    """Seed of world and noise; default: that of the scenario."""
-    out: Path = Path("runs")
-    """Parent folder of run folders."""
-    duration: Seconds = None
-    """Maximum simulated time [s]; default: that of the scenario."""
     robot: Text = None
     """Robot: a shipped name or the file of a description; default: that of the scenario."""
+    set: Settings = ()
+
+
+@dataclass(frozen=True, kw_only=True)
+class RunOptions(ScenarioOptions):
+    """Scenario of one or several runs."""
+
+    duration: Seconds = None
+    """Maximum simulated time [s]; default: that of the scenario."""
     body: Body = None
     """Full physics, or feet that land exactly as planned (faster)."""
     camera: Camera = None
     """rendered: OpenGL; analytic: geometry only; neck-reach, omnidirectional: bounds."""
-    set: Settings = ()
     trust: Flag = False
     """Run the code of plugins that the scenario names outside of its folder."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class Run(RunOptions):
+    """Run a scenario and record it: physics, head camera, belief, gaze, walking."""
+
+    seed: Integer = None
+    """Seed of world and noise; default: that of the scenario."""
+    out: Path = Path("runs")
+    """Parent folder of run folders."""
     no_log: Flag = False
     """Write no Rerun log."""
     log_level: Level = None
@@ -62,34 +74,22 @@ class Run:
     quiet: Quiet = False
 
 
-@dataclass(frozen=True)
-class Sweep:
+@dataclass(frozen=True, kw_only=True)
+class Sweep(RunOptions):
     """Run a scenario over many seeds in parallel and summarize the results.
 
     Runs with a result in the folder are not repeated: the same command line continues a
     stopped sweep, and further seeds are added.
     """
 
-    scenario: Scenario
     seeds: Annotated[str, arg(metavar="SEEDS")]
     """A:B for A to B-1, or a list: 1000:1200, 1,5,9, or 0:10,42."""
     out: File = None
     """Folder of the sweep; default: sweeps/ and the scenario's name."""
     workers: Integer = None
     """Parallel runs; default: number of CPUs."""
-    set: Settings = ()
-    trust: Flag = False
-    """Run the code of plugins that the scenario names outside of its folder."""
     vary: Values = ()
     """Also vary a setting, one folder per value; repeated: all combinations."""
-    duration: Seconds = None
-    """Maximum simulated time [s]; default: that of the scenario."""
-    robot: Text = None
-    """Robot: a shipped name or the file of a description; default: that of the scenario."""
-    body: Body = None
-    """Full physics, or feet that land exactly as planned (faster)."""
-    camera: Camera = None
-    """rendered: OpenGL; analytic: geometry only; neck-reach, omnidirectional: bounds."""
     executor: str = "local"
     """Executor: local, or dask://HOST:PORT for a Dask cluster."""
     shard: Text = None
@@ -169,16 +169,12 @@ class List:
     json: Json = False
 
 
-@dataclass(frozen=True)
-class Check:
+@dataclass(frozen=True, kw_only=True)
+class Check(ScenarioOptions):
     """Check a scenario without running it: settings, world, feasibility."""
 
-    scenario: Scenario
     seed: Integer = None
     """Seed of the world; default: that of the scenario."""
-    robot: Text = None
-    """Robot: a shipped name or the file of a description; default: that of the scenario."""
-    set: Settings = ()
     image: File = None
     """Draw the world and the path of the feasibility certificate as a PNG."""
     json: Json = False

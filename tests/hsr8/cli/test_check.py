@@ -48,7 +48,7 @@ def test_columns_have_their_units(capsys):
 def test_the_printed_command_makes_the_checked_run(capsys):
     main(Check("quick", set=(("world.n_static=3",),)))
     command = capsys.readouterr().out.splitlines()[-1]
-    assert command == "run it      hsr8 run quick --seed 2 --set world.n_static=3"
+    assert command == "run it      hsr8 run quick --set world.n_static=3 --seed 2"
 
 
 @pytest.mark.parametrize(

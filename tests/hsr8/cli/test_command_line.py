@@ -26,7 +26,7 @@ def test_settings_are_those_of_every_set():
             log_level="full",
             view="web",
         ),
-        Sweep("quick", "0:3", vary=(("a=1,2", "b=3"),), keep="none", log=True, timeout=1e3),
+        Sweep("quick", seeds="0:3", vary=(("a=1,2", "b=3"),), keep="none", log=True, timeout=1e3),
     ],
 )
 def test_the_words_give_the_same_options(options):
@@ -39,10 +39,10 @@ def test_output_options_are_left_out():
 
 def test_a_check_and_a_sweep_lead_to_runs_of_the_same_scenario():
     check = Check("./room.toml", robot="op3", set=(("world.n_moving=2",),))
-    run = Run("./room.toml", 0, robot="op3", set=(("world.n_moving=2",),))
+    run = Run("./room.toml", seed=0, robot="op3", set=(("world.n_moving=2",),))
     assert run_options(check, 0) == run
     assert option_tables(check) == {"--robot": {"robot": {"model": "op3"}}}
-    sweep = Sweep("quick", "0:3", duration=2.0, camera="analytic")
+    sweep = Sweep("quick", seeds="0:3", duration=2.0, camera="analytic")
     run = Run("quick", duration=2.0, camera="analytic", set=(("a=1",),))
     assert run_options(sweep, None, ["a=1"]) == run
 
