@@ -1,7 +1,5 @@
 """Walking engine: sensors and commands to joint targets, once per control tick."""
 
-from math import hypot
-
 import numpy as np
 
 from walking.arrays import Array, Point
@@ -27,7 +25,7 @@ from walking.pattern.generator import make_generator
 from walking.pattern.lipm import Lipm
 from walking.pattern.pendulum import PendulumState
 from walking.pattern.support import SupportPolygon, SupportRegion
-from walking.planar import rotate_back
+from walking.planar import norm, rotate_back
 from walking.published_state import camera_pose, published_plan
 from walking.sensing import BodySensors
 from walking.servos.head import Head
@@ -237,7 +235,7 @@ class WalkingEngine:
     def fallen(self) -> bool:
         """Whether the tilt of the trunk is that of a fallen robot."""
         tilt = self._estimation.tilt
-        return tilt is not None and hypot(*tilt) > self._fall_tilt
+        return tilt is not None and norm(*tilt) > self._fall_tilt
 
     def _sense(self, sensors: BodySensors) -> Point:
         """Update the state estimate; return roll and pitch of the trunk [rad]."""
@@ -255,7 +253,7 @@ class WalkingEngine:
         return self._ticks * CONTROL_PERIOD > self._parameters.gait.settle_time
 
     def _command(self, command: Command, error: Point) -> None:
-        off = hypot(*error)
+        off = norm(*error)
         balanced = off < self._parameters.stabilizer.max_slew_error
         speed_ratio = self._slowdown.update(off)
         self._steering.follow(command, speed_ratio, settled=self._settled, balanced=balanced)
@@ -277,7 +275,7 @@ class WalkingEngine:
             self._com_offset.reset()
             return steering.strides(STILL)
         begins = self._cycle.begins(gait.support)
-        moved = hypot(*self._placement.moved)
+        moved = norm(*self._placement.moved)
         disturbed = gait.shortened or moved > self._parameters.stabilizer.max_steady_shift
         self._com_offset.update(estimation.pressure_error, begins=begins, disturbed=disturbed)
         vx, vy = self._speed.correction(

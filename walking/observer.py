@@ -1,6 +1,6 @@
 """State estimation under a walking controller without a plan: measurements only."""
 
-from math import asin, atan2, hypot
+from math import asin, atan2
 
 import numpy as np
 
@@ -21,7 +21,7 @@ from walking.parameters import CONTROL_PERIOD, GRAVITY, WalkingParameters
 from walking.pattern.lipm import Lipm
 from walking.pattern.support import SupportPolygon
 from walking.phase import Phase
-from walking.planar import Frame, from_frame, rotate, rotate_back
+from walking.planar import Frame, from_frame, norm, rotate, rotate_back
 from walking.sensing import BodySensors
 from walking.state import Balance, HeadCameraPose, WalkingState
 from walking.value import value
@@ -84,7 +84,7 @@ class BodyObserver:
     def fallen(self) -> bool:
         """Whether the tilt of the trunk is that of a fallen robot."""
         tilt = self._estimation.tilt
-        return tilt is not None and hypot(*tilt) > self._fall_tilt
+        return tilt is not None and norm(*tilt) > self._fall_tilt
 
     def observe(self, sensors: BodySensors) -> None:
         """Update only the attitude, in a tick in which the robot is off its feet."""
@@ -215,7 +215,7 @@ class BodyObserver:
         steps, (x, y) = self._step_begin
         if self._contacts.step_count != steps:
             here, there, _ = self._pose
-            self._odometry.slip(SLIP * hypot(here - x, there - y))
+            self._odometry.slip(SLIP * norm(here - x, there - y))
             self._step_begin = self._contacts.step_count, (here, there)
 
     def _follow_velocity(self, sensors: BodySensors, tilt: Array, yaw: float) -> None:

@@ -1,11 +1,16 @@
 """Rotations and frames of the plane, SE(2)."""
 
-from math import cos, sin
+from math import cos, sin, sqrt
 
 from walking.arrays import Point
 
 Frame = tuple[float, float, float]
 """x, y [m] of the origin and yaw [rad]."""
+
+
+def norm(x: float, y: float) -> float:
+    """Return the length of a vector."""
+    return sqrt(x * x + y * y)
 
 
 def rotate(yaw: float, x: float, y: float) -> Point:

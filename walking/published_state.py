@@ -34,17 +34,17 @@ class PublishedPlan:
 def camera_pose(robot: RobotModel, sensors: BodySensors, body: BodyMeasurement) -> HeadCameraPose:
     """Return the head camera in the robot frame: tilt by IMU, height by the loaded leg."""
     R_BC, p_BC = robot.neck.camera_pose(sensors.joint_position)
-    R_RB = np.empty((3, 3))
-    published_state_kernel.incline(body.roll, body.pitch, R_RB)
+    rotation, position = np.empty((3, 3)), np.empty(3)
+    yaw_rate = published_state_kernel.level_camera(
+        (body.roll, body.pitch), R_BC, p_BC, sensors.gyro, rotation, position
+    )
     load = body.right_load
-    position = R_RB @ p_BC
     position[2] += -(1.0 - load) * body.feet[0].z - load * body.feet[1].z
     angles, rates = (
         robot.neck.angles(sensors.joint_position),
         robot.neck.rates(sensors.joint_velocity),
     )
-    yaw_rate = float(R_RB[2] @ sensors.gyro)
-    return HeadCameraPose(R_RB @ R_BC, position, *angles, *rates, yaw_rate)
+    return HeadCameraPose(rotation, position, *angles, *rates, yaw_rate)
 
 
 def published_plan(

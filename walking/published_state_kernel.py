@@ -2,6 +2,8 @@
 
 from math import cos, sin
 
+import numpy as np
+
 from compilation import compiled
 from walking.arrays import Array, Point, Vector
 
@@ -83,6 +85,35 @@ def incline(roll: float, pitch: float, rotation: Array) -> None:
     rotation[0, 0], rotation[0, 1], rotation[0, 2] = cp, sp * sr, sp * cr
     rotation[1, 0], rotation[1, 1], rotation[1, 2] = 0.0, cr, -sr
     rotation[2, 0], rotation[2, 1], rotation[2, 2] = -sp, cp * sr, cp * cr
+
+
+@compiled
+def level_camera(
+    tilt: Point, mounted: Array, place: Array, gyro: Array, rotation: Array, position: Array
+) -> float:
+    """Express the camera in the level frame of the trunk's heading.
+
+    Args:
+        tilt: roll and pitch of the trunk [rad].
+        mounted: rotation R_BC of the camera in the base frame (3, 3).
+        place: position p_BC of the camera in the base frame (3,) [m].
+        gyro: angular velocity of the trunk in its frame (3,) [rad/s].
+        rotation: set to R_RC (3, 3).
+        position: set to p_RC (3,) [m].
+
+    Returns:
+        yaw rate of the trunk [rad/s].
+    """
+    R = np.empty((3, 3))
+    incline(tilt[0], tilt[1], R)
+    for i in range(3):
+        for j in range(3):
+            rotation[i, j] = (
+                R[i, 0] * mounted[0, j] + R[i, 1] * mounted[1, j] + R[i, 2] * mounted[2, j]
+            )
+        position[i] = R[i, 0] * place[0] + R[i, 1] * place[1] + R[i, 2] * place[2]
+    yaw_rate: float = R[2, 0] * gyro[0] + R[2, 1] * gyro[1] + R[2, 2] * gyro[2]
+    return yaw_rate
 
 
 @compiled

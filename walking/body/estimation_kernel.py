@@ -12,7 +12,7 @@ State arrays, booleans as 0 or 1:
 Constant numbers are passed in arrays, too: tuples are unpacked at every call.
 """
 
-from math import atan2, cos, hypot, pi, sin, sqrt
+from math import atan2, cos, pi, sin, sqrt
 
 from compilation import compiled
 from walking.arrays import Array, Point, Vector
@@ -281,7 +281,8 @@ def _watch_slip(odometry: Array, x: float, y: float, load: float, ratio: float) 
         if odometry[11] == 0.0:
             odometry[11], odometry[12], odometry[13] = 1.0, x, y
     elif odometry[11] != 0.0:
-        jump(odometry, ratio * hypot(x - odometry[12], y - odometry[13]), 0.0)
+        dx, dy = x - odometry[12], y - odometry[13]
+        jump(odometry, ratio * sqrt(dx * dx + dy * dy), 0.0)
         odometry[11] = 0.0
 
 

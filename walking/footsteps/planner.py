@@ -67,11 +67,9 @@ class FootstepPlanner:
         if velocity != self._cadence[0]:
             gait, limits = self._gait, self._limits
             vx, vy, wz = velocity
-            rate = sqrt(
-                (vx / limits.step_forward) ** 2
-                + (2.0 * vy / limits.step_side) ** 2
-                + (2.0 * wz / limits.step_turn) ** 2
-            )
+            x, y = vx / limits.step_forward, 2.0 * vy / limits.step_side
+            turned = 2.0 * wz / limits.step_turn
+            rate = sqrt(x * x + y * y + turned * turned)
             time = 1.0 / max(rate, 1.0 / gait.footstep_time)
             self._cadence = (velocity, self._timing(max(gait.min_footstep_time, time)))
         return self._cadence[1]
@@ -192,9 +190,10 @@ class FootstepPlanner:
         """Scale a landing in the frame of the support foot into the ellipse of reach [m]."""
         limits = self._limits
         centre = side * 2.0 * self._gait.half_stance
-        norm = (x / limits.reach_forward) ** 2 + ((y - centre) / limits.reach_side) ** 2
-        if norm > 1.0:
-            scale = norm**-0.5
+        along, across = x / limits.reach_forward, (y - centre) / limits.reach_side
+        square = along * along + across * across
+        if square > 1.0:
+            scale = 1.0 / sqrt(square)
             x, y = x * scale, centre + (y - centre) * scale
         return x, y
 

@@ -18,7 +18,8 @@ def limited(command: VelocityCommand, limits: LimitParameters) -> Velocity:
     """
     vx, vy, wz = _within(command, limits)
     max_vx = limits.vx if vx >= 0.0 else limits.vx_backward
-    norm = sqrt((vx / max_vx) ** 2 + (vy / limits.vy) ** 2 + (wz / limits.wz) ** 2)
+    x, y, turned = vx / max_vx, vy / limits.vy, wz / limits.wz
+    norm = sqrt(x * x + y * y + turned * turned)
     if norm > limits.combined:
         scale = limits.combined / norm
         return vx * scale, vy * scale, wz * scale

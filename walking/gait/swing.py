@@ -1,6 +1,6 @@
 """Foot references at rest, minimum swing time, and rate limit of the landing."""
 
-from math import ceil, hypot
+from math import ceil
 
 import numpy as np
 
@@ -9,6 +9,7 @@ from walking.foothold import Foothold
 from walking.gait.minimum_jerk import PEAK
 from walking.gait.swing_foot_kernel import HEIGHT, RATE, WIDTH
 from walking.parameters import CONTROL_PERIOD
+from walking.planar import norm
 
 ROUNDING = 1e-7  # rounding error, relative to the maximum change [1]
 
@@ -30,7 +31,7 @@ def stand(foot: Array, foothold: Foothold) -> None:
 def min_ticks(foot: Array, landing: Foothold, speed: float) -> int:
     """Return the control ticks of a swing to `landing` with a peak speed [m/s]."""
     x, y = foot[:2].tolist()
-    distance = hypot(landing.x - x, landing.y - y)
+    distance = norm(landing.x - x, landing.y - y)
     return ceil(PEAK * distance / (speed * CONTROL_PERIOD))
 
 

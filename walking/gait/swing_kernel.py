@@ -31,7 +31,7 @@ def profile(ticks: int, ramp: Vector, period: float) -> Array:
     """
     growth, first, last = ramp
     table = np.zeros((ticks + 1, 6))
-    square = (ticks * period) ** 2
+    square = ticks * period * (ticks * period)
     for k in range(ticks + 1):
         u = k / ticks
         rest = 1.0 - u

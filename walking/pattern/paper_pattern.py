@@ -61,13 +61,13 @@ def zmp_function(omega: float, time: float, a: float, b: float) -> ZmpFunction:
         return ZmpFunction(0.0, 0.0)
     middle = b * (1.0 + growth) + a * (1.0 + 1.0 / growth)
     # Both roots without cancellation: q / (2b) and 2a / q.
-    q = 0.5 * (middle + (1.0 if middle >= 0.0 else -1.0) * sqrt(max(0.0, middle**2 - 16.0 * a * b)))
+    q = 0.5 * (middle + (1.0 if middle >= 0.0 else -1.0) * sqrt(max(0.0, middle * middle - 16.0 * a * b)))
     roots = [2.0 * a / q if q != 0.0 else inf, q / (2.0 * b) if b != 0.0 else inf]
     z = min(roots, key=lambda root: max(1.0 - root, root - growth))
     z = min(growth, max(1.0, z))
     unit_a, unit_b = 1.0 + growth - 2.0 * z, 2.0 / z - 1.0 / growth - 1.0
     # Least squares of the two ratios, which differ by rounding only.
-    level = (a * unit_a + b * unit_b) / (unit_a**2 + unit_b**2)
+    level = (a * unit_a + b * unit_b) / (unit_a * unit_a + unit_b * unit_b)
     return ZmpFunction(level, log(z) / omega)
 
 

@@ -1,6 +1,6 @@
 """Support region and support polygon of one or two soles."""
 
-from math import cos, dist, hypot, sin
+from math import cos, sin
 
 import numpy as np
 
@@ -8,7 +8,7 @@ from walking.arrays import Array
 from walking.body.sole import Sole
 from walking.foothold import Foothold
 from walking.pattern import support_kernel
-from walking.planar import from_frame
+from walking.planar import from_frame, norm
 
 Polygon = tuple[tuple[float, float], ...]
 """Corners of a convex polygon, counter-clockwise [m]."""
@@ -108,7 +108,7 @@ def edges(polygon: Polygon) -> Array:
     ax, ay = polygon[-1]
     for bx, by in polygon:
         dx, dy = bx - ax, by - ay
-        rows.append((ax, ay, dx, dy, hypot(dx, dy)))
+        rows.append((ax, ay, dx, dy, norm(dx, dy)))
         ax, ay = bx, by
     return np.array(rows)
 
@@ -128,7 +128,11 @@ def _hull(points: list[tuple[float, float]]) -> Polygon:
     Equal points count once. The test of the turn has no tolerance, which could drop a corner of an
     edge along y.
     """
-    points = sorted(p for i, p in enumerate(points) if all(dist(p, q) > SAME for q in points[:i]))
+    points = sorted(
+        (x, y)
+        for i, (x, y) in enumerate(points)
+        if all(norm(x - u, y - v) > SAME for u, v in points[:i])
+    )
     halves = []
     for ordered in (points, points[::-1]):
         chain: list[tuple[float, float]] = []

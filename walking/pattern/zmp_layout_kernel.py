@@ -14,7 +14,7 @@ Knots in the same parallelogram are a *cell*, a row of
 `starts` (n + 1,) holds the index of the first knot of every cell, `weights` those of all knots.
 """
 
-from math import cos, exp, hypot, sin
+from math import cos, exp, sin, sqrt
 
 import numpy as np
 
@@ -230,11 +230,12 @@ def between(ramp: Array, elapsed: float, sole: Sole, cell: Array) -> None:
     length = min(length, width / slant) if slant > 0.0 else length
     ax, ay = _edge(first, centre, width - length * slant)
     bx, by = _edge(second, centre, width - length * slant)
-    span = hypot(bx - ax, by - ay)
+    dx, dy = bx - ax, by - ay
+    span = sqrt(dx * dx + dy * dy)
     cx, cy = 0.5 * (ax + bx), 0.5 * (ay + by)
     cell[0], cell[1] = cx, cy
     cell[2], cell[3] = cos(middle), sin(middle)
-    cell[4], cell[5] = (bx - ax) / span, (by - ay) / span
+    cell[4], cell[5] = dx / span, dy / span
     x = ramp[1] + elapsed * (ramp[3] - ramp[1])
     y = ramp[2] + elapsed * (ramp[4] - ramp[2])
     cell[6], cell[7] = sides(cell, x - cx, y - cy)

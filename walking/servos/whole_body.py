@@ -43,7 +43,7 @@ class WholeBody:
         pendulum: PendulumState,
     ) -> None:
         self._robot = robot
-        self._w2 = lipm.omega**2
+        self._w2 = lipm.omega * lipm.omega
         self._gait = gait
         self._pendulum = pendulum
         self._posture = Posture(robot, parameters)
