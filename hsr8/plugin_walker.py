@@ -15,14 +15,14 @@ from numpy.typing import ArrayLike, NDArray
 from hsr8.errors import UsageError
 from hsr8.plugin_file import start_plugin
 from hsr8.plugin_method import PluginMethod, numbers, shown
-from walking.body.odometry import LegOdometry
 from walking.body.robot_model import RobotModel
 from walking.command import Command, HeadTarget, VelocityCommand
 from walking.command_limits import CommandLimits, Limit
+from walking.head import Head
 from walking.observer import BodyEstimate, BodyObserver
+from walking.odometry import LegOdometry
 from walking.parameters import CONTROL_PERIOD, WalkingParameters
 from walking.sensing import BodySensors
-from walking.servos.head import Head
 from walking.state import WalkingState
 from walking.targets import JointTargets
 from walking.value import value
@@ -156,8 +156,7 @@ class PluginEngine:
         self._walker = walker
         self._lower, self._upper = robot.lower, robot.upper
         self._observer = BodyObserver(robot, parameters, odometry)
-        self._head = Head(robot.neck.angles(robot.ready), robot.neck.range(), parameters.head)
-        self._neck = robot.neck if robot.tree.head is not None else None
+        self._head = Head(robot, parameters)
         self._command: VelocityCommand | None = None
 
     @property
@@ -191,8 +190,7 @@ class PluginEngine:
             self._walker.reset()
         self._command = VelocityCommand(*command.velocity)
         estimate = self._observer.update(sensors)
-        gaze = self._head.advance(head)
-        angles = np.array(self._neck.joints(*gaze) if self._neck is not None else ())
+        angles = self._head.advance(head)
         setpoints = self._walker.step(sensors, self._command, angles, estimate)
         setpoints = np.clip(setpoints, self._lower, self._upper)
         return JointTargets(position=setpoints, setpoint=setpoints)

@@ -18,7 +18,7 @@ from navigation.observation import CameraView, Frame, Observation, Sight
 from vision.camera import CameraPose
 from vision.detection import Detection
 from vision.parameters import PoseParameters
-from walking.body.odometry import Odometry, increment
+from walking.odometry import Odometry, increment
 from walking.command import Command, HeadTarget, VelocityCommand
 from walking.sensing import BodySensors
 from walking.state import HeadCameraPose, WalkingState

@@ -1,19 +1,19 @@
 """Foothold."""
 
-from collections.abc import Sequence
+from typing import NamedTuple
 
-from walking.planar import Frame
-from walking.value import comparable_value
+from compilation import compiled
+from walking.planar import Frame, from_frame
+from walking.records import Record
 
 
-@comparable_value
-class Foothold:
+class Foothold(NamedTuple):
     """Pose of a foot on the floor, in the plan frame; in a `WalkingState`, in the odometry frame.
 
     Attributes:
         left: whether it is the left foot.
         x, y: position of the foot frame on the floor [m].
-        yaw: of the foot [rad].
+        yaw: yaw of the foot [rad].
     """
 
     left: bool
@@ -21,27 +21,45 @@ class Foothold:
     y: float
     yaw: float
 
-    def towards(self, other: "Foothold", fraction: float) -> "Foothold":
-        """Interpolate linearly to another foothold of the same foot."""
-        return Foothold(
-            left=other.left,
-            x=self.x + fraction * (other.x - self.x),
-            y=self.y + fraction * (other.y - self.y),
-            yaw=self.yaw + fraction * (other.yaw - self.yaw),
-        )
-
     @property
     def frame(self) -> Frame:
         """Foot frame in the plan frame."""
         return self.x, self.y, self.yaw
 
-    @property
-    def row(self) -> tuple[float, float, float, float]:
-        """Row for kernels: x, y, yaw, and 1 for a left foot, 0 for a right one."""
-        return self.x, self.y, self.yaw, 1.0 if self.left else 0.0
 
-    @staticmethod
-    def from_row(row: Sequence[float]) -> "Foothold":
-        """Return the foothold of a `row`."""
-        x, y, yaw, left = row
-        return Foothold(left > 0.0, x, y, yaw)
+@compiled
+def foothold(record: Record) -> Foothold:
+    """Return the value of a record `FOOTHOLD`."""
+    return Foothold(record.left, record.x, record.y, record.yaw)
+
+
+@compiled
+def put(record: Record, foot: Foothold) -> None:
+    """Set a record `FOOTHOLD`."""
+    record.left, record.x, record.y, record.yaw = foot.left, foot.x, foot.y, foot.yaw
+
+
+@compiled
+def towards(one: Foothold, other: Foothold, fraction: float) -> Foothold:
+    """Interpolate linearly to another foothold of the same foot."""
+    return Foothold(
+        other.left,
+        one.x + fraction * (other.x - one.x),
+        one.y + fraction * (other.y - one.y),
+        one.yaw + fraction * (other.yaw - one.yaw),
+    )
+
+
+@compiled
+def placed(support: Foothold, x: float, y: float, turned: float) -> Foothold:
+    """Return the foothold of the other foot at x, y [m] and yaw [rad] in the support foot's frame."""
+    px, py = from_frame((support.x, support.y, support.yaw), x, y)
+    return Foothold(not support.left, px, py, support.yaw + turned)
+
+
+@compiled
+def equal(one: Foothold, other: Foothold) -> bool:
+    """Whether two footholds are the same number by number."""
+    return (
+        one.left == other.left and one.x == other.x and one.y == other.y and one.yaw == other.yaw
+    )

@@ -4,30 +4,28 @@ from math import asin, atan2
 
 import numpy as np
 
-from walking import published_state_kernel
-from walking.arrays import Array, Point
-from walking.body import estimation_kernel
-from walking.body.estimation import Estimation
+from walking.arrays import Array, Point, Vector
 from walking.body.foot_contacts import FootContacts
-from walking.body.measurement import BodyMeasurement
-from walking.body.odometry import LegOdometry
 from walking.body.robot_model import RobotModel
 from walking.body.rolling_feet import RollingFeet
-from walking.body.steady_gains import steady_gains
 from walking.command import VelocityCommand
 from walking.command_limits import CommandLimits
+from walking.constants import robot_record
+from walking.estimation import filter_error, pressure
 from walking.foothold import Foothold
+from walking.odometry import LegOdometry, reckon
 from walking.parameters import CONTROL_PERIOD, GRAVITY, WalkingParameters
-from walking.pattern.lipm import Lipm
-from walking.pattern.support import SupportPolygon
 from walking.phase import Phase
 from walking.planar import Frame, from_frame, norm, rotate, rotate_back
+from walking.published import incline
+from walking.records import WALK, parameters_record
 from walking.sensing import BodySensors
 from walking.state import Balance, HeadCameraPose, WalkingState
+from walking.support import depth, polygon
+from walking.tick import is_fallen, watch
 from walking.value import value
 
 VELOCITY_TIME = 0.05  # time constant of the legs in the velocity filter [s]
-PRESSURE = 20  # index of the centres of pressure in the measurements
 SLIP = 0.1  # standard deviation of the slip of unknown feet, relative to the distance walked [1]
 FULL_LOAD = 0.5  # of the weight on the feet, above which the legs have their full weight [1]
 
@@ -66,13 +64,13 @@ class BodyObserver:
     ) -> None:
         self._robot = robot = robot.with_own_buffers()
         self._odometry = odometry
-        self._omega = omega = Lipm(parameters.pattern.lipm_height).omega
-        self._estimation = Estimation(robot, omega, parameters.estimator, odometry)
+        self._dynamics = robot.dynamics
+        self._robots, _ = robot_record(robot, parameters)
+        self._parameters = parameters_record(parameters)
+        self._walks = np.zeros(1, WALK)
+        self._sensing = self._walks[0].sensing
         self._contacts = FootContacts(robot.mass, parameters.gait)
         self._full_load = FULL_LOAD * robot.mass * GRAVITY
-        self._fall_tilt = parameters.estimator.fall_tilt
-        self._gains = np.array([*steady_gains(omega, parameters.estimator), omega])
-        self._com = np.zeros(5)  # state of the filter, see `estimation_kernel.filter_error`
         self._zmp: Point = (0.0, 0.0)
         self._feet = np.zeros((2, 4))  # in the odometry frame: x, y, height [m], yaw [rad]
         self._rolling = RollingFeet()
@@ -83,44 +81,54 @@ class BodyObserver:
     @property
     def fallen(self) -> bool:
         """Whether the tilt of the trunk is that of a fallen robot."""
-        tilt = self._estimation.tilt
-        return tilt is not None and norm(*tilt) > self._fall_tilt
+        return is_fallen(self._walks[0], self._parameters[0])
 
     def observe(self, sensors: BodySensors) -> None:
         """Update only the attitude, in a tick in which the robot is off its feet."""
-        self._estimation.observe(sensors)
         self._sensors = sensors
+        watch(
+            self._walks,
+            sensors.joint_position,
+            self._dynamics.com(sensors.joint_position),
+            sensors.orientation,
+            sensors.gyro,
+            sensors.foot_force,
+            *self._robot.feet_chains,
+            self._robots,
+            self._parameters,
+        )
 
     def update(self, sensors: BodySensors) -> BodyEstimate:
         """Run one tick; return the estimate."""
         self.observe(sensors)
-        estimation, contacts = self._estimation, self._contacts
-        contacts.update(estimation.load(0), estimation.load(1))
-        yaw, body, tilt = float(estimation.measured[2]), self._body, np.empty((3, 3))
-        published_state_kernel.incline(body.roll, body.pitch, tilt)
-        feet = np.array([(foot.x, foot.y, foot.z) for foot in body.feet])
+        sensing, contacts = self._sensing, self._contacts
+        contacts.update(*sensing.feet.load.tolist())
+        yaw, tilt = float(sensing.heading), np.empty((3, 3))
+        incline(sensing.roll, sensing.pitch, tilt)
+        measured = sensing.feet
+        feet = np.column_stack([measured.x, measured.y, measured.z])
         self._roll(sensors, feet, tilt, yaw)
         left, right = (feet[:, :2] + self._rolling.rolled).tolist()
-        self._odometry.advance(
+        reckon(
+            self._odometry.records[0],
             yaw,
             ((left[0], left[1]), (right[0], right[1])),
-            body.right_load,
-            stepping=contacts.phase is not Phase.STANDING,
+            sensing.right_load,
+            contacts.phase is not Phase.STANDING,
         )
         self._add_slip()
         pose, height = self._pose, self._height
         self._follow_velocity(sensors, tilt, yaw)
-        for side, foot in enumerate(body.feet):
-            x, y = from_frame(pose, foot.x, foot.y)
-            self._feet[side] = x, y, height + foot.z, pose[2] + foot.yaw
-        self._follow_com(body, pose)
+        for side, (x, y, z, foot_yaw, *_) in enumerate(measured.tolist()):
+            self._feet[side] = *from_frame(pose, x, y), height + z, pose[2] + foot_yaw
+        self._follow_com(pose)
         vx, vy, vz = self._velocity.tolist()
         on_left, on_right = contacts.on_floor
         return BodyEstimate(
             pose=np.array(pose),
             height=height,
-            roll=body.roll,
-            pitch=body.pitch,
+            roll=float(sensing.roll),
+            pitch=float(sensing.pitch),
             velocity=np.array([*rotate_back(yaw, vx, vy), vz]) @ tilt,
             on_floor=(on_left, on_right),
         )
@@ -133,51 +141,45 @@ class BodyObserver:
         """
         if self._sensors is None:
             raise RuntimeError("the observer has no state before its first tick")
-        body, omega = self._body, self._omega
+        sensing, omega = self._sensing, float(self._robots[0].omega)
         feet = tuple(
             Foothold(left=side == 0, x=x, y=y, yaw=yaw)
             for side, (x, y, _, yaw) in enumerate(self._feet.tolist())
         )
-        support, other = feet if body.right_load < 0.5 else feet[::-1]
+        support, other = feet if sensing.right_load < 0.5 else feet[::-1]
         single = self._contacts.phase in (Phase.LEFT_SUPPORT, Phase.RIGHT_SUPPORT)
-        polygon = SupportPolygon(self._robot.sole, (support, support if single else other))
-        x, y, vx, vy, _ = self._com.tolist()
+        corners = polygon(self._robots[0].sole, other, support, single)
+        x, y, vx, vy = (float(sensing[name]) for name in ("x", "y", "vx", "vy"))
         dcm = np.array([x + vx / omega, y + vy / omega])
         return WalkingState(
             phase=self._contacts.phase,
             odometry=self._odometry.pose(),
-            camera=self._camera(self._sensors, body),
+            camera=self._camera(self._sensors),
             applied_velocity=np.array(command.velocity),
             footsteps=(support, other),
             zmp=np.array(self._zmp),
             dcm=dcm,
-            com=np.array(from_frame(self._pose, body.com[0], body.com[1])),
-            roll=body.roll,
-            pitch=body.pitch,
+            com=np.array(from_frame(self._pose, sensing.com[0], sensing.com[1])),
+            roll=float(sensing.roll),
+            pitch=float(sensing.pitch),
             step_count=self._contacts.step_count,
             fallen=self.fallen,
             balance=Balance(
                 com=np.array([x, y]),
                 dcm=dcm,
-                support=polygon.edges()[:, :2].copy(),
-                zmp_depth=polygon.depth(*self._zmp),
+                support=corners,
+                zmp_depth=depth(corners, *self._zmp),
                 feet=self._feet.copy(),
                 capture=np.zeros(2),
             ),
             command_limits=CommandLimits(command, command, ()),
         )
 
-    @property
-    def _body(self) -> BodyMeasurement:
-        body = self._estimation.body
-        assert body is not None
-        return body
-
-    def _camera(self, sensors: BodySensors, body: BodyMeasurement) -> HeadCameraPose:
+    def _camera(self, sensors: BodySensors) -> HeadCameraPose:
         """Return the camera in the robot frame; every joint that carries it may move."""
         rotation, position = self._robot.frame_pose(self._robot.tree.camera, sensors.joint_position)
         tilt = np.empty((3, 3))
-        published_state_kernel.incline(body.roll, body.pitch, tilt)
+        incline(self._sensing.roll, self._sensing.pitch, tilt)
         ahead, left, up = rotation[:, 2].tolist()
         pan_rate, tilt_rate = self._robot.neck.rates(sensors.joint_velocity)
         return HeadCameraPose(
@@ -192,14 +194,14 @@ class BodyObserver:
 
     @property
     def _pose(self) -> Frame:
-        x, y, yaw = self._odometry.state[:3].tolist()
-        return x, y, yaw
+        odometry = self._odometry.records[0]
+        return float(odometry.x), float(odometry.y), float(odometry.yaw)
 
     @property
     def _height(self) -> float:
         """Height of the base above the contact point of the loaded foot [m]."""
         left, right = self._rolling.contact[:, 2].tolist()
-        load = self._body.right_load
+        load = self._sensing.right_load
         return float(-(1.0 - load) * left - load * right)
 
     def _roll(self, sensors: BodySensors, feet: Array, tilt: Array, yaw: float) -> None:
@@ -207,8 +209,9 @@ class BodyObserver:
         joints = sensors.joint_position
         feet_frames = self._robot.tree.feet
         rotations = [tilt @ self._robot.frame_pose(frame, joints)[0] for frame in feet_frames]
-        pressure = self._estimation.measured[PRESSURE:].reshape(2, 2)
-        self._rolling.update(feet, np.array(rotations), pressure, yaw, self._contacts.on_floor)
+        centres = self._sensing.feet
+        pressures = np.column_stack([centres.pressure_x, centres.pressure_y])
+        self._rolling.update(feet, np.array(rotations), pressures, yaw, self._contacts.on_floor)
 
     def _add_slip(self) -> None:
         """Add the unmeasured slip of every footstep to the covariance of the odometry."""
@@ -222,22 +225,26 @@ class BodyObserver:
         """Integrate the accelerometer, corrected by the legs over the points of contact."""
         ax, ay, az = (tilt @ sensors.accelerometer).tolist()
         self._velocity += CONTROL_PERIOD * np.array([*rotate(yaw, ax, ay), az - GRAVITY])
-        load = self._body.right_load
+        load = float(self._sensing.right_load)
         weights = np.array([1.0 - load, load])
         by_legs = -weights @ self._rolling.motion / CONTROL_PERIOD
-        carried = (self._estimation.load(0) + self._estimation.load(1)) / self._full_load
+        left, right = self._sensing.feet.load.tolist()
+        carried = (left + right) / self._full_load
         gain = min(1.0, carried) * CONTROL_PERIOD / (VELOCITY_TIME + CONTROL_PERIOD)
         self._velocity += gain * (by_legs - self._velocity)
 
-    def _follow_com(self, body: BodyMeasurement, pose: Frame) -> None:
+    def _follow_com(self, pose: Frame) -> None:
         """Filter the centre of mass as an inverted pendulum over the centre of pressure."""
-        com = from_frame(pose, body.com[0], body.com[1])
-        frames = np.ascontiguousarray(self._feet[:, [0, 1, 3]])
-        zmp_x, zmp_y, load = estimation_kernel.pressure(self._estimation.measured, frames)
-        first = self._com[4] == 0.0
-        if first:
-            self._com[:] = *com, 0.0, 0.0, 1.0
+        sensing = self._sensing
+        com = from_frame(pose, sensing.com[0], sensing.com[1])
+        left, right = (self._frame_of(side) for side in range(2))
+        zmp_x, zmp_y, load = pressure(sensing, left, right)
+        if not sensing.weighted:
+            sensing.x, sensing.y, sensing.weighted = *com, True
         self._zmp = (zmp_x, zmp_y) if load > 0.0 else com
-        estimation_kernel.filter_error(
-            self._com, com, self._zmp, (0.0, 0.0), self._gains, CONTROL_PERIOD
-        )
+        filter_error(sensing, com, self._zmp, (0.0, 0.0), self._robots[0])
+
+    def _frame_of(self, side: int) -> Vector:
+        """Return the frame of a foot in the odometry frame."""
+        x, y, _, yaw = self._feet[side].tolist()
+        return x, y, yaw

@@ -10,10 +10,10 @@ from math import sqrt
 import numpy as np
 
 from walking.arrays import Array
-from walking.body import feedforward_kernel
 from walking.body.leg import FootPose
 from walking.body.robot_model import RobotModel
 from walking.body.tree import LEFT_LEG, RIGHT_LEG
+from walking.feedforward import support_torque
 from walking.parameters import (
     CONTROL_PERIOD,
     GRAVITY,
@@ -149,7 +149,7 @@ def one_leg_load(robot: RobotModel, half_stance: float, height: float) -> Array:
         up = np.array([0.0, com[1] - foot.y, com[2] - foot.z])
         force = robot.mass * GRAVITY * up / up[2]
         torques = [
-            feedforward_kernel.support_torque(axis, origin, tuple(point), tuple(force))
+            support_torque(axis, origin, tuple(point), tuple(force))
             for axis, origin in zip(axes, origins, strict=True)
         ]
         loads[part] = np.abs(torques) / robot.tree.effort[part]

@@ -1,7 +1,7 @@
 """State that walking publishes: odometry, camera pose, gait, balance."""
 
 from walking.arrays import Array
-from walking.body.odometry import Odometry
+from walking.odometry import Odometry
 from walking.command_limits import CommandLimits
 from walking.foothold import Foothold
 from walking.phase import Phase

@@ -7,12 +7,12 @@ from typing import Protocol
 
 import numpy as np
 
-from walking.body.odometry import LegOdometry
 from walking.body.robot_model import RobotModel
 from walking.command import Command, HeadTarget, VelocityCommand
 from walking.command_limits import CommandLimits, Limit
 from walking.engine import WalkingEngine
 from walking.get_up.get_up import GetUp, Outcome
+from walking.odometry import LegOdometry
 from walking.parameters import WalkingParameters
 from walking.phase import Phase
 from walking.sensing import BodySensors
@@ -103,7 +103,7 @@ class Walker:
     @property
     def yaw(self) -> float:
         """Heading in the odometry frame [rad]."""
-        return float(self._odometry.state[2])
+        return self._odometry.yaw
 
     @property
     def down(self) -> bool:

@@ -167,7 +167,7 @@ RECORD = Row(
     Column(
         "odometry_covariance",
         "walking.odometry.covariance",
-        "covariance of its error, see `walking.body.odometry`",
+        "covariance of its error, see `walking.odometry`",
         POSE_COVARIANCE,
         (3, 3),
     ),

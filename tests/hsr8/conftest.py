@@ -28,7 +28,7 @@ from navigation.observation import CameraView, Frame
 from navigation.parameters.belief import LocalMapParameters
 from vision.detection import Detection
 from walking.body.joints import JOINT_NAMES
-from walking.body.odometry import Odometry
+from walking.odometry import Odometry
 from walking.command import HeadTarget, VelocityCommand
 from walking.foothold import Foothold
 from walking.phase import Phase

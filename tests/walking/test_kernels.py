@@ -10,7 +10,7 @@ from walking.body import (
     estimation_kernel,
     feedforward_kernel,
     head_kernel,
-    kinematics_kernel,
+    kinematics,
 )
 from walking.command import CommandState, HeadTarget, VelocityCommand
 from walking.engine import WalkingEngine
@@ -32,9 +32,9 @@ KERNELS = [
     (support_kernel, "load_fraction"),
     (support_kernel, "depth"),
     (estimation_kernel, "estimate"),
-    (kinematics_kernel, "pose"),
-    (kinematics_kernel, "feet_poses"),
-    (kinematics_kernel, "chain_end"),
+    (kinematics, "pose"),
+    (kinematics, "feet_poses"),
+    (kinematics, "chain_end"),
     (feedforward_kernel, "rates"),
     (feedforward_kernel, "offsets"),
     (head_kernel, "advance"),

@@ -1,6 +1,6 @@
 """Foot contacts, gait phase and footsteps from the measured loads of the feet."""
 
-from walking.body.estimation import LIGHT_LOAD
+from walking.estimation import LIGHT_LOAD
 from walking.parameters import CONTROL_PERIOD, GRAVITY, GaitParameters
 from walking.phase import Phase
 

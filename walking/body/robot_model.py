@@ -8,7 +8,7 @@ from math import sqrt
 import numpy as np
 import pinocchio as pin
 
-from walking.arrays import Array, Point
+from walking.arrays import Array, Indices, Point
 from walking.body.leg import FootPose, Leg
 from walking.body.neck import Neck
 from walking.body.sole import Sole
@@ -21,6 +21,46 @@ ANKLE_USED = 0.9  # of the torque of an ankle that shifts the ZMP [1]
 BENT = 5.0 / 6.0  # walking height of the hips per length of the leg [1]
 SMALL = 1e-5  # step of finite differences [m]
 BASE = "base"
+
+
+class Dynamics:
+    """Dynamic model with buffers of its own, so that engines of the same robot share nothing.
+
+    Args:
+        model: of Pinocchio.
+        in_q: indices of the joints in its position (n,).
+
+    Attributes:
+        q, v, a: position, velocity and acceleration of level base and joints in the order of
+            Pinocchio, input of `forces`.
+    """
+
+    def __init__(self, model: pin.Model, in_q: Indices) -> None:
+        self._model, self._data, self._in_q = model, model.createData(), in_q
+        self._measured = pin.neutral(model)
+        self.q, self.v, self.a = pin.neutral(model), np.zeros(model.nv), np.zeros(model.nv)
+
+    def com(self, joint_position: Array) -> Array:
+        """Return the centre of mass in the base frame (3,) [m] for joint angles (n,) [rad]."""
+        self._measured[self._in_q] = joint_position
+        com: Array = pin.centerOfMass(self._model, self._data, self._measured, False)
+        return com
+
+    def forces(self) -> Array:
+        """Return the generalised forces of the motion without contact, those of the base first."""
+        forces: Array = pin.rnea(self._model, self._data, self.q, self.v, self.a)
+        return forces
+
+    def moved_com(self) -> Array:
+        """Return the centre of mass in the base frame (3,) [m] in the last call of `forces`."""
+        com: Array = pin.centerOfMass(self._model, self._data, pin.POSITION, False)
+        return com
+
+    def joint_pose(self, name: str, joint_position: Array) -> pin.SE3:
+        """Return the pose of a joint in the base frame for joint angles (n,) [rad]."""
+        self._measured[self._in_q] = joint_position
+        pin.forwardKinematics(self._model, self._data, self._measured)
+        return self._data.oMi[self._model.getJointId(name)]
 
 
 class RobotModel:
@@ -36,15 +76,14 @@ class RobotModel:
         legs: left and right leg.
         chains: of the legs, for kernels (2, 7, 15).
         feet_chains: from the base to the feet, with a waist above the legs, and their joints, see
-            `kinematics_kernel.feet_poses`.
+            `kinematics.feet_poses`.
         neck: pan and tilt of the camera.
         sole: rectangle of each sole.
         support: part of it that the ankles can press on the floor.
         ready: joint angles of the ready posture, see `stand` (n,) [rad].
-        motion: position, velocity and acceleration of level base and joints in Pinocchio's order,
-            input of `forces`.
-        indices: of the joints in that position and velocity (n,).
+        indices: of the joints in position and velocity of the dynamic model (n,).
         lower, upper: joint limits (n,) [rad].
+        dynamics: of the robot; see `with_own_buffers`.
         stiffness: of each servo, stiffened in the legs (n,) [N m/rad].
         stiffening: of the servos of soft legs by feedback of the joint angles, see `_stiffen` [1].
         damping: of each servo and its joint (n,) [N m s/rad].
@@ -55,10 +94,11 @@ class RobotModel:
         self.names = tree.names
         self._model = _dynamic_model(tree)
         ids = [self._model.getJointId(name) for name in tree.names]
-        self._q_index = np.array([self._model.joints[i].idx_q for i in ids])
-        self._v_index = np.array([self._model.joints[i].idx_v for i in ids])
-        self._make_buffers()
-        self.indices = self._q_index, self._v_index
+        self.indices = (
+            np.array([self._model.joints[i].idx_q for i in ids]),
+            np.array([self._model.joints[i].idx_v for i in ids]),
+        )
+        self.dynamics = Dynamics(self._model, self.indices[0])
         self.mass = float(tree.masses.sum())
         self.chains = np.array(
             [
@@ -81,20 +121,6 @@ class RobotModel:
         self.stiffness = tree.stiffness.copy()
         self.damping: Array = tree.servo_damping + tree.joint_damping
         self.stiffening = self._stiffen()
-
-    def with_own_buffers(self) -> RobotModel:
-        """Return the same robot with separate buffers for its kinematics and dynamics.
-
-        Several engines of one robot then run in turn or in threads without affecting each other.
-        """
-        robot = copy(self)
-        robot._make_buffers()
-        return robot
-
-    def _make_buffers(self) -> None:
-        self._data = self._model.createData()
-        self._q = pin.neutral(self._model)
-        self.motion = self._q, np.zeros(self._model.nv), np.zeros(self._model.nv)
 
     def stand(self, height: float, half_stance: float) -> float:
         """Set the ready posture: level feet below the centre of mass, legs bent.
@@ -134,12 +160,18 @@ class RobotModel:
         self.stiffness[: RIGHT_LEG.stop] *= factor
         return factor
 
+    def with_own_buffers(self) -> RobotModel:
+        """Return the same robot with separate buffers for its kinematics and dynamics.
+
+        Several engines of one robot then run in turn or in threads without affecting each other.
+        """
+        robot = copy(self)
+        robot.dynamics = Dynamics(self._model, self.indices[0])
+        return robot
+
     def com(self, joint_position: Array) -> Array:
         """Return the centre of mass in the base frame (3,) [m] for joint angles (n,) [rad]."""
-        q = self._q
-        q[self._q_index] = joint_position
-        com: Array = pin.centerOfMass(self._model, self._data, q, False)
-        return com
+        return self.dynamics.com(joint_position)
 
     def inverse_dynamics(
         self,
@@ -160,25 +192,15 @@ class RobotModel:
             torque of each joint, gravity included (n,) [N m]; force [N] and moment [N m] at the
             base, in its frame and about its origin (6,).
         """
-        q, v, a = self.motion
-        q[self._q_index] = position
-        v[self._v_index] = velocity
-        a[self._v_index] = acceleration
-        a[0], a[1] = base_acceleration
-        forces = self.forces()
-        joints: Array = forces[self._v_index]
+        motion, (in_q, in_v) = self.dynamics, self.indices
+        motion.q[in_q] = position
+        motion.v[in_v] = velocity
+        motion.a[in_v] = acceleration
+        motion.a[:2] = base_acceleration
+        forces = motion.forces()
+        joints: Array = forces[in_v]
         base: Array = forces[:6].copy()
         return joints, base
-
-    def forces(self) -> Array:
-        """Return the generalised forces of `motion` without contact, those of the base first."""
-        forces: Array = pin.rnea(self._model, self._data, *self.motion)
-        return forces
-
-    def moved_com(self) -> tuple[float, float]:
-        """Return the centre of mass in the base frame, x, y [m], in the last call of `forces`."""
-        x, y, _ = pin.centerOfMass(self._model, self._data, pin.POSITION, False).tolist()
-        return x, y
 
     def pendulum_height(self) -> float:
         """Return the height of the equivalent pendulum [m].
@@ -220,12 +242,9 @@ class RobotModel:
 
     def frame_pose(self, frame: Frame, joint_position: Array) -> tuple[Array, Array]:
         """Return rotation (3, 3) and position (3,) [m] of a frame in the base frame."""
-        q = self._q
-        q[self._q_index] = joint_position
-        pin.forwardKinematics(self._model, self._data, q)
         if frame.joint < 0:
             return frame.rotation, frame.position
-        joint = self._data.oMi[self._model.getJointId(self.names[frame.joint])]
+        joint = self.dynamics.joint_pose(self.names[frame.joint], joint_position)
         return joint.rotation @ frame.rotation, joint.act(frame.position)
 
     def leg_groups(self) -> dict[str, tuple[int, ...]]:

@@ -96,7 +96,7 @@ class RobotTree:
         return path[::-1]
 
     def chain(self, joints: list[int], end: Frame) -> Array:
-        """Return the chain of some joints to a frame, see `kinematics_kernel` (k + 1, 15).
+        """Return the chain of some joints to a frame, see `kinematics` (k + 1, 15).
 
         All other joints between base and frame keep their angle of the posture.
 

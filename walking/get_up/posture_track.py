@@ -6,7 +6,7 @@ import numpy as np
 
 from walking.arrays import Array
 from walking.body.robot_model import RobotModel
-from walking.gait.minimum_jerk import PEAK, minimum_jerk
+from walking.swing import PEAK, minimum_jerk
 from walking.parameters import CONTROL_PERIOD
 
 

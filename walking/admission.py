@@ -1,0 +1,299 @@
+"""Admission: transition from the last plan to the wanted one, as far as the ZMP constraints allow.
+
+Bisection between the last plan, which stays feasible, and the wanted one; landing, later strides and
+timing change together (Lee & Kim, J. Electr. Eng. Technol. 9(1), 2014). After a disturbance the
+last plan may be infeasible, too; then the generator approximates the wanted one.
+
+A walk that ends takes the shortest footstep after which the next one can close the stance: any
+other compromise takes the body farther and costs more footsteps.
+
+A plan that is tried is a copy: the plan in force changes only when one is taken.
+"""
+
+from typing import NamedTuple
+
+from compilation import compiled
+from walking.footsteps import landing_of, towards_strides
+from walking.foothold import Foothold, foothold, put, towards
+from walking.gait import aimed, plan_walk, retime, support_foot, update_phase
+from walking.patterns import is_feasible, remains_feasible
+from walking.records import BEST, LIVE, PAPER, TRIAL, Record
+from walking.support import Region
+
+BISECTIONS = 4  # at most 1/16 short of the maximum admissible change
+
+
+class Plans(NamedTuple):
+    """Plan in force, plan that is tried, and best admitted plan, see `walking.records.LIVE`.
+
+    Attributes:
+        records: the plans (3,).
+        ramps: ZMP reference of each (3, n).
+        steps: footholds of each (3, m).
+        knots: knots of each (3, k).
+    """
+
+    records: Record
+    ramps: Record
+    steps: Record
+    knots: Record
+
+
+class Model(NamedTuple):
+    """Constants of the walk.
+
+    Attributes:
+        robot: of the robot.
+        parameters: of the walk.
+        still: strides of stepping in place.
+        sums: sums of the gains of preview control.
+    """
+
+    robot: Record
+    parameters: Record
+    still: Record
+    sums: Record
+
+
+@compiled
+def plan_in(
+    plans: Plans, which: int, landing: Foothold, following: Record, moving: bool, model: Model
+) -> None:
+    """Set footholds and reference of a plan for its gait, see `walking.gait.plan_walk`."""
+    plan_walk(
+        plans.records[which],
+        plans.ramps[which],
+        plans.steps[which],
+        landing,
+        following,
+        moving,
+        model.still,
+        model.robot,
+        model.parameters,
+    )
+
+
+@compiled
+def remember(admission: Record, gait: Record) -> None:
+    """Store the timing of the last tick before it changes."""
+    admission.stepping, admission.clock = gait.stepping, gait.clock
+
+
+@compiled
+def skip(admission: Record, following: Record, moving: bool) -> None:
+    """Take a plan that needs no admission."""
+    admission.fraction, admission.known, admission.moving = 1.0, True, moving
+    admission.following = following
+
+
+@compiled
+def admit(
+    admission: Record,
+    plans: Plans,
+    pendulum: Record,
+    region: Region,
+    wanted: Record,
+    moving: bool,
+    off_plan: bool,
+    model: Model,
+) -> bool:
+    """Give the plan in force the admitted timing, footholds and reference.
+
+    Args:
+        admission: admitted plan, changed.
+        plans: the one in force is changed.
+        pendulum: of the plan.
+        region: admissible ZMP in this tick.
+        wanted: strides of the wanted plan.
+        moving: whether the walk goes on in the wanted plan.
+        off_plan: whether the swing foot makes a capture step that leaves this plan.
+        model: constants.
+
+    Returns:
+        whether the ZMP plan in `BEST` belongs to the reference.
+    """
+    live, best = plans.records[LIVE], plans.records[BEST]
+    gait, parameters = live.gait, model.parameters
+    continues = admission.stepping and gait.stepping and gait.completed == admission.completed
+    admission.completed = gait.completed
+    if not continues or (gait.landed_early and not off_plan):
+        admission.landing = gait.landing
+    last = foothold(admission.landing)
+    goal = last
+    if gait.adjustable:
+        goal = aimed(gait, last, landing_of(support_foot(gait), wanted), parameters)
+    plan_in(plans, LIVE, goal, wanted, moving, model)
+    best.zmp = live.zmp
+    if not (admission.known and admission.stepping and gait.stepping):
+        _take(admission, goal, wanted, moving, 1.0)
+        return False
+    if _is_feasible(plans, LIVE, pendulum, region, model):
+        accepted = True
+        _take(admission, goal, wanted, moving, 1.0)
+    else:
+        accepted = _compromise(
+            admission, plans, pendulum, region, last, goal, wanted, moving, model
+        )
+    if parameters.pattern.generator == PAPER:
+        live.zmp = best.zmp
+    return accepted
+
+
+@compiled
+def _compromise(
+    admission: Record,
+    plans: Plans,
+    pendulum: Record,
+    region: Region,
+    last: Foothold,
+    goal: Foothold,
+    wanted: Record,
+    moving: bool,
+    model: Model,
+) -> bool:
+    """Take a feasible plan between the last one, landing at `last`, and the wanted one."""
+    live, parameters = plans.records[LIVE], model.parameters
+    gait, admission.goal = live.gait, live.gait.clock
+    if not moving and _end(admission, plans, pendulum, region, last, goal, wanted, model):
+        return True
+    gait.clock = admission.clock
+    update_phase(gait, parameters)
+    plan_in(plans, LIVE, last, admission.following, admission.moving, model)
+    if remains_feasible(live.zmp, plans.ramps[LIVE], live.ramps, parameters):
+        return _bisect(admission, plans, pendulum, region, last, goal, wanted, model)
+    gait.clock = admission.goal
+    update_phase(gait, parameters)
+    plan_in(plans, LIVE, goal, wanted, moving, model)
+    _take(admission, goal, wanted, moving, 1.0)
+    return False
+
+
+@compiled
+def _end(
+    admission: Record,
+    plans: Plans,
+    pendulum: Record,
+    region: Region,
+    last: Foothold,
+    goal: Foothold,
+    wanted: Record,
+    model: Model,
+) -> bool:
+    """Take a walk that ends after the next footstep, if one is feasible."""
+    trial = plans.records[TRIAL]
+    low, high = 0.0, 1.0
+    for attempt in range(BISECTIONS + 1):
+        fraction = 0.5 * (low + high) if attempt > 0 else 0.0
+        landing = towards(last, goal, fraction)
+        trial.gait = plans.records[LIVE].gait
+        plan_in(plans, TRIAL, landing, wanted, False, model)
+        if _is_feasible(plans, TRIAL, pendulum, region, model):
+            low = fraction
+            trial.moving, trial.following = False, wanted
+            put(trial.landing, landing)
+            _keep_trial(plans)
+        elif attempt == 0:
+            return False
+        else:
+            high = fraction
+    _take_best(admission, plans, low)
+    return True
+
+
+@compiled
+def _bisect(
+    admission: Record,
+    plans: Plans,
+    pendulum: Record,
+    region: Region,
+    last: Foothold,
+    goal: Foothold,
+    wanted: Record,
+    model: Model,
+) -> bool:
+    """Take the plan with the maximum admitted fraction of the change, or keep the last plan.
+
+    The last plan is the one in force.
+    """
+    trial, between, moving = plans.records[TRIAL], admission.between, admission.moving
+    before, after = admission.clock.timing, admission.goal.timing
+    low, high, found = 0.0, 1.0, False
+    for _ in range(BISECTIONS):
+        fraction = 0.5 * (low + high)
+        between.double = before.double + round(fraction * (after.double - before.double))
+        between.single = before.single + round(fraction * (after.single - before.single))
+        change = after.swing_height - before.swing_height
+        between.swing_height = before.swing_height + fraction * change
+        trial.gait = plans.records[LIVE].gait
+        retime(trial.gait, between, model.robot, model.parameters)
+        landing = towards(last, goal, fraction)
+        towards_strides(trial.following, admission.following, wanted, fraction)
+        plan_in(plans, TRIAL, landing, trial.following, moving, model)
+        if _is_feasible(plans, TRIAL, pendulum, region, model):
+            low, found = fraction, True
+            trial.moving = moving
+            put(trial.landing, landing)
+            _keep_trial(plans)
+        else:
+            high = fraction
+    if found:
+        _take_best(admission, plans, low)
+    else:
+        _take(admission, last, admission.following, moving, 0.0)
+    return found
+
+
+@compiled
+def _is_feasible(
+    plans: Plans, which: int, pendulum: Record, region: Region, model: Model
+) -> bool:
+    """Whether a plan is feasible; then its ZMP plan is in `BEST`."""
+    return is_feasible(
+        plans.records[BEST].zmp,
+        plans.records[LIVE].zmp,
+        plans.knots[BEST],
+        pendulum,
+        plans.ramps[which],
+        plans.records[which].ramps,
+        region,
+        model.robot,
+        model.parameters,
+    )
+
+
+@compiled
+def _keep_trial(plans: Plans) -> None:
+    """Copy the plan that was tried to `BEST`, where its ZMP plan is."""
+    trial, best = plans.records[TRIAL], plans.records[BEST]
+    best.gait, best.landing, best.following = trial.gait, trial.landing, trial.following
+    best.moving = trial.moving
+    _copy_reference(plans, BEST, TRIAL)
+
+
+@compiled
+def _copy_reference(plans: Plans, goal: int, source: int) -> None:
+    """Copy reference and footholds of a plan."""
+    copy, plan = plans.records[goal], plans.records[source]
+    copy.ramps, copy.steps = plan.ramps, plan.steps
+    for k in range(plan.ramps):
+        plans.ramps[goal, k] = plans.ramps[source, k]
+    for k in range(plan.steps):
+        plans.steps[goal, k] = plans.steps[source, k]
+
+
+@compiled
+def _take_best(admission: Record, plans: Plans, fraction: float) -> None:
+    """Put the best admitted plan in force."""
+    live, best = plans.records[LIVE], plans.records[BEST]
+    live.gait = best.gait
+    _copy_reference(plans, LIVE, BEST)
+    _take(admission, foothold(best.landing), best.following, best.moving, fraction)
+
+
+@compiled
+def _take(
+    admission: Record, landing: Foothold, following: Record, moving: bool, fraction: float
+) -> None:
+    put(admission.landing, landing)
+    admission.following = following
+    admission.known, admission.moving, admission.fraction = True, moving, fraction

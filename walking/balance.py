@@ -1,0 +1,377 @@
+"""Balance: ankle strategy, and foot placement by plan or by capture step.
+
+The DCM error grows by e^{ωt} until touchdown; a landing shifted by as much is at the capture point
+(Pratt et al., Humanoids 2006). The ankles shift the ZMP within the sole; a capture step is made for
+the error beyond their dead zone.
+
+A generator that plans its ZMP cannot plan for footholds that a push dictates. During a capture step
+its plan continues as the reference of the DCM error, and the pendulum of the body tracks the DCM
+that leads to the actual landing. At touchdown the two become one.
+"""
+
+from math import exp, log
+from typing import NamedTuple
+
+from compilation import compiled
+from walking.admission import Model, Plans, admit, plan_in, skip
+from walking.arrays import Point, Vector
+from walking.clamp import clamp, dead_zone
+from walking.command_limits import BALANCE, LANDING_FROZEN, LANDING_SPEED, ZMP_REGION
+from walking.foothold import Foothold, equal, foothold, put
+from walking.footsteps import equal_strides, is_same, landing_of, reachable
+from walking.gait import aimed, equal_clocks, shorten, support_foot
+from walking.parameters import CONTROL_PERIOD
+from walking.patterns import advance_pattern, planned_dcm, rejects_infeasible, reset_plan
+from walking.pendulum import dcm_of, dcm_reference, ramp_weights, track_dcm, track_reference
+from walking.planar import rotate, rotate_back
+from walking.records import BEST, LIVE, Record
+from walking.support import Region, clip
+
+ROUNDING = 1e-6  # rounding error of a time in control ticks [1]
+
+
+def ankle_gain(omega: float, lag: float, rate: float) -> float:
+    """Return the gain from DCM error to ZMP for an error that decays with e^{-rate t} [1].
+
+    The error follows ξ' = ω (ξ - p), the ZMP follows the ankle setpoints u with the servo lag,
+    p' = (u - p) / T (Morisawa et al., Humanoids 2014). The poles of u = k ξ sum to ω - 1/T for any
+    gain; one is placed at `-rate`. Without lag the gain is the usual 1 + rate / ω.
+
+    Args:
+        omega: ω of the pendulum [1/s].
+        lag: T of the servos [s].
+        rate: wanted rate [1/s]; with a servo too slow for it, both poles are placed at their mean.
+    """
+    if lag > 0.0:
+        rate = min(rate, max(0.0, 0.5 * (1.0 / lag - omega)))
+    return (1.0 + rate / omega) * (1.0 - lag * rate)
+
+
+# Ankles
+
+
+@compiled
+def zmp_shift(zmp: Point, error: Point, region: Region, robot: Record) -> Point:
+    """Return the shift of the ZMP by the ankles against a DCM error [m]."""
+    gain = robot.ankle_gain
+    x, y = clip(region, zmp[0] + gain * error[0], zmp[1] + gain * error[1])
+    return x - zmp[0], y - zmp[1]
+
+
+@compiled
+def sole_margins(robot: Record, parameters: Record) -> Point:
+    """Return the ZMP margins of a sole, forward and lateral [m]."""
+    support, margin = robot.support, parameters.stabilizer.sole_margin
+    return support.half_length - margin, support.half_width - margin
+
+
+@compiled
+def exceeds(foot: Foothold, error: Point, ratio: float, robot: Record, parameters: Record) -> bool:
+    """Whether a DCM error [m] exceeds a ratio [1] of the ZMP margins of the sole."""
+    length, width = sole_margins(robot, parameters)
+    x, y = rotate_back(foot.yaw, error[0], error[1])
+    return abs(x) > ratio * length or abs(y) > ratio * width
+
+
+# Capture step
+
+
+class Capture(NamedTuple):
+    """Capture step.
+
+    Attributes:
+        needed: whether the ankles do not suffice.
+        landing: foothold of the swing foot.
+        ticks: control ticks until touchdown [1].
+    """
+
+    needed: bool
+    landing: Foothold
+    ticks: int
+
+
+@compiled
+def capture_time(omega: float, time: float, off: float, ahead: float, reach: float) -> float:
+    """Return the latest touchdown at which a landing within reach captures the body.
+
+    A DCM `ahead` of the ZMP by plan, with error `off`, is `(ahead + off) e^{ωt}` from the ZMP
+    after a time t, and planned at `ahead e^{ω time}`: linear in e^{ωt}, so the time at which the
+    difference is `reach` has a closed form (Khadiv et al., IEEE Trans. Robot. 36(6), 2020).
+
+    Args:
+        omega: ω of the pendulum [1/s].
+        time: planned touchdown, from now [s].
+        off: DCM error [m].
+        ahead: planned DCM minus ZMP [m].
+        reach: shift of the landing, of the sign of `off` if it helps [m].
+
+    Returns:
+        the time, at most `time`; zero if no touchdown is early enough [s].
+    """
+    growth = exp(omega * time)
+    if growth * abs(off) <= (reach if off > 0.0 else -reach) or off == 0.0:
+        return time
+    due, distance = reach + growth * ahead, off + ahead
+    if due * distance <= 0.0:
+        return 0.0
+    return min(time, max(0.0, log(due / distance) / omega))
+
+
+@compiled
+def capture_step(
+    support: Foothold,
+    landing: Foothold,
+    error: Point,
+    ahead: Point,
+    ticks_left: int,
+    robot: Record,
+    parameters: Record,
+) -> Capture:
+    """Return the capture step for the DCM error beyond the dead zone of the ankles.
+
+    If the capture point is out of reach, touchdown must be earlier, see `capture_time`.
+
+    Args:
+        support: support foot.
+        landing: nominal landing.
+        error: error of the measured DCM [m].
+        ahead: planned DCM minus ZMP of the support foot [m].
+        ticks_left: control ticks until the end of single support [1].
+        robot: constants.
+        parameters: of the walk.
+    """
+    p, omega, yaw = parameters.stabilizer, robot.omega, support.yaw
+    length, width = sole_margins(robot, parameters)
+    off_x, off_y = rotate_back(yaw, error[0], error[1])
+    x = dead_zone(off_x, p.capture_dead_zone * length)
+    y = dead_zone(off_y, p.capture_dead_zone * width)
+    planned = ticks_left * CONTROL_PERIOD
+    growth = exp(omega * ticks_left * CONTROL_PERIOD)
+    dx, dy = rotate(yaw, clamp(growth * x, p.capture_forward), clamp(growth * y, p.capture_side))
+    reached = reachable(support, landing, dx, dy, robot, parameters)
+    ahead_x, ahead_y = rotate_back(yaw, ahead[0], ahead[1])
+    reach_x, reach_y = rotate_back(yaw, reached.x - landing.x, reached.y - landing.y)
+    missing_x, missing_y = dead_zone(off_x, length), dead_zone(off_y, width)
+    time = min(planned, capture_time(omega, planned, missing_x, ahead_x, reach_x))
+    time = min(time, capture_time(omega, planned, missing_y, ahead_y, reach_y))
+    return Capture(True, reached, int(time / CONTROL_PERIOD + ROUNDING))
+
+
+@compiled
+def plan_pendulum(walk: Record) -> Record:
+    """Return the pendulum of the plan: that of the body unless off plan."""
+    return walk.planned if walk.off_plan else walk.pendulum
+
+
+@compiled
+def _needed_capture(
+    walk: Record, plans: Plans, landing: Foothold, error: Point, model: Model
+) -> Capture:
+    """Return the capture step for the measured DCM."""
+    live, ramps, robot, parameters = (
+        plans.records[LIVE],
+        plans.ramps[LIVE],
+        model.robot,
+        model.parameters,
+    )
+    gait = live.gait
+    support = support_foot(gait)
+    if gait.shortened:
+        x, y = dcm_reference(ramps, live.ramps, robot)
+    else:
+        pendulum = plan_pendulum(walk)
+        x, y = planned_dcm(live.zmp, pendulum, ramps, live.ramps, robot, parameters)
+    body_x, body_y = dcm_of(walk.pendulum, robot)
+    off = (body_x + error[0] - x, body_y + error[1] - y)
+    if not exceeds(support, off, parameters.stabilizer.capture_dead_zone, robot, parameters):
+        return Capture(False, landing, 0)
+    ahead = (x - ramps[0].bx, y - ramps[0].by)
+    return capture_step(support, landing, off, ahead, gait.ticks_left, robot, parameters)
+
+
+# Foot placement
+
+
+@compiled
+def place_foot(
+    walk: Record,
+    plans: Plans,
+    wanted: Record,
+    velocity: Vector,
+    error: Point,
+    region: Region,
+    moving: bool,
+    model: Model,
+) -> None:
+    """Choose landing and timing of the swing foot in this tick: the plan in force.
+
+    Args:
+        walk: state, changed.
+        plans: the one in force is changed.
+        wanted: wanted strides.
+        velocity: velocity of these strides (vx, vy, wz) [m/s, m/s, rad/s].
+        error: error of the DCM [m].
+        region: admissible ZMP in this tick.
+        moving: whether the walk is to go on.
+        model: constants.
+    """
+    placing, gait = walk.placing, plans.records[LIVE].gait
+    adjustable = gait.adjustable
+    placing.bound, placing.moving, placing.accepted = 0, moving, False
+    placing.moved_x = placing.moved_y = 0.0
+    landing = _reference(walk, plans, wanted, velocity, region, model)
+    if adjustable:
+        _capture(walk, plans, landing, wanted, error, model)
+    elif gait.stepping:
+        nominal = landing_of(support_foot(gait), wanted)
+        if not is_same(nominal, foothold(gait.landing), model.parameters):
+            placing.bound |= LANDING_FROZEN
+    if _selects(plans, model):
+        placing.moving = walk.admission.moving
+
+
+@compiled
+def _selects(plans: Plans, model: Model) -> bool:
+    """Whether the generator may limit the footsteps; not in a shortened footstep."""
+    return rejects_infeasible(model.parameters) and not plans.records[LIVE].gait.shortened
+
+
+@compiled
+def _reference(
+    walk: Record, plans: Plans, wanted: Record, velocity: Vector, region: Region, model: Model
+) -> Foothold:
+    """Put the reference that the generator admits in force; return the landing of the plan."""
+    placing, admission, gait = walk.placing, walk.admission, plans.records[LIVE].gait
+    if not _selects(plans, model):
+        for k in range(3):
+            placing.applied[k] = velocity[k]
+        skip(admission, wanted, placing.moving)
+        landing = foothold(gait.landing)
+        if gait.adjustable:
+            landing = landing_of(support_foot(gait), wanted)
+        plan_in(plans, LIVE, landing, wanted, placing.moving, model)
+        return landing
+    admission.before = gait.clock
+    pendulum = plan_pendulum(walk)
+    placing.accepted = admit(
+        admission, plans, pendulum, region, wanted, placing.moving, walk.off_plan, model
+    )
+    fraction = admission.fraction
+    if fraction < 1.0:
+        if not equal_clocks(gait.clock, admission.before) or _differs(walk, plans, wanted, model):
+            placing.bound |= ZMP_REGION
+        for k in range(3):
+            now = placing.applied[k]
+            placing.applied[k] = now + fraction * (velocity[k] - now)
+    else:
+        for k in range(3):
+            placing.applied[k] = velocity[k]
+    return foothold(admission.landing)
+
+
+@compiled
+def _differs(walk: Record, plans: Plans, wanted: Record, model: Model) -> bool:
+    """Whether the footsteps of the admitted plan differ from the wanted ones."""
+    admission, gait = walk.admission, plans.records[LIVE].gait
+    if not equal_strides(admission.following, wanted) or admission.moving != walk.placing.moving:
+        return True
+    nominal, landing = landing_of(support_foot(gait), wanted), foothold(admission.landing)
+    differs: bool = gait.adjustable and not is_same(nominal, landing, model.parameters)
+    return differs
+
+
+@compiled
+def _capture(
+    walk: Record, plans: Plans, landing: Foothold, wanted: Record, error: Point, model: Model
+) -> None:
+    """Aim at the landing of a capture step if one is needed."""
+    placing, live, parameters = walk.placing, plans.records[LIVE], model.parameters
+    gait, goal = live.gait, landing
+    capture = _needed_capture(walk, plans, landing, error, model)
+    if capture.needed and shorten(
+        gait, walk.limbs.feet, capture.ticks, capture.landing, model.robot, parameters
+    ):
+        # The timing has changed: plan again.
+        merge_pendulums(walk, plans)
+        placing.accepted = False
+        plan_in(plans, LIVE, landing, wanted, placing.moving, model)
+        capture = _needed_capture(walk, plans, landing, error, model)
+    if capture.needed and not gait.double:
+        goal = capture.landing
+        placing.moved_x, placing.moved_y = goal.x - landing.x, goal.y - landing.y
+    put(gait.landing, aimed(gait, foothold(gait.landing), goal, parameters))
+    now, nominal = foothold(gait.landing), landing_of(support_foot(gait), wanted)
+    if gait.shortened or not is_same(goal, landing, parameters):
+        placing.bound |= BALANCE
+    elif not placing.bound & ZMP_REGION and not is_same(nominal, now, parameters):
+        placing.bound |= LANDING_SPEED
+    if not _selects(plans, model) and not equal(now, landing):
+        plan_in(plans, LIVE, now, wanted, placing.moving, model)
+
+
+# Pendulum
+
+
+@compiled
+def advance_pendulum(walk: Record, plans: Plans, region: Region, model: Model) -> None:
+    """Advance the pendulums of plan and body by one tick.
+
+    Args:
+        walk: state, changed.
+        plans: the ZMP plan in force is changed.
+        region: admissible ZMP.
+        model: constants.
+    """
+    live, ramps, robot, parameters = (
+        plans.records[LIVE],
+        plans.ramps[LIVE],
+        model.robot,
+        model.parameters,
+    )
+    gait, body, gain = live.gait, walk.pendulum, parameters.pattern.dcm_gain
+    selective = rejects_infeasible(parameters)
+    if selective and gait.shortened:
+        track_reference(body, robot, gain, ramps, live.ramps, region)
+        return
+    landing, planned = foothold(gait.landing), foothold(walk.admission.landing)
+    if selective and not (gait.double or walk.off_plan or equal(landing, planned)):
+        walk.planned, walk.off_plan = body, True
+    pendulum = plan_pendulum(walk)
+    x, y = dcm_of(pendulum, robot)
+    advance_pattern(
+        live.zmp,
+        plans.knots[LIVE],
+        plans.records[BEST].zmp,
+        plans.knots[BEST],
+        walk.placing.accepted,
+        pendulum,
+        ramps,
+        live.ramps,
+        region,
+        robot,
+        parameters,
+        model.sums,
+    )
+    if walk.off_plan:
+        # Shift of the DCM by a ramp of the ZMP from the fixed support foot to the new landing.
+        wh = robot.omega * CONTROL_PERIOD
+        growth, _, last = ramp_weights(wh, gait.clock.timing.double)
+        weight = (1.0 + last) / growth / ramp_weights(wh, gait.ticks_left)[0]
+        x += weight * (landing.x - planned.x)
+        y += weight * (landing.y - planned.y)
+        track_dcm(body, robot, gain, (x, y), (pendulum.zmp_x, pendulum.zmp_y), region)
+
+
+@compiled
+def end_capture(walk: Record, plans: Plans) -> None:
+    """At touchdown, restart the plan from the pendulum of the body."""
+    gait = plans.records[LIVE].gait
+    if walk.off_plan and (gait.double or not gait.stepping):
+        merge_pendulums(walk, plans)
+
+
+@compiled
+def merge_pendulums(walk: Record, plans: Plans) -> None:
+    """Drop the plan of the generator."""
+    walk.off_plan = False
+    reset_plan(plans.records[LIVE].zmp)

@@ -1,1 +1,0 @@
-"""Balance: what the ankles, the pattern and the next foothold do against a fall."""

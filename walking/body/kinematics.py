@@ -1,0 +1,214 @@
+"""Kinematics of chains of joints: legs and head.
+
+A chain of k joints is an array (k + 1, 15): of each joint the fixed rotation (9, row by row) and
+translation (3) of its frame in that of the joint before, then its axis (3); the last row is the
+frame at the end of the chain, with no axis. The first row is relative to the base.
+"""
+
+from math import cos, sin, sqrt
+
+import numpy as np
+
+from compilation import compiled
+from walking.arrays import Array, Indices, Point, Vector
+
+Matrix = tuple[float, float, float, float, float, float, float, float, float]
+"""Rotation, row by row."""
+
+Pose = tuple[float, float, float, float, float, float]
+"""Pose of a foot in the base frame: x, y, z [m], roll, pitch, yaw [rad]."""
+
+ROW = 15  # numbers of a joint in a chain
+CONVERGED = 1e-11  # error of a solved pose [rad], positions relative to the length of the leg
+MAX_ITERATIONS = 20
+MAX_STEP = 0.4  # change of a joint in one iteration [rad]
+MIN_DAMPING, MAX_DAMPING = 1e-14, 1e-3  # of the normal equations, near and far from the solution
+MIN_PIVOT = 1e-18  # of their Cholesky factor
+
+
+@compiled
+def _times(a: Matrix, b: Matrix) -> Matrix:
+    """Return the product of two rotations."""
+    return (
+        a[0] * b[0] + a[1] * b[3] + a[2] * b[6],
+        a[0] * b[1] + a[1] * b[4] + a[2] * b[7],
+        a[0] * b[2] + a[1] * b[5] + a[2] * b[8],
+        a[3] * b[0] + a[4] * b[3] + a[5] * b[6],
+        a[3] * b[1] + a[4] * b[4] + a[5] * b[7],
+        a[3] * b[2] + a[4] * b[5] + a[5] * b[8],
+        a[6] * b[0] + a[7] * b[3] + a[8] * b[6],
+        a[6] * b[1] + a[7] * b[4] + a[8] * b[7],
+        a[6] * b[2] + a[7] * b[5] + a[8] * b[8],
+    )
+
+
+@compiled
+def _turned(a: Matrix, x: float, y: float, z: float) -> Vector:
+    """Return a rotated vector."""
+    return (
+        a[0] * x + a[1] * y + a[2] * z,
+        a[3] * x + a[4] * y + a[5] * z,
+        a[6] * x + a[7] * y + a[8] * z,
+    )
+
+
+@compiled
+def _about(x: float, y: float, z: float, angle: float) -> Matrix:
+    """Return the rotation about a unit axis by an angle [rad]."""
+    c, s = cos(angle), sin(angle)
+    d = 1.0 - c
+    return (
+        c + d * x * x,
+        d * x * y - s * z,
+        d * x * z + s * y,
+        d * x * y + s * z,
+        c + d * y * y,
+        d * y * z - s * x,
+        d * x * z - s * y,
+        d * y * z + s * x,
+        c + d * z * z,
+    )
+
+
+@compiled
+def _end(chain: Array, angles: Array, axes: Array, origins: Array) -> tuple[Matrix, Vector]:
+    """Return rotation and position [m] of the end of a chain.
+
+    Args:
+        chain: of k joints (k + 1, 15).
+        angles: of the joints (k,) [rad].
+        axes: of the joints, set (k, 3).
+        origins: of the joints, set (k, 3) [m].
+    """
+    R = (1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0)
+    px, py, pz = 0.0, 0.0, 0.0
+    for k in range(chain.shape[0]):
+        row = chain[k]
+        dx, dy, dz = _turned(R, row[9], row[10], row[11])
+        px, py, pz = px + dx, py + dy, pz + dz
+        fixed = (row[0], row[1], row[2], row[3], row[4], row[5], row[6], row[7], row[8])
+        R = _times(R, fixed)
+        if k < angles.shape[0]:
+            x, y, z = row[12], row[13], row[14]
+            axes[k, 0], axes[k, 1], axes[k, 2] = _turned(R, x, y, z)
+            origins[k, 0], origins[k, 1], origins[k, 2] = px, py, pz
+            R = _times(R, _about(x, y, z, angles[k]))
+    return R, (px, py, pz)
+
+
+@compiled
+def chain_end(chain: Array, angles: Array, rotation: Array, position: Array) -> None:
+    """Set rotation (3, 3) and position (3,) [m] of the end of a chain (forward kinematics)."""
+    k = angles.shape[0]
+    R, p = _end(chain, angles, np.empty((k, 3)), np.empty((k, 3)))
+    for i in range(3):
+        rotation[i, 0], rotation[i, 1], rotation[i, 2] = R[3 * i], R[3 * i + 1], R[3 * i + 2]
+        position[i] = p[i]
+
+
+@compiled
+def chain_joints(chain: Array, angles: Array, axes: Array, origins: Array) -> None:
+    """Set axes (k, 3) and origins (k, 3) [m] of the joints of a chain."""
+    _end(chain, angles, axes, origins)
+
+
+@compiled
+def feet_poses(chains: Array, moving: Indices, joints: Array, feet: Array) -> None:
+    """Set x, y, z [m] and yaw [rad] of both feet in the base frame.
+
+    Args:
+        chains: from the base to the left and the right foot (2, k + 1, 15).
+        moving: indices of their joints: those of a leg, and of a waist above it (2, k).
+        joints: joint angles (n,) [rad].
+        feet: set (2, 4).
+    """
+    k = moving.shape[1]
+    axes, origins, angles = np.empty((k, 3)), np.empty((k, 3)), np.empty(k)
+    for side in range(2):
+        for joint in range(k):
+            angles[joint] = joints[moving[side, joint]]
+        R, p = _end(chains[side], angles, axes, origins)
+        feet[side, 0], feet[side, 1], feet[side, 2] = p
+        feet[side, 3] = np.arctan2(R[3], R[0])
+
+
+@compiled
+def solve(leg: Array, foot: Pose, angles: Array, length: float) -> tuple[int, float]:
+    """Find the joint angles of a leg for a foot pose (inverse kinematics) by Newton's method.
+
+    Far from the solution, and for a foot out of reach, the steps are damped (Levenberg-Marquardt).
+
+    Args:
+        leg: chain (7, 15).
+        foot: pose of its end.
+        angles: first guess, set to the solution (6,) [rad].
+        length: of the leg, relative to which errors of position count [m].
+
+    Returns:
+        iterations, and remaining error [rad].
+    """
+    return solve_leg(leg, foot, angles, length, np.empty((6, 3)), np.empty((6, 3)))
+
+
+@compiled
+def solve_leg(
+    leg: Array, foot: Pose, angles: Array, length: float, axes: Array, origins: Array
+) -> tuple[int, float]:
+    """Solve a leg, and set axes and origins of its joints."""
+    x, y, z, roll, pitch, yaw = foot
+    T = _times(
+        _times(_about(0.0, 0.0, 1.0, yaw), _about(0.0, 1.0, 0.0, pitch)),
+        _about(1.0, 0.0, 0.0, roll),
+    )
+    J, A, e, step = np.empty((6, 6)), np.empty((6, 6)), np.empty(6), np.empty(6)
+    error = 0.0
+    for iteration in range(MAX_ITERATIONS):
+        R, p = _end(leg, angles, axes, origins)
+        e[0], e[1], e[2] = (x - p[0]) / length, (y - p[1]) / length, (z - p[2]) / length
+        # Half the sum of the cross products of the axes of R and T: the sine of the error.
+        e[3] = e[4] = e[5] = 0.0
+        for k in range(3):
+            e[3] += 0.5 * (R[3 + k] * T[6 + k] - R[6 + k] * T[3 + k])
+            e[4] += 0.5 * (R[6 + k] * T[k] - R[k] * T[6 + k])
+            e[5] += 0.5 * (R[k] * T[3 + k] - R[3 + k] * T[k])
+        square = 0.0
+        for k in range(6):
+            square += e[k] * e[k]
+        error = sqrt(square)
+        if error < CONVERGED:
+            return iteration, error
+        for k in range(6):
+            ax, ay, az = axes[k, 0], axes[k, 1], axes[k, 2]
+            dx, dy, dz = p[0] - origins[k, 0], p[1] - origins[k, 1], p[2] - origins[k, 2]
+            J[0, k] = (ay * dz - az * dy) / length
+            J[1, k] = (az * dx - ax * dz) / length
+            J[2, k] = (ax * dy - ay * dx) / length
+            J[3, k], J[4, k], J[5, k] = ax, ay, az
+        _least_squares(J, e, MAX_DAMPING * min(1.0, square) + MIN_DAMPING, A, step)
+        for k in range(6):
+            angles[k] += min(MAX_STEP, max(-MAX_STEP, step[k]))
+    return MAX_ITERATIONS, error
+
+
+@compiled
+def _least_squares(J: Array, e: Array, damping: float, A: Array, step: Array) -> None:
+    """Set `step` (6,) to the solution of (JᵀJ + damping) step = Jᵀe by Cholesky; A is scratch."""
+    for i in range(6):
+        step[i] = 0.0
+        for m in range(6):
+            step[i] += J[m, i] * e[m]
+        for j in range(i + 1):
+            total = damping if i == j else 0.0
+            for m in range(6):
+                total += J[m, i] * J[m, j]
+            for m in range(j):
+                total -= A[i, m] * A[j, m]
+            A[i, j] = total / A[j, j] if j < i else sqrt(max(total, MIN_PIVOT))
+    for i in range(6):
+        for m in range(i):
+            step[i] -= A[i, m] * step[m]
+        step[i] /= A[i, i]
+    for i in range(5, -1, -1):
+        for m in range(i + 1, 6):
+            step[i] -= A[m, i] * step[m]
+        step[i] /= A[i, i]

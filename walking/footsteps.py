@@ -1,0 +1,344 @@
+"""Footsteps: velocities and command states become strides and timing, strides become footholds.
+
+The foot on the side of a lateral or turning motion opens the stance by twice the motion of one
+footstep, the other foot closes it again; so the feet never cross and the mean velocity is the
+commanded one.
+"""
+
+from math import cos, sin, sqrt
+
+from compilation import compiled
+from walking.arrays import Array, Point, Vector
+from walking.clamp import clamp
+from walking.command_limits import (
+    CLEARANCE,
+    REACH,
+    STEP_LENGTH,
+    STEP_SIDE,
+    STEP_TURN,
+    SWING_HEIGHT,
+    TIMING,
+)
+from walking.foothold import Foothold, placed
+from walking.parameters import CONTROL_PERIOD
+from walking.planar import rotate_back
+from walking.records import Record
+
+POSITION_TOLERANCE = 0.024  # of equal footholds, per half stance [1]
+YAW_TOLERANCE = 1e-3  # of equal footholds [rad]
+STANCE_TOLERANCE = 0.6  # of a parallel stance, per half stance [1]
+STANCE_YAW_TOLERANCE = 0.05  # of a parallel stance [rad]
+STILL = (0.0, 0.0, 0.0)
+RIGHT, LEFT = -1.0, 1.0  # side of a foot
+
+Timing = tuple[int, int, float]
+"""Control ticks in double and single support [1], swing height [m]."""
+
+Command = tuple[float, float, float, float, float, float]
+"""Fields of a `walking.command.CommandState` in order."""
+
+
+@compiled
+def landing_of(support: Foothold, strides: Record) -> Foothold:
+    """Return the next foothold of the swing foot."""
+    place = strides.right if support.left else strides.left
+    return placed(support, place.x, place.y, place.yaw)
+
+
+@compiled
+def is_parallel(support: Foothold, other: Foothold, still: Record, parameters: Record) -> bool:
+    """Whether the stance is parallel within tolerance.
+
+    After an early touchdown or a capture step the foot is off its planned landing, with the
+    pendulum at rest: another footstep would start it again from an infeasible state.
+    """
+    rest, near = landing_of(support, still), STANCE_TOLERANCE * parameters.gait.half_stance
+    return (
+        abs(other.x - rest.x) < near
+        and abs(other.y - rest.y) < near
+        and abs(other.yaw - rest.yaw) < STANCE_YAW_TOLERANCE
+    )
+
+
+@compiled
+def is_same(one: Foothold, other: Foothold, parameters: Record) -> bool:
+    """Whether two footholds of a foot are equal within tolerance."""
+    near = POSITION_TOLERANCE * parameters.gait.half_stance
+    return (
+        abs(one.x - other.x) < near
+        and abs(one.y - other.y) < near
+        and abs(one.yaw - other.yaw) < YAW_TOLERANCE
+    )
+
+
+# Timing
+
+
+@compiled
+def duration(timing: Record) -> float:
+    """Return the duration of a footstep [s]."""
+    return (timing.double + timing.single) * CONTROL_PERIOD
+
+
+@compiled
+def cadence(velocity: Vector, parameters: Record) -> Timing:
+    """Return the timing for a velocity (vx, vy, wz) [m/s, m/s, rad/s].
+
+    Footsteps that would exceed their limits are made faster instead.
+    """
+    gait, limits = parameters.gait, parameters.limits
+    vx, vy, wz = velocity
+    x, y = vx / limits.step_forward, 2.0 * vy / limits.step_side
+    turned = 2.0 * wz / limits.step_turn
+    rate = sqrt(x * x + y * y + turned * turned)
+    time = max(gait.min_footstep_time, 1.0 / max(rate, 1.0 / gait.footstep_time))
+    ticks = max(2, round(time / CONTROL_PERIOD))  # at least one of each support
+    double = min(ticks - 1, max(1, round(gait.double_support * ticks)))
+    return double, ticks - double, gait.swing_height
+
+
+@compiled
+def command_timing(command: Array, parameters: Record) -> tuple[Timing, int]:
+    """Return the timing of a command state and the limits that bind."""
+    limits, bound = parameters.limits, 0
+    single_support, double_support, swing_height = command[0], command[1], command[5]
+    double = min(limits.max_double, max(CONTROL_PERIOD, double_support))
+    single = min(limits.max_single, max(limits.min_single, single_support))
+    height = min(limits.max_swing_height, max(0.0, swing_height))
+    if double != double_support or single != single_support:
+        bound |= TIMING
+    if height != swing_height:
+        bound |= SWING_HEIGHT
+    return (round(double / CONTROL_PERIOD), round(single / CONTROL_PERIOD), height), bound
+
+
+@compiled
+def put_timing(record: Record, timing: Timing) -> None:
+    """Set a record `TIMING`."""
+    record.double, record.single, record.swing_height = timing
+
+
+# Strides
+
+
+@compiled
+def stance_after(dx: float, dy: float, turned: float, stance: float) -> Point:
+    """Return the landing for a middle of the stance that moves along the chord of the arc.
+
+    Args:
+        dx: motion of the middle, forward [m].
+        dy: motion of the middle, to the left [m].
+        turned: change of yaw [rad].
+        stance: lateral distance of the foot from the middle after the turn [m].
+
+    Returns:
+        x, y in the frame of the support foot [m].
+    """
+    ch, sh = cos(0.5 * turned), sin(0.5 * turned)
+    return (
+        ch * dx - sh * dy - stance * sin(turned),
+        stance + sh * dx + ch * dy + stance * cos(turned),
+    )
+
+
+@compiled
+def clear_of(y: float, turned: float, side: float, gap: float, sole: Record) -> float:
+    """Return the lateral landing with every corner clear of the strip of the support foot.
+
+    Args:
+        y: wanted landing [m].
+        turned: yaw of the landing [rad].
+        side: side of the swing foot.
+        gap: clearance [m].
+        sole: rectangle of a sole.
+    """
+    heel, toe = sole.centre - sole.half_length, sole.centre + sole.half_length
+    s = side * sin(turned)
+    inner = min(s * heel, s * toe) - sole.half_width * cos(turned)
+    min_distance = sole.half_width + gap - inner
+    return side * max(side * y, min_distance)
+
+
+@compiled
+def within_reach(x: float, y: float, side: float, parameters: Record) -> Point:
+    """Scale a landing in the frame of the support foot into the ellipse of reach [m]."""
+    limits = parameters.limits
+    centre = side * 2.0 * parameters.gait.half_stance
+    along, across = x / limits.reach_forward, (y - centre) / limits.reach_side
+    square = along * along + across * across
+    if square > 1.0:
+        scale = 1.0 / sqrt(square)
+        return x * scale, centre + (y - centre) * scale
+    return x, y
+
+
+@compiled
+def velocity_strides(
+    strides: Record, velocity: Vector, time: float, robot: Record, parameters: Record
+) -> bool:
+    """Set the strides of a velocity.
+
+    Args:
+        strides: set.
+        velocity: velocity of the middle of the stance (vx, vy, wz) [m/s, m/s, rad/s].
+        time: duration of a footstep [s].
+        robot: constants.
+        parameters: of the walk.
+
+    Returns:
+        whether one is shifted to clear the other foot.
+    """
+    gap = parameters.gait.foot_clearance
+    x, y, turned = _opened(velocity, time, RIGHT, parameters)
+    right = clear_of(y, turned, RIGHT, gap, robot.sole)
+    strides.right.x, strides.right.y, strides.right.yaw = x, right, turned
+    shifted = right != y
+    x, y, turned = _opened(velocity, time, LEFT, parameters)
+    left = clear_of(y, turned, LEFT, gap, robot.sole)
+    strides.left.x, strides.left.y, strides.left.yaw = x, left, turned
+    return shifted or left != y
+
+
+@compiled
+def _opened(velocity: Vector, time: float, side: float, parameters: Record) -> Vector:
+    """Return the landing on a side; it opens the stance if the motion is to that side."""
+    limits, (vx, vy, wz) = parameters.limits, velocity
+    dx = clamp(vx * time, limits.step_forward)
+    dy = clamp(2.0 * vy * time if vy * side > 0.0 else 0.0, limits.step_side)
+    turned = clamp(2.0 * wz * time if wz * side > 0.0 else 0.0, limits.step_turn)
+    x, y = stance_after(dx, dy, turned, side * parameters.gait.half_stance)
+    return x, y, turned
+
+
+@compiled
+def command_strides(
+    strides: Record, command: Array, turn: float, robot: Record, parameters: Record
+) -> int:
+    """Set the strides of a command state, turned by `turn` [rad]; return the limits that bind."""
+    limits, gap, bound = parameters.limits, parameters.gait.foot_clearance, 0
+    forward, side_by, direction = command[2], command[3], command[4]
+    dx = clamp(forward, limits.step_forward)
+    apart = min(2.0 * parameters.gait.half_stance + limits.step_side, side_by)
+    turned = clamp(direction + turn, limits.step_turn)
+    if dx != forward:
+        bound |= STEP_LENGTH
+    if apart != side_by:
+        bound |= STEP_SIDE
+    if abs(direction) > limits.step_turn:
+        bound |= STEP_TURN
+    for side in (RIGHT, LEFT):
+        x, y = stance_after(dx, 0.0, turned, 0.5 * side * apart)
+        clear = clear_of(y, turned, side, gap, robot.sole)
+        if clear != y:
+            bound |= CLEARANCE
+        rx, ry = within_reach(x, clear, side, parameters)
+        if rx != x or ry != clear:
+            bound |= REACH
+        place = strides.right if side == RIGHT else strides.left
+        place.x, place.y = rx, clear_of(ry, turned, side, gap, robot.sole)
+        place.yaw = turned
+    return bound
+
+
+@compiled
+def command_of(strides: Record, timing: Record) -> Command:
+    """Return the command state of strides and timing, inverse of `command_strides`."""
+    place = strides.left
+    forward, lateral = rotate_back(0.5 * place.yaw, place.x, place.y)
+    return (
+        timing.single * CONTROL_PERIOD,
+        timing.double * CONTROL_PERIOD,
+        forward,
+        lateral / cos(0.5 * place.yaw),
+        place.yaw,
+        timing.swing_height,
+    )
+
+
+@compiled
+def stride_limits(
+    strides: Record, velocity: Vector, time: float, robot: Record, parameters: Record
+) -> int:
+    """Return the limits that bind on footsteps of a velocity.
+
+    Args:
+        strides: scratch, set to the strides.
+        velocity: velocity (vx, vy, wz) [m/s, m/s, rad/s].
+        time: duration of a footstep [s].
+        robot: constants.
+        parameters: of the walk.
+    """
+    (vx, vy, wz), limits, bound = velocity, parameters.limits, 0
+    if abs(vx) * time > limits.step_forward:
+        bound |= STEP_LENGTH
+    if 2.0 * abs(vy) * time > limits.step_side:
+        bound |= STEP_SIDE
+    if 2.0 * abs(wz) * time > limits.step_turn:
+        bound |= STEP_TURN
+    if velocity_strides(strides, velocity, time, robot, parameters):
+        bound |= CLEARANCE
+    return bound
+
+
+@compiled
+def mean_velocity(strides: Record, time: float, parameters: Record) -> Vector:
+    """Return the mean velocity of strides of duration `time` [s], inverse of `velocity_strides`."""
+    vx = vy = wz = 0.0
+    for side in (RIGHT, LEFT):
+        stance = side * parameters.gait.half_stance
+        place = strides.right if side == RIGHT else strides.left
+        dx = place.x + stance * sin(place.yaw)
+        dy = place.y - stance - stance * cos(place.yaw)
+        along, across = rotate_back(0.5 * place.yaw, dx, dy)
+        vx += along
+        vy += across
+        wz += place.yaw
+    return vx / (2.0 * time), vy / (2.0 * time), wz / (2.0 * time)
+
+
+@compiled
+def towards_strides(strides: Record, one: Record, other: Record, fraction: float) -> None:
+    """Set strides between two others, interpolated linearly."""
+    _between(strides.right, one.right, other.right, fraction)
+    _between(strides.left, one.left, other.left, fraction)
+
+
+@compiled
+def _between(place: Record, one: Record, other: Record, fraction: float) -> None:
+    place.x = one.x + fraction * (other.x - one.x)
+    place.y = one.y + fraction * (other.y - one.y)
+    place.yaw = one.yaw + fraction * (other.yaw - one.yaw)
+
+
+@compiled
+def equal_strides(one: Record, other: Record) -> bool:
+    """Whether strides are the same number by number."""
+    return _equal(one.right, other.right) and _equal(one.left, other.left)
+
+
+@compiled
+def _equal(one: Record, other: Record) -> bool:
+    equal: bool = one.x == other.x and one.y == other.y and one.yaw == other.yaw
+    return equal
+
+
+@compiled
+def reachable(
+    support: Foothold, landing: Foothold, dx: float, dy: float, robot: Record, parameters: Record
+) -> Foothold:
+    """Shift a landing by dx, dy [m], within reach and clear of the support foot."""
+    side = LEFT if landing.left else RIGHT
+    wx, wy = landing.x + dx - support.x, landing.y + dy - support.y
+    ahead, across = rotate_back(support.yaw, wx, wy)
+    x, y = within_reach(ahead, across, side, parameters)
+    turned = landing.yaw - support.yaw
+    clear = clear_of(y, turned, side, parameters.gait.capture_clearance, robot.sole)
+    return placed(support, x, clear, turned)
+
+
+@compiled
+def tendency(velocity: Vector, parameters: Record) -> float:
+    """Return the motion across the stance: positive if the left foot opens it, zero if none does."""
+    _, vy, wz = velocity
+    sideways: float = vy / parameters.limits.vy + wz / parameters.limits.wz
+    return sideways

@@ -1,1 +1,0 @@
-"""Footstep planning: commands to footholds."""

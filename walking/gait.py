@@ -1,0 +1,445 @@
+"""Gait: sequence of double and single supports, landing of the swing foot, and ZMP reference.
+
+Feet are indexed 0 left, 1 right. A footstep is a double support, in which the ZMP moves onto the
+support foot, and a single support, in which the other foot swings. The plan frame is that of the
+first stance. Times are control ticks.
+"""
+
+from compilation import compiled
+from walking.arrays import Point
+from walking.clamp import clamp
+from walking.foothold import Foothold, foothold, put
+from walking.footsteps import is_parallel, landing_of
+from walking.parameters import CONTROL_PERIOD
+from walking.records import Record
+from walking.reference import (
+    chain_footholds,
+    reference_ramps,
+    set_ramp,
+    zmp_between,
+    zmp_under,
+)
+from walking.swing import NO_FOOT, min_swing_ticks, move_feet, moved, rest_at
+
+NO_STEPS = 0
+
+
+# Clock
+
+
+@compiled
+def ticks_of(time: float) -> int:
+    """Return the control ticks nearest to a time [s]."""
+    return round(time / CONTROL_PERIOD)
+
+
+@compiled
+def put_single_support(single: Record, ticks: int, parameters: Record) -> None:
+    """Set a single support of a duration in control ticks."""
+    gait = parameters.gait
+    single.ticks, single.origin = ticks, 0.0
+    single.first, single.last = round(gait.swing_start * ticks), round(gait.swing_end * ticks)
+
+
+@compiled
+def phase_of(single: Record, elapsed: int) -> float:
+    """Return the phase of the swing, 0 before and 1 after it [1]."""
+    fraction = (elapsed - single.first) / (single.last - single.first)
+    phase = single.origin + (1.0 - single.origin) * fraction
+    return 0.0 if phase < 0.0 else 1.0 if phase > 1.0 else phase
+
+
+@compiled
+def retime_single_support(single: Record, elapsed: int, ticks: int, parameters: Record) -> None:
+    """Change the total duration of a single support that began `elapsed` ticks ago.
+
+    The swing continues from its present phase, and takes at least the minimum ticks.
+    """
+    gait, phase = parameters.gait, phase_of(single, elapsed)
+    min_ticks = ticks_of(gait.min_swing_time)
+    while round(gait.swing_end * ticks) < elapsed + min_ticks:
+        ticks += 1
+    put_single_support(single, ticks, parameters)
+    if phase > 0.0 or elapsed > single.first:
+        single.first, single.origin = elapsed, phase
+
+
+@compiled
+def shift_fraction(shift: Record, tick: int) -> float:
+    """Return the progress of a weight shift at a tick [1]."""
+    return min(1.0, (tick - shift.begin) / (shift.end - shift.begin))
+
+
+@compiled
+def put_shift(shift: Record, begin: int, end: int, zmp: Point, right_weight: float) -> None:
+    """Set a weight shift that begins with a ZMP [m] and a load fraction of the right foot [1]."""
+    shift.begin, shift.end, shift.right_weight = begin, end, right_weight
+    shift.zmp_x, shift.zmp_y = zmp
+
+
+@compiled
+def equal_clocks(one: Record, other: Record) -> bool:
+    """Whether two clocks are the same number by number."""
+    a, b, s, t = one.timing, other.timing, one.shift, other.shift
+    u, v = one.single, other.single
+    equal: bool = (
+        a.double == b.double
+        and a.single == b.single
+        and a.swing_height == b.swing_height
+        and s.begin == t.begin
+        and s.end == t.end
+        and s.zmp_x == t.zmp_x
+        and s.zmp_y == t.zmp_y
+        and s.right_weight == t.right_weight
+        and u.ticks == v.ticks
+        and u.first == v.first
+        and u.last == v.last
+        and u.origin == v.origin
+    )
+    return equal
+
+
+@compiled
+def update_phase(gait: Record, parameters: Record) -> None:
+    """Update the phase after a change of clock, tick or `landed_early`."""
+    shift, single, stepping = gait.clock.shift, gait.clock.single, gait.stepping
+    elapsed = gait.tick - shift.end
+    gait.elapsed = elapsed
+    gait.double = not stepping or elapsed < 0
+    goal = float(gait.support) if stepping else 0.5
+    weight = shift.right_weight
+    gait.right_weight = weight + shift_fraction(shift, gait.tick) * (goal - weight)
+    gait.ticks_left = single.ticks - elapsed
+    gait.swing_phase = phase_of(single, elapsed) if stepping else 1.0
+    freeze = parameters.gait.landing_freeze
+    gait.adjustable = stepping and not gait.landed_early and gait.swing_phase < freeze
+
+
+# Feet
+
+
+@compiled
+def swing_of(gait: Record) -> int:
+    """Return the index of the swing foot of this footstep."""
+    return 1 - gait.support
+
+
+@compiled
+def support_foot(gait: Record) -> Foothold:
+    """Return the support foot of this footstep."""
+    return foothold(gait.footholds[gait.support])
+
+
+@compiled
+def swing_foot(gait: Record) -> Foothold:
+    """Return the last foothold of the swing foot."""
+    return foothold(gait.footholds[swing_of(gait)])
+
+
+@compiled
+def is_airborne(gait: Record) -> bool:
+    """Whether the swing foot is in the air."""
+    airborne: bool = (
+        gait.stepping
+        and not gait.landed_early
+        and not gait.double
+        and 0.0 < gait.swing_phase < 1.0
+    )
+    return airborne
+
+
+@compiled
+def scheduled_zmp(gait: Record, robot: Record, parameters: Record) -> Point:
+    """Return the scheduled ZMP [m]."""
+    if gait.stepping:
+        x, y = zmp_under(support_foot(gait), robot, parameters)
+    else:
+        left, right = foothold(gait.footholds[0]), foothold(gait.footholds[1])
+        x, y = zmp_between(left, right, robot, parameters)
+    shift = gait.clock.shift
+    fraction = shift_fraction(shift, gait.tick)
+    return (
+        shift.zmp_x + fraction * (x - shift.zmp_x),
+        shift.zmp_y + fraction * (y - shift.zmp_y),
+    )
+
+
+# Changes of the gait
+
+
+@compiled
+def stand(gait: Record, robot: Record, parameters: Record) -> None:
+    """Begin to stand on the footholds, with the usual timing in `gait.clock.timing`."""
+    left, right = foothold(gait.footholds[0]), foothold(gait.footholds[1])
+    gait.tick = stop_ticks(parameters)
+    put_shift(gait.clock.shift, 0, gait.tick, zmp_between(left, right, robot, parameters), 0.5)
+    put_single_support(gait.clock.single, gait.clock.timing.single, parameters)
+    gait.shift_fixed = True
+    gait.swing_height = gait.clock.timing.swing_height
+    put(gait.landing, right)
+    update_phase(gait, parameters)
+
+
+@compiled
+def stop_ticks(parameters: Record) -> int:
+    """Return the control ticks of the last double support."""
+    return max(1, ticks_of(parameters.gait.stop_time))
+
+
+@compiled
+def start(
+    gait: Record, support: int, at_once: bool, still: Record, robot: Record, parameters: Record
+) -> None:
+    """Start to walk.
+
+    Args:
+        gait: changed.
+        support: index of the first support foot.
+        at_once: whether to skip the long first double support.
+        still: strides of stepping in place.
+        robot: constants.
+        parameters: of the walk.
+    """
+    ticks = max(1, ticks_of(parameters.gait.start_time))
+    if at_once:
+        ticks = gait.clock.timing.double
+    zmp, weight = scheduled_zmp(gait, robot, parameters), gait.right_weight
+    _begin(gait, support, ticks, zmp, weight, still, parameters)
+    gait.shift_fixed = not at_once
+
+
+@compiled
+def _begin(
+    gait: Record,
+    support: int,
+    double: int,
+    zmp: Point,
+    right_weight: float,
+    still: Record,
+    parameters: Record,
+) -> None:
+    gait.stepping, gait.support = True, support
+    gait.landed_early = gait.shortened = gait.shift_fixed = False
+    gait.tick = 0
+    put_shift(gait.clock.shift, 0, double, zmp, right_weight)
+    put_single_support(gait.clock.single, gait.clock.timing.single, parameters)
+    update_phase(gait, parameters)
+    gait.swing_height = gait.clock.timing.swing_height
+    put(gait.landing, landing_of(support_foot(gait), still))
+
+
+@compiled
+def retime(gait: Record, timing: Record, robot: Record, parameters: Record) -> bool:
+    """Change the timing as far as the present footstep allows.
+
+    A double support ends in the next tick at the earliest, a foot in the air takes at least
+    `min_swing_time`, and the timing is frozen with the landing.
+
+    Returns:
+        whether the present footstep has the timing, too.
+    """
+    shift, single = gait.clock.shift, gait.clock.single
+    free = gait.stepping and not gait.shortened
+    if free and gait.double:
+        if not gait.shift_fixed and timing.double != shift.end:
+            _shift_until(gait, max(timing.double, gait.tick + 1), robot, parameters)
+        if timing.single != single.ticks:
+            put_single_support(single, timing.single, parameters)
+    elif free and timing.single != single.ticks and gait.adjustable:
+        retime_single_support(single, gait.elapsed, timing.single, parameters)
+    now = gait.clock.timing
+    now.double, now.single = timing.double, timing.single
+    now.swing_height = timing.swing_height
+    update_phase(gait, parameters)
+    if not free:
+        return not gait.stepping
+    timed: bool = shift.end == timing.double if gait.double else single.ticks == timing.single
+    return timed
+
+
+@compiled
+def shorten(
+    gait: Record, feet: Record, ticks: int, landing: Foothold, robot: Record, parameters: Record
+) -> bool:
+    """Shorten the footstep for a capture step.
+
+    Args:
+        gait: changed.
+        feet: references of the feet.
+        ticks: wanted ticks until the end of single support, as far as the foot can be down by then.
+        landing: foothold of the swing foot.
+        robot: constants.
+        parameters: of the walk.
+
+    Returns:
+        whether the footstep ends earlier.
+    """
+    p, before, elapsed = parameters.gait, gait.ticks_left, gait.elapsed
+    if ticks >= before or gait.shift_fixed or not gait.adjustable:
+        return False
+    swing_ticks = min_swing_ticks(feet[swing_of(gait)], landing, p.swing_speed)
+    min_single, single = ticks_of(p.capture_single), gait.clock.single
+    if gait.double:
+        swing_ticks = max(swing_ticks, min_single)
+        double = min(-elapsed, max(ticks_of(p.capture_double), ticks - swing_ticks))
+        duration = max(swing_ticks, ticks - double)
+        if double + duration >= before:
+            return False
+        _shift_until(gait, gait.tick + double, robot, parameters)
+        put_single_support(single, duration, parameters)
+    else:
+        rest = round((1.0 - gait.swing_phase) * min_single)
+        duration = elapsed + max(swing_ticks, ticks_of(p.min_swing_time), rest, ticks)
+        if duration >= single.ticks:
+            return False
+        retime_single_support(single, elapsed, duration, parameters)
+    update_phase(gait, parameters)
+    gait.shortened = True
+    shorter: bool = gait.ticks_left < before
+    return shorter
+
+
+@compiled
+def _shift_until(gait: Record, end: int, robot: Record, parameters: Record) -> None:
+    """Give the present weight shift another end."""
+    zmp = scheduled_zmp(gait, robot, parameters)
+    put_shift(gait.clock.shift, gait.tick, end, zmp, gait.right_weight)
+
+
+@compiled
+def aimed(gait: Record, landing: Foothold, wanted: Foothold, parameters: Record) -> Foothold:
+    """Return a landing moved towards `wanted` by at most one tick's change."""
+    if gait.swing_phase == 0.0:
+        return wanted
+    p = parameters.gait
+    shift, turn = p.landing_speed * CONTROL_PERIOD, p.landing_turn * CONTROL_PERIOD
+    return moved(landing, wanted, shift, turn)
+
+
+@compiled
+def touch_down(gait: Record, feet: Record, parameters: Record) -> None:
+    """Stop the swing foot at an early touchdown."""
+    swing = swing_of(gait)
+    foot = feet[swing]
+    gait.landed_early = True
+    put(gait.landing, Foothold(swing == 0, foot.x, foot.y, foot.yaw))
+    update_phase(gait, parameters)
+
+
+@compiled
+def advance(
+    gait: Record,
+    feet: Record,
+    steps: Record,
+    count: int,
+    moving: bool,
+    still: Record,
+    robot: Record,
+    parameters: Record,
+) -> None:
+    """Move the feet by one tick and start the next footstep at the end of this one.
+
+    Args:
+        gait: changed.
+        feet: references of the feet, changed.
+        steps: planned footholds.
+        count: number of these.
+        moving: whether the walk goes on.
+        still: strides of stepping in place.
+        robot: constants.
+        parameters: of the walk.
+    """
+    gait.tick += 1
+    update_phase(gait, parameters)
+    single, swing = gait.clock.single, NO_FOOT
+    if gait.stepping and not gait.landed_early and single.first < gait.elapsed <= single.last:
+        swing = swing_of(gait)
+        change = gait.clock.timing.swing_height - gait.swing_height
+        gait.swing_height += clamp(change, parameters.gait.swing_height_rate * CONTROL_PERIOD)
+    move_feet(
+        feet,
+        parameters.stabilizer.contact_decay,
+        swing,
+        foothold(gait.landing),
+        single.last - gait.elapsed + 1,
+        gait.swing_height,
+        gait.swing_phase,
+    )
+    if gait.stepping and gait.ticks_left == 0:
+        _land(gait, feet, steps, count, moving, still, robot, parameters)
+
+
+@compiled
+def _land(
+    gait: Record,
+    feet: Record,
+    steps: Record,
+    count: int,
+    moving: bool,
+    still: Record,
+    robot: Record,
+    parameters: Record,
+) -> None:
+    support, swing, landing = gait.support, swing_of(gait), foothold(gait.landing)
+    put(gait.footholds[swing], landing)
+    rest_at(feet[swing], landing)
+    gait.completed += 1
+    here = zmp_under(support_foot(gait), robot, parameters)
+    if not moving and is_parallel(support_foot(gait), landing, still, parameters):
+        gait.stepping, gait.tick = False, 0
+        put_shift(gait.clock.shift, 0, stop_ticks(parameters), here, float(support))
+        update_phase(gait, parameters)
+        return
+    double = gait.clock.timing.double
+    _begin(gait, swing, double, here, float(support), still, parameters)
+    if count > 1:
+        put(gait.landing, foothold(steps[1]))
+
+
+# Plan
+
+
+@compiled
+def plan_walk(
+    plan: Record,
+    ramps: Record,
+    steps: Record,
+    landing: Foothold,
+    following: Record,
+    moving: bool,
+    still: Record,
+    robot: Record,
+    parameters: Record,
+) -> None:
+    """Set footholds and ZMP reference of a plan from now on.
+
+    Args:
+        plan: its gait is read, the numbers of ramps and footholds are set.
+        ramps: set (n,).
+        steps: set (n,).
+        landing: foothold of the swing foot.
+        following: strides of the footsteps after it.
+        moving: whether the walk goes on.
+        still: strides of stepping in place.
+        robot: constants.
+        parameters: of the walk.
+    """
+    gait = plan.gait
+    support, swing = support_foot(gait), swing_foot(gait)
+    if not gait.stepping:
+        left, right = foothold(gait.footholds[0]), foothold(gait.footholds[1])
+        centre = zmp_between(left, right, robot, parameters)
+        zmp = scheduled_zmp(gait, robot, parameters)
+        set_ramp(ramps[0], max(1, -gait.elapsed), zmp, centre, support, swing)
+        plan.ramps, plan.steps = 1, NO_STEPS
+        return
+    timing, single = gait.clock.timing, gait.clock.single.ticks
+    count, ends = chain_footholds(steps, support, landing, following, still, moving, parameters)
+    shift, carry, zmp = 0, gait.ticks_left, (0.0, 0.0)
+    if gait.double:
+        shift, carry, zmp = -gait.elapsed, single, scheduled_zmp(gait, robot, parameters)
+    ticks = (shift, carry, timing.double, timing.single, stop_ticks(parameters))
+    plan.steps = count
+    plan.ramps = reference_ramps(
+        ramps, swing, support, steps, count, ends, zmp, ticks, robot, parameters
+    )

@@ -1,1 +1,0 @@
-"""Gait: support phases and swing foot."""

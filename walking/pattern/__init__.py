@@ -1,1 +1,0 @@
-"""Walking pattern: ZMP and motion of the centre of mass from footholds."""

@@ -1,0 +1,302 @@
+"""Published state of the engine: the plan in the odometry frame, the camera, the limits."""
+
+from math import asin, atan2, cos, sin
+
+import numpy as np
+
+from compilation import compiled
+from walking.arrays import Array, Indices, Point
+from walking.body.kinematics import chain_end
+from walking.command import Command, CommandState, VelocityCommand
+from walking.command_limits import CommandLimits, limits_of
+from walking.foothold import Foothold, foothold, put
+from walking.gait import support_foot, swing_foot
+from walking.odometry import Odometry
+from walking.phase import Phase
+from walking.records import (
+    DOUBLE_SUPPORT,
+    LEFT_SUPPORT,
+    LIVE,
+    PHASES,
+    RIGHT_SUPPORT,
+    STANDING,
+    Record,
+)
+from walking.state import Balance, HeadCameraPose, WalkingState
+from walking.steering import report_applied
+from walking.support import polygon
+
+_PHASES = tuple(Phase[name] for name in PHASES)
+
+PlanFrame = tuple[float, float, float, float, float]
+"""Origin x, y [m], cosine and sine of the direction, and the direction [rad] of the plan frame."""
+
+
+def phase_at(index: int) -> Phase:
+    """Return the phase of the gait of an index in `walking.records.PHASES`."""
+    return _PHASES[index]
+
+
+def state_of(
+    published: Record, footsteps: Record, commanded: Command, *, fallen: bool
+) -> WalkingState:
+    """Return the state of a record `PUBLISHED`, whose arrays it shares.
+
+    Args:
+        published: the record (1,).
+        footsteps: planned footholds, the support foot first (n,).
+        commanded: last command.
+        fallen: whether the robot believes that it has fallen.
+    """
+    row, camera = published[0], published["camera"][0]
+    phase, x, y, yaw, *_ = row.item()
+    *_, pan, tilt, pan_rate, tilt_rate, yaw_rate = camera.item()
+    return WalkingState(
+        phase=_PHASES[phase],
+        odometry=Odometry(x, y, yaw, row["covariance"]),
+        camera=HeadCameraPose(
+            camera["rotation"], camera["position"], pan, tilt, pan_rate, tilt_rate, yaw_rate
+        ),
+        applied_velocity=row["applied_velocity"],
+        footsteps=tuple(map(Foothold._make, footsteps.tolist())),
+        zmp=row["zmp"],
+        dcm=row["dcm"],
+        com=row["com"],
+        roll=float(row["roll"]),
+        pitch=float(row["pitch"]),
+        step_count=int(row["step_count"]),
+        fallen=fallen,
+        balance=Balance(
+            com=row["planned_com"],
+            dcm=row["measured_dcm"],
+            support=row["corners"][: row["corner_count"]],
+            zmp_depth=float(row["zmp_depth"]),
+            feet=row["feet"],
+            capture=row["capture"],
+        ),
+        command_limits=limits_report(row, commanded),
+    )
+
+
+def limits_report(published: Record, commanded: Command) -> CommandLimits:
+    """Return the report of how a command is limited."""
+    bound, applied = int(published["bound"]), published["applied"]
+    if bound == 0:
+        return CommandLimits(commanded, commanded, ())
+    values = applied["values"].tolist()
+    command = CommandState(*values) if applied["explicit"] else VelocityCommand(*values[:3])
+    return CommandLimits(commanded, command, limits_of(bound))
+
+
+@compiled
+def publish(
+    published: Record,
+    footsteps: Record,
+    walk: Record,
+    plan: Record,
+    steps: Record,
+    odometry: Record,
+    robot: Record,
+    parameters: Record,
+) -> int:
+    """Publish all but the camera; return the number of footsteps.
+
+    The plan is expressed in the odometry frame: its support foot is where odometry measures it.
+
+    Args:
+        published: set.
+        footsteps: planned footholds, support foot first, set (n,).
+        walk: state of the walk.
+        plan: in force.
+        steps: its footholds.
+        odometry: dead reckoning.
+        robot: constants.
+        parameters: of the walk.
+    """
+    out, gait, sensing, o = published, plan.gait, walk.sensing, odometry
+    out.phase = _phase(gait)
+    out.x, out.y, out.yaw = o.x, o.y, o.yaw
+    publish_covariance(out.covariance, o)
+    out.roll, out.pitch, out.step_count = sensing.roll, sensing.pitch, gait.completed
+    for k in range(3):
+        out.applied_velocity[k] = walk.placing.applied[k]
+    frame = _plan_frame(support_foot(gait), sensing.feet[gait.support], odometry)
+    p, w = walk.pendulum, robot.omega
+    _put_point(out.zmp, frame, p.zmp_x, p.zmp_y)
+    _put_point(out.dcm, frame, p.x + p.vx / w, p.y + p.vy / w)
+    _put_point(out.planned_com, frame, p.x, p.y)
+    x = p.x + sensing.x + (p.vx + sensing.vx) / w
+    y = p.y + sensing.y + (p.vy + sensing.vy) / w
+    _put_point(out.measured_dcm, frame, x, y)
+    unloading, loading = foothold(walk.unloading), foothold(walk.loading)
+    corners = polygon(robot.support, unloading, loading, walk.single)
+    out.corner_count, out.zmp_depth = corners.shape[0], walk.zmp_depth
+    for k in range(corners.shape[0]):
+        _put_point(out.corners[k], frame, corners[k, 0], corners[k, 1])
+    for side in range(2):
+        foot, row = walk.limbs.feet[side], out.feet[side]
+        _put_point(row, frame, foot.x, foot.y)
+        row[2], row[3] = foot.height, foot.yaw + frame[4]
+    _, _, c, s, _ = frame
+    dx, dy = walk.placing.moved_x, walk.placing.moved_y
+    out.capture[0], out.capture[1] = c * dx - s * dy, s * dx + c * dy
+    c, s = cos(o.yaw), sin(o.yaw)
+    out.com[0] = o.x + c * sensing.com[0] - s * sensing.com[1]
+    out.com[1] = o.y + s * sensing.com[0] + c * sensing.com[1]
+    publish_limits(out, walk, plan, robot, parameters)
+    _put_foothold(footsteps[0], frame, support_foot(gait))
+    if not gait.stepping:
+        _put_foothold(footsteps[1], frame, swing_foot(gait))
+        return 2
+    for k in range(plan.steps):
+        _put_foothold(footsteps[1 + k], frame, foothold(steps[k]))
+    count: int = 1 + plan.steps
+    return count
+
+
+@compiled
+def publish_limits(
+    published: Record, walk: Record, plan: Record, robot: Record, parameters: Record
+) -> None:
+    """Publish the applied command and the limits that bind."""
+    admission, placing = walk.admission, walk.placing
+    published.bound = walk.steering.bound | walk.bound | placing.bound
+    report_applied(
+        published.applied,
+        walk.steering,
+        walk.scratch,
+        published.bound,
+        (placing.applied[0], placing.applied[1], placing.applied[2]),
+        admission.known and admission.fraction < 1.0,
+        admission.following,
+        plan.gait.clock.timing,
+        robot,
+        parameters,
+    )
+
+
+@compiled
+def publish_covariance(covariance: Array, odometry: Record) -> None:
+    """Set the covariance (3, 3) of odometry."""
+    o = odometry
+    covariance[0, 0], covariance[0, 1], covariance[0, 2] = o.xx, o.xy, o.xw
+    covariance[1, 0], covariance[1, 1], covariance[1, 2] = o.xy, o.yy, o.yw
+    covariance[2, 0], covariance[2, 1], covariance[2, 2] = o.xw, o.yw, o.ww
+
+
+@compiled
+def publish_camera(
+    camera: Record,
+    sensing: Record,
+    angles: Array,
+    rates: Array,
+    gyro: Array,
+    chain: Array,
+    moving: Indices,
+    robot: Record,
+) -> None:
+    """Publish the head camera in the robot frame: tilt by IMU, height by the loaded leg.
+
+    Args:
+        camera: set.
+        sensing: measured body.
+        angles: measured angles of all joints (n,) [rad].
+        rates: measured rates of all joints (n,) [rad/s].
+        gyro: angular velocity of the trunk (3,) [rad/s].
+        chain: from the base to the camera, see `walking.body.kinematics`.
+        moving: joints of the chain.
+        robot: constants.
+    """
+    mounted, place, own = np.empty((3, 3)), np.empty(3), np.empty(moving.size)
+    for k in range(moving.size):
+        own[k] = angles[moving[k]]
+    chain_end(chain, own, mounted, place)
+    camera.pan = atan2(mounted[1, 2], mounted[0, 2])
+    camera.tilt = asin(min(1.0, max(-1.0, mounted[2, 2])))
+    neck = robot.neck
+    camera.pan_rate = camera.tilt_rate = 0.0
+    if neck.movable:
+        camera.pan_rate = neck.pan_sign * rates[neck.pan_joint]
+        camera.tilt_rate = neck.tilt_sign * rates[neck.tilt_joint]
+    tilt, load = (sensing.roll, sensing.pitch), sensing.right_load
+    camera.yaw_rate = level_camera(tilt, mounted, place, gyro, camera.rotation, camera.position)
+    camera.position[2] += -(1.0 - load) * sensing.feet[0].z - load * sensing.feet[1].z
+
+
+@compiled
+def level_camera(
+    tilt: Point, mounted: Array, place: Array, gyro: Array, rotation: Array, position: Array
+) -> float:
+    """Express the camera in the level frame of the trunk's heading.
+
+    Args:
+        tilt: roll and pitch of the trunk [rad].
+        mounted: rotation R_BC of the camera in the base frame (3, 3).
+        place: position p_BC of the camera in the base frame (3,) [m].
+        gyro: angular velocity of the trunk in its frame (3,) [rad/s].
+        rotation: set to R_RC (3, 3).
+        position: set to p_RC (3,) [m].
+
+    Returns:
+        yaw rate of the trunk [rad/s].
+    """
+    R = np.empty((3, 3))
+    incline(tilt[0], tilt[1], R)
+    for i in range(3):
+        for j in range(3):
+            rotation[i, j] = (
+                R[i, 0] * mounted[0, j] + R[i, 1] * mounted[1, j] + R[i, 2] * mounted[2, j]
+            )
+        position[i] = R[i, 0] * place[0] + R[i, 1] * place[1] + R[i, 2] * place[2]
+    yaw_rate: float = R[2, 0] * gyro[0] + R[2, 1] * gyro[1] + R[2, 2] * gyro[2]
+    return yaw_rate
+
+
+@compiled
+def incline(roll: float, pitch: float, rotation: Array) -> None:
+    """Set the attitude R_RB (3, 3) of a trunk with roll and pitch [rad]."""
+    cr, sr, cp, sp = cos(roll), sin(roll), cos(pitch), sin(pitch)
+    rotation[0, 0], rotation[0, 1], rotation[0, 2] = cp, sp * sr, sp * cr
+    rotation[1, 0], rotation[1, 1], rotation[1, 2] = 0.0, cr, -sr
+    rotation[2, 0], rotation[2, 1], rotation[2, 2] = -sp, cp * sr, cp * cr
+
+
+@compiled
+def _phase(gait: Record) -> int:
+    if not gait.stepping:
+        return STANDING
+    if gait.double:
+        return DOUBLE_SUPPORT
+    return RIGHT_SUPPORT if gait.support == 1 else LEFT_SUPPORT
+
+
+@compiled
+def _plan_frame(planned: Foothold, foot: Record, odometry: Record) -> PlanFrame:
+    """Return the plan frame, given the support foot in the plan and as measured."""
+    c, s = cos(odometry.yaw), sin(odometry.yaw)
+    yaw = odometry.yaw + foot.yaw - planned.yaw
+    cy, sy = cos(yaw), sin(yaw)
+    return (
+        odometry.x + c * foot.x - s * foot.y - cy * planned.x + sy * planned.y,
+        odometry.y + s * foot.x + c * foot.y - sy * planned.x - cy * planned.y,
+        cy,
+        sy,
+        yaw,
+    )
+
+
+@compiled
+def _transformed(frame: PlanFrame, x: float, y: float) -> Point:
+    ox, oy, c, s, _ = frame
+    return ox + c * x - s * y, oy + s * x + c * y
+
+
+@compiled
+def _put_point(point: Array, frame: PlanFrame, x: float, y: float) -> None:
+    point[0], point[1] = _transformed(frame, x, y)
+
+
+@compiled
+def _put_foothold(record: Record, frame: PlanFrame, foot: Foothold) -> None:
+    x, y = _transformed(frame, foot.x, foot.y)
+    put(record, Foothold(foot.left, x, y, foot.yaw + frame[4]))

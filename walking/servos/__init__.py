@@ -1,1 +1,0 @@
-"""Servo setpoints: inverse kinematics and feed-forward."""

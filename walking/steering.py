@@ -1,0 +1,333 @@
+"""Steering: commands become wanted strides and timing, within limits of speed and acceleration.
+
+Velocity commands and command states may follow in any order.
+"""
+
+from math import sqrt
+
+from compilation import compiled
+from walking.arrays import Vector
+from walking.clamp import clamp
+from walking.command_limits import (
+    ACCELERATION,
+    BALANCE,
+    COMBINED_SPEED,
+    SETTLING,
+    SPEED,
+    STRIDE_LIMITS,
+)
+from walking.footsteps import (
+    STILL,
+    cadence,
+    command_of,
+    command_strides,
+    command_timing,
+    duration,
+    mean_velocity,
+    put_timing,
+    stride_limits,
+    velocity_strides,
+)
+from walking.parameters import CONTROL_PERIOD
+from walking.records import PAPER, Record
+
+SAME_SPEED = 1e-9  # rounding error of velocities [m/s, rad/s]
+
+
+@compiled
+def wanted_velocity(steering: Record) -> Vector:
+    """Return the wanted velocity (vx, vy, wz) [m/s, m/s, rad/s]."""
+    v = steering.velocity
+    return v[0], v[1], v[2]
+
+
+@compiled
+def moves(steering: Record) -> bool:
+    """Whether a motion is wanted."""
+    v = steering.velocity
+    moving: bool = steering.state.explicit or v[0] != 0.0 or v[1] != 0.0 or v[2] != 0.0
+    return moving
+
+
+@compiled
+def limited(velocity: Vector, parameters: Record) -> Vector:
+    """Clip a velocity to the limits of each component and to the ellipsoid of all.
+
+    Returns:
+        (vx, vy, wz) [m/s, m/s, rad/s]; the direction of the command is kept when the ellipsoid
+        binds.
+    """
+    limits = parameters.limits
+    vx, vy, wz = _within(velocity, parameters)
+    max_vx = limits.vx if vx >= 0.0 else limits.vx_backward
+    x, y, turned = vx / max_vx, vy / limits.vy, wz / limits.wz
+    size = sqrt(x * x + y * y + turned * turned)
+    if size > limits.combined:
+        scale = limits.combined / size
+        return vx * scale, vy * scale, wz * scale
+    return vx, vy, wz
+
+
+@compiled
+def speed_limits(velocity: Vector, parameters: Record) -> int:
+    """Return the speed limits that bind on a velocity command."""
+    bound, within = 0, _within(velocity, parameters)
+    if within != velocity:
+        bound |= SPEED
+    if limited(velocity, parameters) != within:
+        bound |= COMBINED_SPEED
+    return bound
+
+
+@compiled
+def _within(velocity: Vector, parameters: Record) -> Vector:
+    """Clip every component to its limit."""
+    limits = parameters.limits
+    return (
+        min(limits.vx, max(-limits.vx_backward, velocity[0])),
+        clamp(velocity[1], limits.vy),
+        clamp(velocity[2], limits.wz),
+    )
+
+
+@compiled
+def follow_command(
+    steering: Record,
+    scratch: Record,
+    robot: Record,
+    parameters: Record,
+    speed_ratio: float,
+    settled: bool,
+    balanced: bool,
+) -> None:
+    """Follow the command of this tick.
+
+    Args:
+        steering: changed.
+        scratch: strides, changed.
+        robot: constants.
+        parameters: of the walk.
+        speed_ratio: ratio of a velocity command to walk at [1].
+        settled: whether the robot may start to move.
+        balanced: whether the motion may change.
+    """
+    steering.bound = 0
+    explicit, values = steering.command.explicit, steering.command.values
+    velocity = (values[0], values[1], values[2])
+    if not balanced:
+        _hold(steering, scratch, robot, parameters)
+    elif not settled:
+        if explicit or velocity != STILL:
+            steering.bound |= SETTLING
+        _approach(steering, STILL, parameters)
+    elif explicit:
+        _follow_state(steering, scratch, robot, parameters)
+    else:
+        _follow_velocity(steering, velocity, scratch, robot, parameters, speed_ratio)
+
+
+@compiled
+def use_next_timing(timing: Record, steering: Record, before: Record, stepping: bool) -> None:
+    """Set the timing of the next footsteps.
+
+    Footsteps that close the stance are at least as fast as the walk was: during a slow footstep the
+    moving body would go too far.
+
+    Args:
+        timing: set.
+        steering: of the walk.
+        before: timing of the present footstep.
+        stepping: whether a footstep is under way.
+    """
+    faster = stepping and not moves(steering) and duration(before) < duration(steering.timing)
+    wanted = before if faster else steering.timing
+    timing.double, timing.single = wanted.double, wanted.single
+    timing.swing_height = wanted.swing_height
+
+
+@compiled
+def wanted_strides(
+    strides: Record, steering: Record, correction: Vector, robot: Record, parameters: Record
+) -> None:
+    """Set the wanted strides.
+
+    Args:
+        strides: set.
+        steering: of the walk.
+        correction: correction of the velocity (vx, vy, wz) [m/s, m/s, rad/s]; command states use
+            only wz.
+        robot: constants.
+        parameters: of the walk.
+    """
+    time = duration(steering.timing)
+    if steering.state.explicit:
+        command_strides(strides, steering.state.values, correction[2] * time, robot, parameters)
+    else:
+        vx, vy, wz = wanted_velocity(steering)
+        velocity = (vx + correction[0], vy + correction[1], wz + correction[2])
+        velocity_strides(strides, velocity, time, robot, parameters)
+
+
+@compiled
+def report_applied(
+    applied: Record,
+    steering: Record,
+    scratch: Record,
+    bound: int,
+    velocity: Vector,
+    admitted: bool,
+    following: Record,
+    timing: Record,
+    robot: Record,
+    parameters: Record,
+) -> None:
+    """Set the command that the next footsteps follow.
+
+    Args:
+        applied: command, set.
+        steering: of the walk.
+        scratch: strides, changed.
+        bound: all limits that bind.
+        velocity: velocity that the footsteps follow.
+        admitted: whether the footsteps follow `following` instead of the wanted strides.
+        following: strides of the plan.
+        timing: timing of the footsteps.
+        robot: constants.
+        parameters: of the walk.
+    """
+    applied.explicit = steering.command.explicit
+    for k in range(6):
+        applied.values[k] = steering.command.values[k]
+    if bound == 0:
+        return
+    if steering.state.explicit:
+        applied.explicit = True
+        if not admitted:
+            command_strides(scratch, steering.state.values, 0.0, robot, parameters)
+        command = command_of(following if admitted else scratch, timing)
+        for k in range(6):
+            applied.values[k] = command[k]
+        return
+    applied.explicit = False
+    if bound & STRIDE_LIMITS:
+        time = duration(timing)
+        velocity_strides(scratch, velocity, time, robot, parameters)
+        velocity = mean_velocity(scratch, time, parameters)
+    for k in range(3):
+        applied.values[k] = velocity[k]
+
+
+@compiled
+def _hold(steering: Record, scratch: Record, robot: Record, parameters: Record) -> None:
+    """Keep the present motion; balance limits any other command."""
+    command, state = steering.command, steering.state
+    if command.explicit:
+        same = state.explicit
+        for k in range(6):
+            same = same and command.values[k] == state.values[k]
+        if not same:
+            steering.bound |= BALANCE
+            return
+        steering.bound |= command_strides(scratch, command.values, 0.0, robot, parameters)
+        steering.bound |= command_timing(command.values, parameters)[1]
+        return
+    velocity = (command.values[0], command.values[1], command.values[2])
+    if state.explicit or _differs(steering, limited(velocity, parameters)):
+        steering.bound |= BALANCE
+    steering.bound |= speed_limits(velocity, parameters)
+    if not state.explicit:
+        time, wanted = duration(steering.timing), wanted_velocity(steering)
+        steering.bound |= stride_limits(scratch, wanted, time, robot, parameters)
+
+
+@compiled
+def _differs(steering: Record, wanted: Vector) -> bool:
+    """Whether a velocity differs from the wanted one; at rest any does."""
+    vx, vy, wz = wanted_velocity(steering)
+    if wanted == STILL:
+        return vx != 0.0 or vy != 0.0 or wz != 0.0
+    return (
+        abs(vx - wanted[0]) > SAME_SPEED
+        or abs(vy - wanted[1]) > SAME_SPEED
+        or abs(wz - wanted[2]) > SAME_SPEED
+    )
+
+
+@compiled
+def _follow_velocity(
+    steering: Record,
+    velocity: Vector,
+    scratch: Record,
+    robot: Record,
+    parameters: Record,
+    speed_ratio: float,
+) -> None:
+    steering.state.explicit = False
+    wanted = velocity
+    if speed_ratio < 1.0 and velocity != STILL:
+        vx, vy, wz = limited(velocity, parameters)
+        wanted = (speed_ratio * vx, speed_ratio * vy, speed_ratio * wz)
+        steering.bound |= BALANCE
+    if parameters.pattern.generator >= PAPER and velocity == STILL:
+        # These generators limit the change themselves.
+        _jump(steering, STILL)
+    limit = _approach(steering, wanted, parameters)
+    steering.bound |= speed_limits(velocity, parameters)
+    now = wanted_velocity(steering)
+    put_timing(steering.timing, cadence(now, parameters))
+    if _differs(steering, limit):
+        steering.bound |= ACCELERATION
+    time = duration(steering.timing)
+    steering.bound |= stride_limits(scratch, now, time, robot, parameters)
+
+
+@compiled
+def _follow_state(steering: Record, scratch: Record, robot: Record, parameters: Record) -> None:
+    command = steering.command.values
+    steering.state = steering.command
+    timing, late = command_timing(command, parameters)
+    put_timing(steering.timing, timing)
+    steering.bound |= command_strides(scratch, command, 0.0, robot, parameters) | late
+    time = duration(steering.timing)
+    # A later velocity command starts from this velocity.
+    start = command_of(scratch, steering.timing)
+    _jump(steering, (start[2] / time, 0.0, start[4] / time))
+
+
+@compiled
+def _jump(steering: Record, velocity: Vector) -> None:
+    for k in range(3):
+        steering.velocity[k] = velocity[k]
+
+
+@compiled
+def _approach(steering: Record, velocity: Vector, parameters: Record) -> Vector:
+    """Approach a velocity by one tick; return it within the speed limits."""
+    limits, wanted = parameters.limits, limited(velocity, parameters)
+    braking = CONTROL_PERIOD / limits.braking_time
+    acceleration = (
+        limits.forward_acceleration * CONTROL_PERIOD,
+        limits.lateral_acceleration * CONTROL_PERIOD,
+        limits.turn_acceleration * CONTROL_PERIOD,
+    )
+    for axis in range(3):
+        steering.velocity[axis] = _rate_limited(
+            steering.peak, axis, steering.velocity[axis], wanted[axis], acceleration[axis], braking
+        )
+    return wanted
+
+
+@compiled
+def _rate_limited(
+    peak: Record, axis: int, now: float, wanted: float, acceleration: float, braking: float
+) -> float:
+    """Return a component a tick later; braking is a part of its last peak per tick [1]."""
+    change = wanted - now
+    if now * change >= 0.0:
+        peak[axis] = abs(now)
+        return now + clamp(change, acceleration)
+    peak[axis] = max(peak[axis], abs(now))
+    step = max(acceleration, braking * peak[axis])
+    if abs(now) < min(step, abs(change)):
+        return 0.0  # a reversal passes through rest
+    return now + clamp(change, step)

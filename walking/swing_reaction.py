@@ -1,0 +1,220 @@
+"""Reaction of the swing leg on the ZMP, and its compensation by the pelvis.
+
+The pendulum models a body with its legs at rest; the acceleration of the swing leg shifts the ZMP
+by
+
+    d = -B x_f'' + K h'' (x_f - p) - N h'' e,
+
+x_f the position of the foot, h its height, p the ZMP, e the heading: forward thrust of the leg,
+lifted weight, forward motion of the folding knee. The three coefficients follow from the robot
+model. A pelvis offset c from the pendulum, c'' = ω² (c + d), restores the planned ZMP. Its bounded
+solution is
+
+    c' = ω (ξ - c),   ξ = - ∫ ω e^{-ωs} d(t + s) ds,
+
+a closed form in the footholds with the look-ahead of preview control. Kajita et al. (ICRA 2003)
+compute this correction by a second preview controller on the multibody ZMP, Takenaka et al.
+(IROS 2009) by a pendulum with three masses.
+"""
+
+from dataclasses import dataclass
+from math import cos, exp, sin
+from typing import NamedTuple
+
+import numpy as np
+
+from compilation import compiled
+from walking.arrays import Point
+from walking.body.leg import FootPose
+from walking.body.robot_model import RobotModel
+from walking.body.tree import LEFT_LEG, RIGHT_LEG
+from walking.foothold import Foothold, foothold
+from walking.gait import support_foot, swing_foot
+from walking.parameters import CONTROL_PERIOD, GRAVITY
+from walking.pendulum import ramp_weights
+from walking.records import Record
+from walking.reference import zmp_under
+
+SMALL = 1e-4  # step of finite differences [m]
+
+
+@dataclass(frozen=True, slots=True)
+class LegReaction:
+    """Shift of the ZMP by accelerations of the swing foot.
+
+    Attributes:
+        thrust: B, backward shift of the ZMP per forward acceleration of the foot [s²].
+        weight: K, shift towards the foot per upward acceleration and distance of the foot from the
+            ZMP [s²/m].
+        knee: N, backward shift per upward acceleration of the foot [s²].
+    """
+
+    thrust: float
+    weight: float
+    knee: float
+
+
+def leg_reaction(robot: RobotModel, height: float, lift: float) -> LegReaction:
+    """Return the reaction of a leg at mid-swing.
+
+    Args:
+        robot: masses and dimensions.
+        height: height of the base above the floor [m].
+        lift: swing height; the reaction is that at half of it [m].
+    """
+    ahead = float(robot.com(robot.ready)[0])
+    leg = robot.legs[0]
+
+    def posture(forward: float, up: float) -> np.ndarray:
+        q = robot.ready.copy()
+        for side, part in zip(robot.legs, (LEFT_LEG, RIGHT_LEG), strict=True):
+            moved, raised = (forward, up) if side is leg else (0.0, 0.0)
+            foot = FootPose(ahead + moved, side.foot[1], raised - height)
+            q[part] = side.angles(foot)[0]
+        return q
+
+    middle = 0.5 * lift
+    q = posture(0.0, middle)
+    thrust = (posture(SMALL, middle) - posture(-SMALL, middle)) / (2.0 * SMALL)
+    raised = (posture(0.0, middle + SMALL) - posture(0.0, middle - SMALL)) / (2.0 * SMALL)
+    rest, load = np.zeros_like(q), robot.mass * GRAVITY
+
+    def moment(acceleration: np.ndarray) -> Point:
+        """Return the moment of an acceleration about x and y at the floor under the foot [N m]."""
+        _, moved = robot.inverse_dynamics(q, rest, acceleration, (0.0, 0.0))
+        _, still = robot.inverse_dynamics(q, rest, rest, (0.0, 0.0))
+        fx, fy, fz, nx, ny, _ = (moved - still).tolist()
+        return nx - height * fy, ny + height * fx + ahead * fz
+
+    return LegReaction(
+        thrust=moment(thrust)[1] / load,
+        weight=moment(raised)[0] / (leg.foot[1] * load),
+        knee=moment(raised)[1] / load,
+    )
+
+
+class Moments(NamedTuple):
+    """Accelerations of a swing over unit distance and height.
+
+    Attributes:
+        forward, up: accelerations [1/s²].
+        both: `up` times the distance covered [1/s²].
+    """
+
+    forward: float
+    up: float
+    both: float
+
+
+@compiled
+def accelerations(ticks: int, tick: int) -> Moments:
+    """Return the accelerations in a tick of a swing of a number of ticks."""
+    time = ticks * CONTROL_PERIOD
+    square = time * time
+    u = tick / ticks
+    rest = 1.0 - u
+    covered = u * u * u * (10.0 - 15.0 * u + 6.0 * u * u)
+    # Of the height 64 u³ (1 - u)³.
+    up = 384.0 * u * rest * (rest * rest - 3.0 * u * rest + u * u) / square
+    return Moments(60.0 * u * rest * (rest - u) / square, up, up * covered)
+
+
+@compiled
+def previewed(ticks: int, tick: int, robot: Record) -> Moments:
+    """Return ∫ ω e^{-ωs} of the accelerations over the rest of a swing, linear between ticks."""
+    growth, first, last = ramp_weights(robot.omega * CONTROL_PERIOD, 1)
+    forward = up = both = 0.0
+    then = accelerations(ticks, ticks)
+    for k in range(ticks - 1, tick - 1, -1):
+        now = accelerations(ticks, k)
+        forward = (forward + first * now.forward + last * then.forward) / growth
+        up = (up + first * now.up + last * then.up) / growth
+        both = (both + first * now.both + last * then.both) / growth
+        then = now
+    return Moments(forward, up, both)
+
+
+@compiled
+def compensate(
+    limbs: Record, plan: Record, steps: Record, robot: Record, parameters: Record
+) -> None:
+    """Run one tick of the compensation along a plan.
+
+    Args:
+        limbs: offset of the pelvis and its acceleration, changed.
+        plan: in force.
+        steps: its footholds.
+        robot: constants.
+        parameters: of the walk.
+    """
+    w = robot.omega
+    ahead_x, ahead_y, now_x, now_y = _previewed_shift(plan, steps, robot, parameters)
+    gain = 1.0 - exp(-w * CONTROL_PERIOD)
+    offset, ahead = limbs.offset, limbs.ahead
+    x = offset[0] + gain * (0.5 * (ahead[0] + ahead_x) - offset[0])
+    y = offset[1] + gain * (0.5 * (ahead[1] + ahead_y) - offset[1])
+    offset[0], offset[1], ahead[0], ahead[1] = x, y, ahead_x, ahead_y
+    limbs.offset_acceleration[0] = w * w * (x + now_x)
+    limbs.offset_acceleration[1] = w * w * (y + now_y)
+
+
+@compiled
+def _previewed_shift(
+    plan: Record, steps: Record, robot: Record, parameters: Record
+) -> tuple[float, float, float, float]:
+    """Return ξ x, y [m] and the present shift of the ZMP x, y [m]; zero while standing."""
+    gait, timing, single = plan.gait, plan.gait.clock.timing, plan.gait.clock.single
+    ahead_x = ahead_y = now_x = now_y = 0.0
+    if not gait.stepping or plan.steps == 0:
+        return ahead_x, ahead_y, now_x, now_y
+    begin, ticks = single.first - gait.elapsed, single.last - single.first
+    if begin <= 0 and single.origin > 0.0:
+        # Retimed in the air: extrapolate back to a swing of constant speed.
+        ticks = round(ticks / (1.0 - single.origin))
+        begin = -round(gait.swing_phase * ticks)
+    first = round(parameters.gait.swing_start * timing.single)
+    usual = round(parameters.gait.swing_end * timing.single) - first
+    support, origin, landing = support_foot(gait), swing_foot(gait), foothold(gait.landing)
+    if not gait.landed_early:
+        elapsed = min(ticks, max(0, -begin))
+        zmp = zmp_under(support, robot, parameters)
+        lift = gait.swing_height
+        moments = previewed(ticks, elapsed, robot)
+        dx, dy = _zmp_shift(origin, landing, zmp, lift, moments, robot)
+        decay = _decay(begin, robot)
+        ahead_x, ahead_y = ahead_x - decay * dx, ahead_y - decay * dy
+        if begin <= 0:
+            moments = accelerations(ticks, elapsed)
+            now_x, now_y = _zmp_shift(origin, landing, zmp, lift, moments, robot)
+    begin = gait.ticks_left + timing.double + first
+    whole = previewed(usual, 0, robot)
+    for k in range(1, plan.steps):
+        step, zmp = foothold(steps[k]), zmp_under(landing, robot, parameters)
+        dx, dy = _zmp_shift(support, step, zmp, timing.swing_height, whole, robot)
+        decay = _decay(begin, robot)
+        ahead_x, ahead_y = ahead_x - decay * dx, ahead_y - decay * dy
+        support, landing = landing, step
+        begin += timing.double + timing.single
+    return ahead_x, ahead_y, now_x, now_y
+
+
+@compiled
+def _zmp_shift(
+    origin: Foothold, landing: Foothold, zmp: Point, lift: float, moments: Moments, robot: Record
+) -> Point:
+    """Return the shift of the ZMP by a swing of height `lift` [m] about a ZMP [m]."""
+    thrust, weight = robot.thrust, robot.lifted_weight * lift
+    knee = robot.knee * lift * moments.up
+    yaw = 0.5 * (origin.yaw + landing.yaw)
+    dx, dy = landing.x - origin.x, landing.y - origin.y
+    forward, up, both = moments
+    return (
+        weight * (up * (origin.x - zmp[0]) + both * dx) - thrust * forward * dx - knee * cos(yaw),
+        weight * (up * (origin.y - zmp[1]) + both * dy) - thrust * forward * dy - knee * sin(yaw),
+    )
+
+
+@compiled
+def _decay(begin: int, robot: Record) -> float:
+    """Return the weight of a swing that begins some ticks ahead [1]."""
+    return exp(-robot.omega * CONTROL_PERIOD * begin) if begin > 0 else 1.0

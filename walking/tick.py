@@ -1,0 +1,389 @@
+"""Control tick of the walk: two compiled functions around inverse dynamics.
+
+`begin` estimates, decides, plans, and sets the posture and its rates; `finish` adds the
+feed-forward.
+"""
+
+import numpy as np
+
+from compilation import compiled
+from walking.admission import Model, Plans, remember
+from walking.arrays import Array, Indices, Point
+from walking.balance import advance_pendulum, end_capture, exceeds, place_foot, zmp_shift
+from walking.body.kinematics import feet_poses
+from walking.command_limits import BALANCE, FALLEN, SWING_HEIGHT, TIMING
+from walking.corrections import (
+    correct_offset,
+    cycle_begins,
+    detects_touchdown,
+    discard_offset_cycle,
+    heading_rate,
+    reset_speed,
+    restart_cycle,
+    speed_correction,
+    speed_ratio,
+)
+from walking.estimation import estimate, measure
+from walking.feedforward import set_motion, set_offsets, set_setpoints
+from walking.foothold import foothold, put
+from walking.footsteps import STILL, Command, tendency
+from walking.gait import advance, retime, start, support_foot, swing_foot, swing_of, touch_down
+from walking.head import advance_head, head_joints
+from walking.parameters import CONTROL_PERIOD
+from walking.planar import norm, rotate, rotate_back
+from walking.posture import set_posture
+from walking.records import LIVE, Record
+from walking.reference import zmp_under
+from walking.steering import (
+    follow_command,
+    moves,
+    use_next_timing,
+    wanted_strides,
+    wanted_velocity,
+)
+from walking.support import Region, depth, load_fraction, polygon, support_region
+from walking.swing_reaction import compensate
+
+SAME_HEIGHT = 1e-9  # rounding error of swing heights [m]
+DIVERGED = 1e6  # distance of the pendulum from the support foot per length of the leg [1]
+
+
+@compiled
+def watch(
+    walks: Record,
+    angles: Array,
+    com: Array,
+    orientation: Array,
+    gyro: Array,
+    pads: Array,
+    feet_chains: Array,
+    feet_joints: Indices,
+    robots: Record,
+    parameters: Record,
+) -> None:
+    """Measure the body in a tick in which something else moves the joints.
+
+    Args:
+        walks: state (1,), changed.
+        angles: measured angles of all joints (n,) [rad].
+        com: centre of mass for these joints in the base frame (3,) [m].
+        orientation: attitude of the IMU, quaternion w-x-y-z (4,).
+        gyro: angular velocity of the trunk (3,) [rad/s].
+        pads: load on the pads of each sole, see `walking.sensing.BodySensors` (2, 4) [N].
+        feet_chains: see `walking.body.kinematics.feet_poses`.
+        feet_joints: joints of these chains.
+        robots: constants (1,).
+        parameters: of the walk (1,).
+    """
+    walk, legs = walks[0], np.empty((2, 4))
+    feet_poses(feet_chains, feet_joints, angles, legs)
+    measure(walk.sensing, legs, com, orientation, gyro, pads, robots[0], parameters[0])
+    walk.ticks += 1
+
+
+@compiled
+def begin(
+    walks: Record,
+    odometry: Record,
+    plan_records: Record,
+    ramps: Record,
+    steps: Record,
+    knots: Record,
+    joints: Record,
+    robots: Record,
+    parameter_records: Record,
+    sums: Record,
+    legs: Array,
+    axes: Array,
+    origins: Array,
+    q: Array,
+    v: Array,
+    a: Array,
+    angles: Array,
+    gyro: Array,
+    command: Command,
+    explicit: bool,
+    head: Point,
+) -> float:
+    """Run a tick up to the motion of the dynamic model, after `watch`.
+
+    Args:
+        walks: state (1,), changed.
+        odometry: dead reckoning (1,), changed.
+        plan_records: plans (3,), changed.
+        ramps: ZMP references of the plans (3, n), changed.
+        steps: footholds of the plans (3, m), changed.
+        knots: knots of the plans (3, k), changed.
+        joints: of the robot (n,), changed.
+        robots: constants (1,).
+        parameter_records: of the walk (1,).
+        sums: sums of the gains of preview control.
+        legs: chains of the legs (2, 7, 15).
+        axes: axes of the leg joints in the base frame, set (2, 6, 3).
+        origins: origins of the leg joints in the base frame, set (2, 6, 3) [m].
+        q: position of the dynamic model, set.
+        v: velocity of the dynamic model, set.
+        a: acceleration of the dynamic model, set.
+        angles: planned angles of all joints, set (n,) [rad].
+        gyro: angular velocity of the trunk (3,) [rad/s].
+        command: velocity (vx, vy, wz), or a command state if `explicit`.
+        explicit: whether the command is a command state.
+        head: pan and tilt to look at [rad].
+
+    Returns:
+        distance of the pendulum from the support foot if the plan diverged, zero otherwise [m].
+    """
+    walk, robot, parameters = walks[0], robots[0], parameter_records[0]
+    plans = Plans(plan_records, ramps, steps, knots)
+    model = Model(robot, parameters, robot.still, sums)
+    live, pendulum = plan_records[LIVE], walk.pendulum
+    gait = live.gait
+    estimate(walk, odometry[0], gait.right_weight, gait.stepping, robot)
+    error = (walk.sensing.dcm_x, walk.sensing.dcm_y)
+    settled = walk.ticks * CONTROL_PERIOD > parameters.gait.settle_time
+    remember(walk.admission, gait)
+    _follow(walk, gait, command, explicit, error, settled, robot, parameters)
+    _want_strides(walk, gait, odometry[0], robot, parameters)
+    if not gait.stepping and settled:
+        _maybe_start(walk, gait, error, robot, parameters)
+    _detect_touchdown(walk, gait, parameters)
+    region = _contact_region(walk, gait, parameters.pattern.sole_margin, robot)
+    velocity, moving = wanted_velocity(walk.steering), moves(walk.steering)
+    place_foot(walk, plans, walk.wanted, velocity, error, region, moving, model)
+    advance_pendulum(walk, plans, region, model)
+    distance = _far(walk, gait, robot)
+    if distance != 0.0:
+        return distance
+    zmp = (pendulum.zmp_x, pendulum.zmp_y)
+    walk.limbs.load = _right_load(gait, region, zmp)
+    reachable = _contact_region(walk, gait, parameters.stabilizer.sole_margin, robot)
+    walk.zmp_shift_x, walk.zmp_shift_y = zmp_shift(zmp, error, reachable, robot)
+    corners = polygon(
+        robot.support, foothold(walk.unloading), foothold(walk.loading), walk.single
+    )
+    walk.zmp_depth = depth(corners, zmp[0], zmp[1])
+    feet, moving = walk.limbs.feet, walk.placing.moving
+    advance(gait, feet, steps[LIVE], live.steps, moving, robot.still, robot, parameters)
+    height = gait.clock.timing.swing_height
+    if not gait.double and abs(gait.swing_height - height) > SAME_HEIGHT:
+        walk.bound |= SWING_HEIGHT
+    end_capture(walk, plans)
+    _move_body(walk, live, steps[LIVE], joints, legs, axes, origins, angles, head, model)
+    acceleration = walk.limbs.offset_acceleration
+    w2 = robot.omega * robot.omega
+    moved = (
+        w2 * (pendulum.x - zmp[0]) + acceleration[0],
+        w2 * (pendulum.y - zmp[1]) + acceleration[1],
+    )
+    set_motion(joints, angles, q, v, a, walk.limbs.pelvis[2], moved, parameters)
+    return 0.0
+
+
+@compiled
+def finish(
+    walks: Record,
+    plan_records: Record,
+    joints: Record,
+    robots: Record,
+    parameter_records: Record,
+    axes: Array,
+    origins: Array,
+    forces: Array,
+    com: Array,
+    gyro: Array,
+    angles: Array,
+    measured: Array,
+    setpoint: Array,
+) -> None:
+    """Set the setpoints of the servos.
+
+    Args:
+        walks: state (1,), changed.
+        plan_records: plans (3,).
+        joints: of the robot (n,), changed.
+        robots: constants (1,).
+        parameter_records: of the walk (1,).
+        axes: axes of the leg joints in the base frame (2, 6, 3).
+        origins: origins of the leg joints in the base frame (2, 6, 3) [m].
+        forces: generalised forces of the motion without contact, those of the base first.
+        com: centre of mass of the posture in the base frame (3,) [m].
+        gyro: angular velocity of the trunk (3,) [rad/s].
+        angles: planned angles of all joints (n,) [rad].
+        measured: measured angles of all joints (n,) [rad].
+        setpoint: set (n,) [rad].
+    """
+    walk, robot, parameters = walks[0], robots[0], parameter_records[0]
+    gait = plan_records[LIVE].gait
+    walk.limbs.com[0], walk.limbs.com[1] = com[0], com[1]
+    left, right = foothold(gait.footholds[0]), foothold(gait.footholds[1])
+    zmps = (zmp_under(left, robot, parameters), zmp_under(right, robot, parameters))
+    set_offsets(joints, walk, axes, origins, forces, gyro, zmps, robot, parameters)
+    set_setpoints(joints, angles, measured, setpoint, robot)
+
+
+@compiled
+def is_fallen(walk: Record, parameters: Record) -> bool:
+    """Whether the tilt of the trunk is that of a fallen robot."""
+    fallen: bool = norm(walk.sensing.roll, walk.sensing.pitch) > parameters.estimator.fall_tilt
+    return fallen
+
+
+@compiled
+def _follow(
+    walk: Record,
+    gait: Record,
+    command: Command,
+    explicit: bool,
+    error: Point,
+    settled: bool,
+    robot: Record,
+    parameters: Record,
+) -> None:
+    """Follow the command; give the footsteps their timing."""
+    steering, timing = walk.steering, walk.admission.between
+    steering.command.explicit = explicit
+    for k in range(6):
+        steering.command.values[k] = command[k]
+    off = norm(error[0], error[1])
+    balanced = off < parameters.stabilizer.max_slew_error
+    ratio = speed_ratio(walk.corrections, off, parameters)
+    follow_command(steering, walk.scratch, robot, parameters, ratio, settled, balanced)
+    use_next_timing(timing, steering, gait.clock.timing, gait.stepping)
+    walk.bound = 0 if retime(gait, timing, robot, parameters) else TIMING
+
+
+@compiled
+def _want_strides(
+    walk: Record, gait: Record, odometry: Record, robot: Record, parameters: Record
+) -> None:
+    """Set the wanted strides, corrected for slip of the feet."""
+    corrections, steering, sensing = walk.corrections, walk.steering, walk.sensing
+    ahead = walk.limbs.pelvis[2] - odometry.yaw
+    if not gait.stepping:
+        # While standing the planned heading follows the measured one.
+        corrections.held = ahead
+        restart_cycle(corrections)
+    if not (gait.stepping and moves(steering)):
+        # The last footsteps only close the stance.
+        reset_speed(corrections)
+        discard_offset_cycle(corrections)
+        wanted_strides(walk.wanted, steering, STILL, robot, parameters)
+        return
+    begins = cycle_begins(corrections, gait.support)
+    shift = norm(walk.placing.moved_x, walk.placing.moved_y)
+    disturbed = gait.shortened or shift > parameters.stabilizer.max_steady_shift
+    pressure = (sensing.pressure_x, sensing.pressure_y)
+    correct_offset(corrections, pressure, begins, disturbed, parameters)
+    pose, velocity = (odometry.x, odometry.y, odometry.yaw), wanted_velocity(steering)
+    vx, vy = speed_correction(corrections, pose, velocity, begins, disturbed, parameters)
+    wz = heading_rate(corrections, ahead, begins or disturbed, parameters)
+    wanted_strides(walk.wanted, steering, (vx, vy, wz), robot, parameters)
+
+
+@compiled
+def _maybe_start(
+    walk: Record, gait: Record, error: Point, robot: Record, parameters: Record
+) -> None:
+    """Take a first footstep if the command or balance requires it."""
+    foot, moving = foothold(gait.footholds[0]), moves(walk.steering)
+    ratio = parameters.stabilizer.step_error_ratio
+    pushed, fallen = exceeds(foot, error, ratio, robot, parameters), is_fallen(walk, parameters)
+    if fallen and moving:
+        walk.bound |= FALLEN
+    if fallen or not (moving or pushed):
+        return
+    sideways = tendency(wanted_velocity(walk.steering), parameters)
+    opening_left = sideways > 0.0
+    if pushed:
+        # Only the foot on the side of the fall can make the capture step.
+        if not moving:
+            walk.bound |= BALANCE
+        opening_left = rotate_back(foot.yaw, error[0], error[1])[1] > 0.0
+    elif sideways == 0.0:
+        opening_left = not walk.last_opening_left
+    walk.last_opening_left = opening_left
+    start(gait, 1 if opening_left else 0, pushed, robot.still, robot, parameters)
+    if not retime(gait, walk.steering.timing, robot, parameters):
+        walk.bound |= TIMING
+
+
+@compiled
+def _detect_touchdown(walk: Record, gait: Record, parameters: Record) -> None:
+    """Stop the swing foot on early touchdown."""
+    if gait.stepping and not gait.double and not gait.landed_early:
+        phase, force = gait.swing_phase, walk.sensing.feet[swing_of(gait)].load
+        if detects_touchdown(walk.corrections, phase, force, parameters) and phase < 1.0:
+            touch_down(gait, walk.limbs.feet, parameters)
+
+
+@compiled
+def _contact_region(walk: Record, gait: Record, margin: float, robot: Record) -> Region:
+    """Return the region of the feet in contact, and remember these feet."""
+    walk.single = not gait.double
+    loading = support_foot(gait)
+    unloading = swing_foot(gait) if gait.double else loading
+    put(walk.loading, loading)
+    put(walk.unloading, unloading)
+    return support_region(robot.support, unloading, loading, margin)
+
+
+@compiled
+def _far(walk: Record, gait: Record, robot: Record) -> float:
+    """Return the distance of the pendulum from the support foot if it is absurd, else zero [m]."""
+    foot = gait.footholds[gait.support]
+    distance = max(abs(walk.pendulum.x - foot.x), abs(walk.pendulum.y - foot.y))
+    return 0.0 if distance < DIVERGED * robot.leg_length else distance
+
+
+@compiled
+def _right_load(gait: Record, region: Region, zmp: Point) -> float:
+    """Return the planned load fraction of the right foot [1]."""
+    loading = load_fraction(region, zmp[0], zmp[1]) if gait.double else 1.0
+    return loading if gait.support == 1 else 1.0 - loading
+
+
+@compiled
+def _move_body(
+    walk: Record,
+    live: Record,
+    steps: Record,
+    joints: Record,
+    legs: Array,
+    axes: Array,
+    origins: Array,
+    angles: Array,
+    head: Point,
+    model: Model,
+) -> None:
+    """Move the pelvis with the pendulum, and set the posture."""
+    limbs, pendulum, robot, parameters = (
+        walk.limbs,
+        walk.pendulum,
+        model.robot,
+        model.parameters,
+    )
+    advance_head(limbs, head, robot, parameters)
+    turned = head_joints(limbs.head[0], limbs.head[1], joints, robot)
+    before = limbs.pelvis[2]
+    compensate(limbs, live, steps, robot, parameters)
+    offset = walk.corrections.com_offset
+    dx, dy = rotate(before, offset[0], offset[1])
+    com = (pendulum.x + (limbs.offset[0] + dx), pendulum.y + (limbs.offset[1] + dy))
+    set_posture(
+        angles,
+        walk,
+        live.gait,
+        com,
+        turned,
+        joints,
+        legs,
+        axes,
+        origins,
+        robot,
+        parameters,
+    )
+    limbs.turn_rate = (limbs.pelvis[2] - before) / CONTROL_PERIOD
+    if not limbs.moved:
+        limbs.moved = True
+        for k in range(angles.size):
+            joints[k].angle = angles[k]
