@@ -18,8 +18,8 @@ from navigation.observation import CameraView, Frame, Observation, Sight
 from vision.camera import CameraPose
 from vision.detection import Detection
 from vision.parameters import PoseParameters
-from walking.odometry import Odometry, increment
 from walking.command import Command, HeadTarget, VelocityCommand
+from walking.odometry import Odometry, increment
 from walking.sensing import BodySensors
 from walking.state import HeadCameraPose, WalkingState
 from walking.targets import JointTargets

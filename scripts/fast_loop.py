@@ -30,8 +30,8 @@ from navigation.decision import GazeDecision
 from navigation.observation import Frame
 from navigation.transform import yaw_rotation
 from walking.body import head_kernel
-from walking.odometry import Odometry
 from walking.command import HeadTarget, VelocityCommand
+from walking.odometry import Odometry
 from walking.parameters import CONTROL_PERIOD, HeadParameters
 from walking.phase import Phase
 from walking.state import Balance, HeadCameraPose, WalkingState

@@ -35,20 +35,7 @@ TESTS = {  # where they are not those of the same name
         "navigation/belief/test_pose_filter",
         "navigation/belief/test_localization",
     ),
-    "walking/pattern/zmp_layout_kernel": ("walking/pattern/test_zmp_kernel",),
-    "walking/pattern/zmp_solver_kernel": ("walking/pattern/test_zmp_kernel",),
-    "walking/gait/swing_kernel": (
-        "walking/gait/test_swing_kernel",
-        "walking/gait/test_swing_reaction",
-    ),
-    "walking/footsteps/foothold_kernel": (
-        "walking/footsteps/test_foothold_kernel",
-        "walking/pattern/test_zmp_reference",
-    ),
-    "walking/body/estimation_kernel": tuple(
-        f"walking/body/test_{name}"
-        for name in ("estimation_kernel", "estimation", "odometry", "leg")
-    ),
+    "walking/zmp_solver": ("walking/test_zmp_plan",),
 }
 MODULES = (
     "navigation/partial_evaluation",
@@ -65,16 +52,15 @@ MODULES = (
     "navigation/belief/particles",
     "navigation/belief/imm",
     "navigation/belief/local_map",
-    "walking/pattern/lipm",
-    "walking/pattern/zmp_reference",
-    "walking/pattern/zmp_layout_kernel",
-    "walking/pattern/zmp_solver_kernel",
-    "walking/balance/foot_placement",
-    "walking/footsteps/foothold_kernel",
-    "walking/gait/swing_kernel",
-    "walking/body/steady_gains",
-    "walking/servos/touchdown",
-    "walking/body/estimation_kernel",
+    "walking/pendulum",
+    "walking/reference",
+    "walking/zmp_plan",
+    "walking/zmp_solver",
+    "walking/balance",
+    "walking/footsteps",
+    "walking/swing_reaction",
+    "walking/corrections",
+    "walking/estimation",
 )
 OPERATORS: dict[type[ast.operator], type[ast.operator]] = {
     ast.Add: ast.Sub,

@@ -14,9 +14,9 @@ from itertools import pairwise, product
 
 from hsr8.robots.loaded import load_robot
 from walking.body.joints import LEFT_LEG, LEG_JOINTS, RIGHT_LEG
-from walking.odometry import Odometry, increment
 from walking.command import HeadTarget, VelocityCommand
 from walking.engine import WalkingEngine
+from walking.odometry import Odometry, increment
 from walking.parameters import CONTROL_PERIOD, WalkingParameters
 
 import mujoco

@@ -1,7 +1,7 @@
-"""Admission: transition from the last plan to the wanted one, as far as the ZMP constraints allow.
+"""Admission: transition from the last plan to the wanted one, as far as the ZMP allows.
 
-Bisection between the last plan, which stays feasible, and the wanted one; landing, later strides and
-timing change together (Lee & Kim, J. Electr. Eng. Technol. 9(1), 2014). After a disturbance the
+Bisection between the last plan, which stays feasible, and the wanted one; landing, later strides
+and timing change together (Lee & Kim, J. Electr. Eng. Technol. 9(1), 2014). After a disturbance the
 last plan may be infeasible, too; then the generator approximates the wanted one.
 
 A walk that ends takes the shortest footstep after which the next one can close the stance: any
@@ -13,8 +13,8 @@ A plan that is tried is a copy: the plan in force changes only when one is taken
 from typing import NamedTuple
 
 from compilation import compiled
-from walking.footsteps import landing_of, towards_strides
 from walking.foothold import Foothold, foothold, put, towards
+from walking.footsteps import landing_of, towards_strides
 from walking.gait import aimed, plan_walk, retime, support_foot, update_phase
 from walking.patterns import is_feasible, remains_feasible
 from walking.records import BEST, LIVE, PAPER, TRIAL, Record
@@ -244,9 +244,7 @@ def _bisect(
 
 
 @compiled
-def _is_feasible(
-    plans: Plans, which: int, pendulum: Record, region: Region, model: Model
-) -> bool:
+def _is_feasible(plans: Plans, which: int, pendulum: Record, region: Region, model: Model) -> bool:
     """Whether a plan is feasible; then its ZMP plan is in `BEST`."""
     return is_feasible(
         plans.records[BEST].zmp,

@@ -1,4 +1,4 @@
-"""Constants of a walk: records of the robot and of its joints, from its model and the parameters."""
+"""Constants of a walk: records of the robot and its joints, from model and parameters."""
 
 from math import cosh, sinh
 
@@ -6,9 +6,9 @@ import numpy as np
 
 from walking.balance import ankle_gain
 from walking.body.robot_model import RobotModel
-from walking.estimation import LIGHT_LOAD, steady_gains
+from walking.estimation import steady_gains
 from walking.footsteps import STILL, velocity_strides
-from walking.parameters import CONTROL_PERIOD, GRAVITY, WalkingParameters
+from walking.parameters import CONTROL_PERIOD, GRAVITY, LIGHT_LOAD, WalkingParameters
 from walking.pendulum import natural_frequency
 from walking.preview import preview_gains
 from walking.records import JOINT, PREVIEW_SUM, ROBOT, Record, parameters_record

@@ -174,9 +174,7 @@ def correct_offset(
 
 
 @compiled
-def detects_touchdown(
-    corrections: Record, phase: float, force: float, parameters: Record
-) -> bool:
+def detects_touchdown(corrections: Record, phase: float, force: float, parameters: Record) -> bool:
     """Whether the swing foot is down, given the phase of its swing [1] and its load [N]."""
     p = parameters.estimator
     contact = phase >= p.contact_phase and force > p.contact_force

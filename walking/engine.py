@@ -18,13 +18,13 @@ from walking.gait import plan_walk, stand
 from walking.odometry import LegOdometry
 from walking.parameters import CONTROL_PERIOD, WalkingParameters
 from walking.posture import pelvis_over
-from walking.published import limits_report, publish, publish_camera, publish_limits, state_of
-from walking.records import FOOTHOLD, KNOT, LIVE, PLAN, PUBLISHED, RAMP, WALK, parameters_record
+from walking.published import Publication, publish, report
+from walking.records import FOOTHOLD, KNOT, LIVE, PLAN, RAMP, WALK, parameters_record
 from walking.sensing import BodySensors
 from walking.state import WalkingState
 from walking.swing import rest_at
 from walking.targets import JointTargets
-from walking.tick import begin, finish, is_fallen, watch
+from walking.tick import begin, finish, watch
 from walking.zmp_plan import max_knots
 
 PLANS = 3  # see `walking.records.LIVE`
@@ -66,29 +66,29 @@ class WalkingEngine:
         self._knots = np.zeros((PLANS, max_knots(_longest(parameters), SUPPORTS)), KNOT)
         self._legs = robot.chains
         self._axes, self._origins = np.zeros((2, 6, 3)), np.zeros((2, 6, 3))
-        self._published = np.zeros(1, PUBLISHED)
         self._walk, self._plan = self._walks[0], self._plans[LIVE]
         self._command: Command = VelocityCommand()
         self._sensors: BodySensors | None = None
+        self._zmp_depth, self._bound, self._fallen = 0.0, 0, False
         self._stand(robot)
 
     @property
     def command_limits(self) -> CommandLimits:
         """How the last command was limited."""
-        published = self._published[0]
-        publish_limits(published, self._walk, self._plan, self._robots[0], self._parameters[0])
-        return limits_report(published, self._command)
+        publication = Publication(0)
+        rest = (self._plans, self._robots, self._parameters)
+        report(publication.records, self._walks, *rest)
+        return publication.report(self._command)
 
     @property
     def limits(self) -> tuple[Limit, ...]:
         """Constraints that limited the last command."""
-        walk = self._walk
-        return limits_of(int(walk.bound | walk.steering.bound | walk.placing.bound))
+        return limits_of(self._bound)
 
     @property
     def zmp_depth(self) -> float:
         """Distance of the last planned ZMP from the edge of the support polygon [m]."""
-        return float(self._walk.zmp_depth)
+        return self._zmp_depth
 
     @property
     def heading(self) -> float:
@@ -117,7 +117,7 @@ class WalkingEngine:
     @property
     def fallen(self) -> bool:
         """Whether the tilt of the trunk is that of a fallen robot."""
-        return is_fallen(self._walk, self._parameters[0])
+        return self._fallen
 
     def step(self, sensors: BodySensors, command: Command, head: HeadTarget) -> JointTargets:
         """Run one control tick.
@@ -138,7 +138,7 @@ class WalkingEngine:
         self._command = command
         dynamics, gyro = self._dynamics, sensors.gyro
         angles, setpoint = np.empty(self._joints.size), np.empty(self._joints.size)
-        distance = begin(
+        distance, self._zmp_depth, self._bound = begin(
             self._walks,
             self._odometry.records,
             self._plans,
@@ -184,7 +184,7 @@ class WalkingEngine:
     def observe(self, sensors: BodySensors) -> None:
         """Measure the body only, in a tick in which something else moves the joints."""
         self._sensors = sensors
-        watch(
+        self._fallen = watch(
             self._walks,
             sensors.joint_position,
             self._dynamics.com(sensors.joint_position),
@@ -205,29 +205,22 @@ class WalkingEngine:
         sensors = self._sensors
         if sensors is None:
             raise RuntimeError("the walking engine has no state before its first tick")
-        robot, parameters = self._robots[0], self._parameters[0]
-        published = np.zeros(1, PUBLISHED)
-        footsteps = np.zeros(1 + self._steps.shape[1], FOOTHOLD)
+        publication = Publication(self._steps.shape[1])
         count = publish(
-            published[0],
-            footsteps,
-            self._walk,
-            self._plan,
-            self._steps[LIVE],
-            self._odometry.records[0],
-            robot,
-            parameters,
-        )
-        publish_camera(
-            published[0].camera,
-            self._walk.sensing,
+            publication.records,
+            publication.footsteps,
+            self._walks,
+            self._plans,
+            self._steps,
+            self._odometry.records,
+            self._robots,
+            self._parameters,
             sensors.joint_position,
             sensors.joint_velocity,
             sensors.gyro,
             *self._neck,
-            robot,
         )
-        return state_of(published, footsteps[:count], self._command, fallen=self.fallen)
+        return publication.state(count, self._command, fallen=self._fallen)
 
     def _stand(self, robot: RobotModel) -> None:
         """Set the state of a robot that stands in the ready posture."""
@@ -247,7 +240,7 @@ class WalkingEngine:
             self._steps[LIVE],
             foothold(gait.landing),
             constants.still,
-            False,  # noqa: FBT003  compiled functions take positions
+            False,
             constants.still,
             constants,
             parameters,

@@ -1,8 +1,8 @@
 """State estimation: attitude, feet, loads, and the error of the body against the plan.
 
 Measurements are in the level frame of the trunk's heading: origin in the base, z up. The error of
-the centre of mass follows the pendulum, e'' = ω² (e - d) + noise, with d the shift of the ZMP by the
-ankles; its filter is a steady-state Kalman filter.
+the centre of mass follows the pendulum, e'' = ω² (e - d) + noise, with d the shift of the ZMP by
+the ankles; its filter is a steady-state Kalman filter.
 """
 
 from math import atan2, cos, cosh, sin, sinh, sqrt
@@ -16,8 +16,6 @@ from walking.odometry import reckon
 from walking.parameters import CONTROL_PERIOD, EstimatorParameters
 from walking.planar import from_frame, rotate, rotate_back
 from walking.records import Record
-
-LIGHT_LOAD = 0.074  # of the weight; the noise of unloaded foot pads stays below it [1]
 
 
 def steady_gains(omega: float, parameters: EstimatorParameters) -> tuple[float, float]:
@@ -103,9 +101,7 @@ def compare_with_plan(sensing: Record, walk: Record, robot: Record, right_weight
     filter_error(sensing, off, (walk.zmp_shift_x, walk.zmp_shift_y), turned, robot)
     feet, w = limbs.feet, robot.omega
     left, right = feet[0], feet[1]
-    x, y, load = pressure(
-        sensing, (left.x, left.y, left.yaw), (right.x, right.y, right.yaw)
-    )
+    x, y, load = pressure(sensing, (left.x, left.y, left.yaw), (right.x, right.y, right.yaw))
     if load > 0.0:
         x, y = rotate_back(frame[2], x - pendulum.zmp_x, y - pendulum.zmp_y)
     sensing.pressure_x, sensing.pressure_y = x, y

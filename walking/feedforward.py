@@ -1,8 +1,8 @@
 """Servo feed-forward: offsets of the setpoints against compliance and lag of the position servos.
 
 Inverse dynamics gives the contact wrench of the whole-body motion; the legs share it by load, with
-the force under each sole at the planned ZMP. The ankles shift the ZMP of the loaded feet against the
-DCM error and damp the trunk.
+the force under each sole at the planned ZMP. The ankles shift the ZMP of the loaded feet against
+the DCM error and damp the trunk.
 """
 
 from compilation import compiled
@@ -105,7 +105,8 @@ def set_offsets(
         if load > 0.0:
             for k in range(robot.ankle, LEG_JOINTS):
                 joint = joints[LEG_JOINTS * side + k]
-                offset = ankle_offset(axes[side, k], shift, gyro, joint.compliance, robot, parameters)
+                axis, compliance = axes[side, k], joint.compliance
+                offset = ankle_offset(axis, shift, gyro, compliance, robot, parameters)
                 joint.offset += load * offset
 
 

@@ -52,7 +52,7 @@ def towards(one: Foothold, other: Foothold, fraction: float) -> Foothold:
 
 @compiled
 def placed(support: Foothold, x: float, y: float, turned: float) -> Foothold:
-    """Return the foothold of the other foot at x, y [m] and yaw [rad] in the support foot's frame."""
+    """Return the other foot at x, y [m] and yaw [rad] in the frame of the support foot."""
     px, py = from_frame((support.x, support.y, support.yaw), x, y)
     return Foothold(not support.left, px, py, support.yaw + turned)
 
@@ -60,6 +60,4 @@ def placed(support: Foothold, x: float, y: float, turned: float) -> Foothold:
 @compiled
 def equal(one: Foothold, other: Foothold) -> bool:
     """Whether two footholds are the same number by number."""
-    return (
-        one.left == other.left and one.x == other.x and one.y == other.y and one.yaw == other.yaw
-    )
+    return one.left == other.left and one.x == other.x and one.y == other.y and one.yaw == other.yaw

@@ -77,7 +77,8 @@ def is_same(one: Foothold, other: Foothold, parameters: Record) -> bool:
 @compiled
 def duration(timing: Record) -> float:
     """Return the duration of a footstep [s]."""
-    return (timing.double + timing.single) * CONTROL_PERIOD
+    time: float = (timing.double + timing.single) * CONTROL_PERIOD
+    return time
 
 
 @compiled
@@ -156,7 +157,8 @@ def clear_of(y: float, turned: float, side: float, gap: float, sole: Record) -> 
     s = side * sin(turned)
     inner = min(s * heel, s * toe) - sole.half_width * cos(turned)
     min_distance = sole.half_width + gap - inner
-    return side * max(side * y, min_distance)
+    clear: float = side * max(side * y, min_distance)
+    return clear
 
 
 @compiled
@@ -338,7 +340,7 @@ def reachable(
 
 @compiled
 def tendency(velocity: Vector, parameters: Record) -> float:
-    """Return the motion across the stance: positive if the left foot opens it, zero if none does."""
+    """Return the motion across the stance: positive if the left foot opens it, zero for none."""
     _, vy, wz = velocity
     sideways: float = vy / parameters.limits.vy + wz / parameters.limits.wz
     return sideways

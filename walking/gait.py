@@ -46,7 +46,8 @@ def phase_of(single: Record, elapsed: int) -> float:
     """Return the phase of the swing, 0 before and 1 after it [1]."""
     fraction = (elapsed - single.first) / (single.last - single.first)
     phase = single.origin + (1.0 - single.origin) * fraction
-    return 0.0 if phase < 0.0 else 1.0 if phase > 1.0 else phase
+    clipped: float = 0.0 if phase < 0.0 else 1.0 if phase > 1.0 else phase
+    return clipped
 
 
 @compiled
@@ -67,7 +68,8 @@ def retime_single_support(single: Record, elapsed: int, ticks: int, parameters: 
 @compiled
 def shift_fraction(shift: Record, tick: int) -> float:
     """Return the progress of a weight shift at a tick [1]."""
-    return min(1.0, (tick - shift.begin) / (shift.end - shift.begin))
+    fraction: float = min(1.0, (tick - shift.begin) / (shift.end - shift.begin))
+    return fraction
 
 
 @compiled
@@ -121,7 +123,8 @@ def update_phase(gait: Record, parameters: Record) -> None:
 @compiled
 def swing_of(gait: Record) -> int:
     """Return the index of the swing foot of this footstep."""
-    return 1 - gait.support
+    swing: int = 1 - gait.support
+    return swing
 
 
 @compiled
@@ -140,10 +143,7 @@ def swing_foot(gait: Record) -> Foothold:
 def is_airborne(gait: Record) -> bool:
     """Whether the swing foot is in the air."""
     airborne: bool = (
-        gait.stepping
-        and not gait.landed_early
-        and not gait.double
-        and 0.0 < gait.swing_phase < 1.0
+        gait.stepping and not gait.landed_early and not gait.double and 0.0 < gait.swing_phase < 1.0
     )
     return airborne
 

@@ -22,7 +22,7 @@ from walking.records import WALK, parameters_record
 from walking.sensing import BodySensors
 from walking.state import Balance, HeadCameraPose, WalkingState
 from walking.support import depth, polygon
-from walking.tick import is_fallen, watch
+from walking.tick import watch
 from walking.value import value
 
 VELOCITY_TIME = 0.05  # time constant of the legs in the velocity filter [s]
@@ -77,16 +77,17 @@ class BodyObserver:
         self._step_begin = 0, (0.0, 0.0)  # footsteps and position at the last landing
         self._velocity = np.zeros(3)  # axes of the IMU's yaw, z up [m/s]
         self._sensors: BodySensors | None = None
+        self._fallen = False
 
     @property
     def fallen(self) -> bool:
         """Whether the tilt of the trunk is that of a fallen robot."""
-        return is_fallen(self._walks[0], self._parameters[0])
+        return self._fallen
 
     def observe(self, sensors: BodySensors) -> None:
         """Update only the attitude, in a tick in which the robot is off its feet."""
         self._sensors = sensors
-        watch(
+        self._fallen = watch(
             self._walks,
             sensors.joint_position,
             self._dynamics.com(sensors.joint_position),
@@ -102,11 +103,11 @@ class BodyObserver:
         """Run one tick; return the estimate."""
         self.observe(sensors)
         sensing, contacts = self._sensing, self._contacts
-        contacts.update(*sensing.feet.load.tolist())
+        contacts.update(*sensing.feet["load"].tolist())
         yaw, tilt = float(sensing.heading), np.empty((3, 3))
         incline(sensing.roll, sensing.pitch, tilt)
         measured = sensing.feet
-        feet = np.column_stack([measured.x, measured.y, measured.z])
+        feet = np.column_stack([measured[axis] for axis in ("x", "y", "z")])
         self._roll(sensors, feet, tilt, yaw)
         left, right = (feet[:, :2] + self._rolling.rolled).tolist()
         reckon(
@@ -210,7 +211,7 @@ class BodyObserver:
         feet_frames = self._robot.tree.feet
         rotations = [tilt @ self._robot.frame_pose(frame, joints)[0] for frame in feet_frames]
         centres = self._sensing.feet
-        pressures = np.column_stack([centres.pressure_x, centres.pressure_y])
+        pressures = np.column_stack([centres["pressure_x"], centres["pressure_y"]])
         self._rolling.update(feet, np.array(rotations), pressures, yaw, self._contacts.on_floor)
 
     def _add_slip(self) -> None:
@@ -228,7 +229,7 @@ class BodyObserver:
         load = float(self._sensing.right_load)
         weights = np.array([1.0 - load, load])
         by_legs = -weights @ self._rolling.motion / CONTROL_PERIOD
-        left, right = self._sensing.feet.load.tolist()
+        left, right = self._sensing.feet["load"].tolist()
         carried = (left + right) / self._full_load
         gain = min(1.0, carried) * CONTROL_PERIOD / (VELOCITY_TIME + CONTROL_PERIOD)
         self._velocity += gain * (by_legs - self._velocity)

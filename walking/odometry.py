@@ -2,9 +2,9 @@
 
 The stance foot is fixed, so the body moves by the change of the vector from that foot to the body.
 The old stance foot is used until the weight has shifted: a foot slides while it is loaded after
-touchdown, the one behind it does not. Encoder noise does not accumulate within a support because the
-changes telescope. Every tick adds an independent unmeasured displacement and turn. As motions of the
-odometry frame they simply add up.
+touchdown, the one behind it does not. Encoder noise does not accumulate within a support because
+the changes telescope. Every tick adds an independent unmeasured displacement and turn. As motions
+of the odometry frame they simply add up.
 """
 
 from math import cos, pi, sin

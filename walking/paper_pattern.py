@@ -195,10 +195,9 @@ def _is_near(plan: Record, target: WalkingTarget) -> bool:
         return False
     gap = max(abs(target.xi[0] - plan.xi[0]), abs(target.xi[1] - plan.xi[1]))
     if not target.free:
-        gap = max(
-            gap, abs(target.zeta[0] - plan.zeta[0]), abs(target.zeta[1] - plan.zeta[1])
-        )
-    return gap < SAME_TARGET
+        gap = max(gap, abs(target.zeta[0] - plan.zeta[0]), abs(target.zeta[1] - plan.zeta[1]))
+    near: bool = gap < SAME_TARGET
+    return near
 
 
 @compiled

@@ -33,6 +33,7 @@ from walking.dimension import (
 
 CONTROL_PERIOD = 0.005  # Yoo & Kim: the walking pattern is recomputed every 5 ms [s]
 GRAVITY = 9.81  # [m/s²]
+LIGHT_LOAD = 0.074  # of the weight; the noise of unloaded foot pads stays below it [1]
 
 
 @dataclass(frozen=True)

@@ -76,9 +76,7 @@ def set_posture(
         target = (x, y, z + sunk, roll, pitch, yaw)
         first = LEG_JOINTS * side
         own = limbs.leg_angles[first : first + LEG_JOINTS]
-        _, error = solve_leg(
-            legs[side], target, own, robot.leg_length, axes[side], origins[side]
-        )
+        _, error = solve_leg(legs[side], target, own, robot.leg_length, axes[side], origins[side])
         limbs.leg_error = max(limbs.leg_error, error)
         for k in range(LEG_JOINTS):
             joint = joints[first + k]
@@ -90,9 +88,7 @@ def set_posture(
 
 
 @compiled
-def _swing_arms(
-    angles: Array, feet: Record, yaw: float, robot: Record, parameters: Record
-) -> None:
+def _swing_arms(angles: Array, feet: Record, yaw: float, robot: Record, parameters: Record) -> None:
     arms, signs = parameters.arms, robot.shoulder_signs
     apart, _ = rotate_back(yaw, feet[0].x - feet[1].x, feet[0].y - feet[1].y)
     # Counter-swing, backward positive on the side of the foot ahead.

@@ -1,6 +1,7 @@
 """Published state of the engine: the plan in the odometry frame, the camera, the limits."""
 
 from math import asin, atan2, cos, sin
+from typing import Any
 
 import numpy as np
 
@@ -13,83 +14,185 @@ from walking.foothold import Foothold, foothold, put
 from walking.gait import support_foot, swing_foot
 from walking.odometry import Odometry
 from walking.phase import Phase
-from walking.records import (
-    DOUBLE_SUPPORT,
-    LEFT_SUPPORT,
-    LIVE,
-    PHASES,
-    RIGHT_SUPPORT,
-    STANDING,
-    Record,
-)
+from walking.records import FOOTHOLD, LIVE, WORD, Record, record
 from walking.state import Balance, HeadCameraPose, WalkingState
 from walking.steering import report_applied
-from walking.support import polygon
+from walking.support import CORNERS, polygon
 
-_PHASES = tuple(Phase[name] for name in PHASES)
+PHASES = (Phase.STANDING, Phase.DOUBLE_SUPPORT, Phase.LEFT_SUPPORT, Phase.RIGHT_SUPPORT)
+STANDING, DOUBLE_SUPPORT, LEFT_SUPPORT, RIGHT_SUPPORT = range(len(PHASES))
+
+PUBLISHED = record(
+    phase=float,
+    x=float,
+    y=float,
+    yaw=float,
+    roll=float,
+    pitch=float,
+    step_count=float,
+    zmp_depth=float,
+    corner_count=float,
+    bound=float,
+    explicit=float,
+    pan=float,
+    tilt=float,
+    pan_rate=float,
+    tilt_rate=float,
+    yaw_rate=float,
+    applied=(float, 6),
+    covariance=(float, 3, 3),
+    rotation=(float, 3, 3),
+    position=(float, 3),
+    applied_velocity=(float, 3),
+    zmp=(float, 2),
+    dcm=(float, 2),
+    com=(float, 2),
+    planned_com=(float, 2),
+    measured_dcm=(float, 2),
+    corners=(float, CORNERS, 2),
+    feet=(float, 2, 4),
+    capture=(float, 2),
+)
+"""`walking.state.WalkingState`, in the odometry frame; numbers only, the flags, too."""
+
+_WORDS = PUBLISHED.itemsize // WORD
+_FIELDS: Any = PUBLISHED.fields
+_SCALARS = sum(not kind.shape for kind, *_ in _FIELDS.values())
+_PARTS = {
+    name: (slice(offset // WORD, (offset + kind.itemsize) // WORD), kind.shape)
+    for name, (kind, offset, *_) in _FIELDS.items()
+}
 
 PlanFrame = tuple[float, float, float, float, float]
 """Origin x, y [m], cosine and sine of the direction, and the direction [rad] of the plan frame."""
 
 
-def phase_at(index: int) -> Phase:
-    """Return the phase of the gait of an index in `walking.records.PHASES`."""
-    return _PHASES[index]
-
-
-def state_of(
-    published: Record, footsteps: Record, commanded: Command, *, fallen: bool
-) -> WalkingState:
-    """Return the state of a record `PUBLISHED`, whose arrays it shares.
+class Publication:
+    """Published numbers of a tick, in one array that the arrays of the state share.
 
     Args:
-        published: the record (1,).
+        steps: maximum number of planned footsteps after the support foot.
+
+    Attributes:
+        records: record `PUBLISHED` (1,).
         footsteps: planned footholds, the support foot first (n,).
-        commanded: last command.
-        fallen: whether the robot believes that it has fallen.
     """
-    row, camera = published[0], published["camera"][0]
-    phase, x, y, yaw, *_ = row.item()
-    *_, pan, tilt, pan_rate, tilt_rate, yaw_rate = camera.item()
-    return WalkingState(
-        phase=_PHASES[phase],
-        odometry=Odometry(x, y, yaw, row["covariance"]),
-        camera=HeadCameraPose(
-            camera["rotation"], camera["position"], pan, tilt, pan_rate, tilt_rate, yaw_rate
-        ),
-        applied_velocity=row["applied_velocity"],
-        footsteps=tuple(map(Foothold._make, footsteps.tolist())),
-        zmp=row["zmp"],
-        dcm=row["dcm"],
-        com=row["com"],
-        roll=float(row["roll"]),
-        pitch=float(row["pitch"]),
-        step_count=int(row["step_count"]),
-        fallen=fallen,
-        balance=Balance(
-            com=row["planned_com"],
-            dcm=row["measured_dcm"],
-            support=row["corners"][: row["corner_count"]],
-            zmp_depth=float(row["zmp_depth"]),
-            feet=row["feet"],
-            capture=row["capture"],
-        ),
-        command_limits=limits_report(row, commanded),
-    )
 
+    __slots__ = ("_numbers", "footsteps", "records")
 
-def limits_report(published: Record, commanded: Command) -> CommandLimits:
-    """Return the report of how a command is limited."""
-    bound, applied = int(published["bound"]), published["applied"]
-    if bound == 0:
-        return CommandLimits(commanded, commanded, ())
-    values = applied["values"].tolist()
-    command = CommandState(*values) if applied["explicit"] else VelocityCommand(*values[:3])
-    return CommandLimits(commanded, command, limits_of(bound))
+    def __init__(self, steps: int) -> None:
+        self._numbers = np.zeros(_WORDS)
+        self.records: Record = self._numbers.view(PUBLISHED)
+        self.footsteps: Record = np.zeros(1 + steps, FOOTHOLD)
+
+    def state(self, count: int, commanded: Command, *, fallen: bool) -> WalkingState:
+        """Return the state.
+
+        Args:
+            count: number of footsteps.
+            commanded: last command.
+            fallen: whether the robot believes that it has fallen.
+        """
+        phase, x, y, yaw, roll, pitch, step_count, zmp_depth, corners, *rest = self._scalars()
+        _, _, *camera = rest
+        return WalkingState(
+            phase=PHASES[int(phase)],
+            odometry=Odometry(x, y, yaw, self._part("covariance")),
+            camera=HeadCameraPose(self._part("rotation"), self._part("position"), *camera),
+            applied_velocity=self._part("applied_velocity"),
+            footsteps=tuple(map(Foothold._make, self.footsteps[:count].tolist())),
+            zmp=self._part("zmp"),
+            dcm=self._part("dcm"),
+            com=self._part("com"),
+            roll=roll,
+            pitch=pitch,
+            step_count=int(step_count),
+            fallen=fallen,
+            balance=Balance(
+                com=self._part("planned_com"),
+                dcm=self._part("measured_dcm"),
+                support=self._part("corners")[: int(corners)],
+                zmp_depth=zmp_depth,
+                feet=self._part("feet"),
+                capture=self._part("capture"),
+            ),
+            command_limits=self.report(commanded),
+        )
+
+    def report(self, commanded: Command) -> CommandLimits:
+        """Return the report of how a command is limited."""
+        *_, bound, explicit, _, _, _, _, _ = self._scalars()
+        if bound == 0.0:
+            return CommandLimits(commanded, commanded, ())
+        values = self._part("applied").tolist()
+        command = CommandState(*values) if explicit else VelocityCommand(*values[:3])
+        return CommandLimits(commanded, command, limits_of(int(bound)))
+
+    def _scalars(self) -> list[float]:
+        """Return the numbers of `PUBLISHED` that are not arrays, in order."""
+        scalars: list[float] = self._numbers[:_SCALARS].tolist()
+        return scalars
+
+    def _part(self, name: str) -> Array:
+        """Return an array of `PUBLISHED`."""
+        part, shape = _PARTS[name]
+        return self._numbers[part].reshape(shape)
 
 
 @compiled
 def publish(
+    records: Record,
+    footsteps: Record,
+    walks: Record,
+    plans: Record,
+    steps: Record,
+    odometry: Record,
+    robots: Record,
+    parameters: Record,
+    angles: Array,
+    rates: Array,
+    gyro: Array,
+    chain: Array,
+    moving: Indices,
+) -> int:
+    """Publish the state of a walk; return the number of footsteps.
+
+    Args:
+        records: record `PUBLISHED` (1,), set.
+        footsteps: planned footholds, the support foot first, set (n,).
+        walks: state of the walk (1,).
+        plans: plans of the walk (3,).
+        steps: footholds of the plans (3, m).
+        odometry: dead reckoning (1,).
+        robots: constants (1,).
+        parameters: of the walk (1,).
+        angles: measured angles of all joints (n,) [rad].
+        rates: measured rates of all joints (n,) [rad/s].
+        gyro: angular velocity of the trunk (3,) [rad/s].
+        chain: from the base to the camera, see `walking.body.kinematics`.
+        moving: joints of the chain.
+    """
+    published, walk, robot = records[0], walks[0], robots[0]
+    publish_camera(published, walk.sensing, angles, rates, gyro, chain, moving, robot)
+    return publish_plan(
+        published, footsteps, walk, plans[LIVE], steps[LIVE], odometry[0], robot, parameters[0]
+    )
+
+
+@compiled
+def report(
+    records: Record,
+    walks: Record,
+    plans: Record,
+    robots: Record,
+    parameters: Record,
+) -> None:
+    """Publish the applied command and the limits that bind, see `publish`."""
+    publish_limits(records[0], walks[0], plans[LIVE], robots[0], parameters[0])
+
+
+@compiled
+def publish_plan(
     published: Record,
     footsteps: Record,
     walk: Record,
@@ -160,12 +263,12 @@ def publish_limits(
 ) -> None:
     """Publish the applied command and the limits that bind."""
     admission, placing = walk.admission, walk.placing
-    published.bound = walk.steering.bound | walk.bound | placing.bound
+    bound = walk.steering.bound | walk.bound | placing.bound
     report_applied(
-        published.applied,
+        walk.applied,
         walk.steering,
         walk.scratch,
-        published.bound,
+        bound,
         (placing.applied[0], placing.applied[1], placing.applied[2]),
         admission.known and admission.fraction < 1.0,
         admission.following,
@@ -173,6 +276,9 @@ def publish_limits(
         robot,
         parameters,
     )
+    published.bound, published.explicit = bound, walk.applied.explicit
+    for k in range(6):
+        published.applied[k] = walk.applied.values[k]
 
 
 @compiled

@@ -50,7 +50,12 @@ def record(**types: FieldType) -> np.dtype[Any]:
         offsets.append(offset)
         words = -(-number.itemsize * prod(shape) // WORD)
         offset += WORD * words
-    layout = {"names": list(types), "formats": formats, "offsets": offsets, "itemsize": offset}
+    layout: Any = {
+        "names": list(types),
+        "formats": formats,
+        "offsets": offsets,
+        "itemsize": offset,
+    }
     return np.dtype((np.record, np.dtype(layout, align=True)))
 
 
@@ -106,8 +111,8 @@ NECK = record(
     lower=(float, 2),
     upper=(float, 2),
 )
-"""Joints of the head (-1 for none), their signs [1], pan and tilt with these joints at zero, and limits
-of pan and tilt [rad]."""
+"""Joints of the head (-1 for none), their signs [1], pan and tilt with these joints at zero, and
+limits of pan and tilt [rad]."""
 
 JOINT = record(
     lower=float,
@@ -186,8 +191,8 @@ TIMING = record(double=int, single=int, swing_height=float)
 """Control ticks in double and single support [1], height of the swing foot at mid-swing [m]."""
 
 SHIFT = record(begin=int, end=int, zmp_x=float, zmp_y=float, right_weight=float)
-"""Shift of ZMP and weight to the support foot: begin and end in ticks since the begin of the footstep;
-ZMP [m] and load fraction of the right foot [1] at its begin."""
+"""Shift of ZMP and weight to the support foot: begin and end in ticks since the begin of the
+footstep; ZMP [m] and load fraction of the right foot [1] at its begin."""
 
 SINGLE = record(ticks=int, first=int, last=int, origin=float)
 """Single support: duration, begin and end of the swing in ticks since its begin, and phase of the
@@ -217,12 +222,12 @@ GAIT = record(
     adjustable=bool,
 )
 """Gait, see `walking.gait`: whether a footstep is under way; index of the support foot; completed
-footsteps; whether the swing foot touched down early, this is a capture step shorter than its timing,
-and the weight shift must keep its timing; present or last foothold of each foot; landing of the
-swing foot; clock, and ticks since the begin of the footstep; height of this swing [m]; then ticks
-since the begin of single support, whether double support is planned, planned load fraction of the
-right foot [1], ticks until the end of single support, phase of the swing [1], whether the landing
-may change."""
+footsteps; whether the swing foot touched down early, this is a capture step shorter than its
+timing, and the weight shift must keep its timing; present or last foothold of each foot; landing of
+the swing foot; clock, and ticks since the begin of the footstep; height of this swing [m]; then
+ticks since the begin of single support, whether double support is planned, planned load fraction of
+the right foot [1], ticks until the end of single support, phase of the swing [1], whether the
+landing may change."""
 
 RAMP = record(
     ticks=int,
@@ -233,8 +238,8 @@ RAMP = record(
     unloading=FOOTHOLD,
     loading=FOOTHOLD,
 )
-"""Linear segment of the ZMP reference: control ticks; ZMP at its start and its end [m]; unloading and
-loading foot, in single support twice the support foot."""
+"""Linear segment of the ZMP reference: control ticks; ZMP at its start and its end [m]; unloading
+and loading foot, in single support twice the support foot."""
 
 KNOT = record(ticks=float, x=float, y=float)
 """Knot of the planned ZMP: ticks since the previous knot, position [m]."""
@@ -258,8 +263,9 @@ CELL = record(
     begin=int,
     end=int,
 )
-"""Parallelogram of knots, see `walking.zmp_plan`: centre [m]; sides, columns of M [1]; nominal u and v,
-and their bounds [m]; Σ w, Σ w² and max w of its knots [1]; first knot, and the one after the last."""
+"""Parallelogram of knots, see `walking.zmp_plan`: centre [m]; sides, columns of M [1]; nominal u
+and v, and their bounds [m]; Σ w, Σ w² and max w of its knots [1]; first knot, and the one after the
+last."""
 
 SUPPORT = record(end=int, unloading=FOOTHOLD, loading=FOOTHOLD)
 """Support phase of a plan: its end in ticks from the begin of the plan, and its feet."""
@@ -290,7 +296,8 @@ ZMP_PLAN = record(
     missed_x=float,
     missed_y=float,
 )
-"""Plan of a pattern generator that plans its ZMP, see `walking.zmp_plan` and `walking.paper_pattern`."""
+"""Plan of a pattern generator that plans its ZMP, see `walking.zmp_plan` and
+`walking.paper_pattern`."""
 
 PLAN = record(
     gait=GAIT,
@@ -301,8 +308,8 @@ PLAN = record(
     steps=int,
     zmp=ZMP_PLAN,
 )
-"""Plan of the walk: gait with its timing; landing of the swing foot, strides after it, and whether the
-walk goes on; number of ramps and of footholds; plan of the ZMP."""
+"""Plan of the walk: gait with its timing; landing of the swing foot, strides after it, and whether
+the walk goes on; number of ramps and of footholds; plan of the ZMP."""
 
 LIVE, TRIAL, BEST = range(3)
 """Plans: the one in force, one that is tried, and the best that was admitted."""
@@ -315,8 +322,8 @@ PENDULUM = record(x=float, y=float, vx=float, vy=float, zmp_x=float, zmp_y=float
 REFERENCE = record(
     x=float, y=float, yaw=float, height=float, rate=(float, 3), acceleration=(float, 3)
 )
-"""Reference of a foot in the plan frame: position [m], yaw [rad], height above the floor [m]; rates and
-accelerations of x, y and yaw."""
+"""Reference of a foot in the plan frame: position [m], yaw [rad], height above the floor [m]; rates
+and accelerations of x, y and yaw."""
 
 COMMAND = record(explicit=bool, values=(float, 6))
 """Velocity (vx, vy, wz), or the fields of a command state in order, see `walking.command`."""
@@ -375,17 +382,17 @@ ADMISSION = record(
 )
 """Admitted plan, see `walking.admission`: stepping, completed footsteps and clock of the last tick;
 whether there is a plan; admitted fraction of the wanted change [1]; landing, strides and whether
-the walk goes on; clock before admission, clock of the wanted plan, timing of a plan that is tried."""
+the walk goes on; clock before admission, clock of the wanted plan, timing of a plan that is
+tried."""
 
 PLACING = record(
     applied=(float, 3), bound=int, moved_x=float, moved_y=float, moving=bool, accepted=bool
 )
-"""Foot placement: velocity that the footsteps follow; limits that bind, as bits; shift of the landing
-by a capture step [m]; whether the walk goes on; whether the ZMP plan of this tick was admitted."""
+"""Foot placement: velocity that the footsteps follow; limits that bind, as bits; shift of the
+landing by a capture step [m]; whether the walk goes on; whether the ZMP plan of this tick was
+admitted."""
 
-FOOT = record(
-    x=float, y=float, z=float, yaw=float, load=float, pressure_x=float, pressure_y=float
-)
+FOOT = record(x=float, y=float, z=float, yaw=float, load=float, pressure_x=float, pressure_y=float)
 """Measured foot: position [m] and yaw [rad] in the level frame of the heading, load [N], centre of
 pressure in the foot frame [m]."""
 
@@ -410,8 +417,8 @@ SENSING = record(
     pressure_x=float,
     pressure_y=float,
 )
-"""Measured body: filtered roll and pitch, heading of the IMU [rad]; yaw rate [rad/s]; feet; centre of
-mass [m]; load fraction of the right foot, 0.5 in the air [1]. Error of the CoM, x, y [m], vx, vy
+"""Measured body: filtered roll and pitch, heading of the IMU [rad]; yaw rate [rad/s]; feet; centre
+of mass [m]; load fraction of the right foot, 0.5 in the air [1]. Error of the CoM, x, y [m], vx, vy
 [m/s]; planned load fraction of the right foot, once known; error of the DCM in the plan frame [m],
 of the centre of pressure forward and left [m]."""
 
@@ -443,10 +450,10 @@ ODOMETRY = record(
     yaw_variance=float,
     slip_ratio=float,
 )
-"""Dead reckoning: pose, heading unwrapped; whether the yaw of the IMU is known, and its value; whether the
-vectors from foot to body are known, and their values in the odometry frame; whether the right foot
-is the stance foot; distance of the feet at the begin of a double support; covariance of the error;
-constants."""
+"""Dead reckoning: pose, heading unwrapped; whether the yaw of the IMU is known, and its value;
+whether the vectors from foot to body are known, and their values in the odometry frame; whether the
+right foot is the stance foot; distance of the feet at the begin of a double support; covariance of
+the error; constants."""
 
 LIMBS = record(
     moved=bool,
@@ -467,15 +474,17 @@ LIMBS = record(
     head_rate=(float, 2),
     load=float,
 )
-"""Whether there is a posture before this tick; references of the feet; pelvis x, y [m], heading [rad] in the plan frame, and its yaw rate [rad/s]; centre of mass of the last
-posture in the base frame [m]; angles of the legs, also beyond their limits, and remaining error of
-the inverse kinematics [rad]; pan and tilt [rad] and their rates [rad/s]; load fraction of the right
-foot in this tick [1]."""
+"""Whether there is a posture before this tick; references of the feet; pelvis x, y [m], heading
+[rad] in the plan frame, and its yaw rate [rad/s]; centre of mass of the last posture in the base
+frame [m]; angles of the legs, also beyond their limits, and remaining error of the inverse
+kinematics [rad]; pan and tilt [rad] and their rates [rad/s]; load fraction of the right foot in
+this tick [1]."""
 
 WALK = record(
     ticks=int,
     wanted=STRIDES,
     scratch=STRIDES,
+    applied=COMMAND,
     sensing=SENSING,
     steering=STEERING,
     corrections=CORRECTIONS,
@@ -494,47 +503,8 @@ WALK = record(
     bound=int,
     limbs=LIMBS,
 )
-"""State of the walk: ticks; wanted strides, and strides for intermediate results; the parts above; pendulum of the body, and that of the plan if it differs;
-shift of the ZMP by the ankles [m]; depth of the planned ZMP in the support polygon [m], whether one
-foot supports, and the feet in contact; foot of the last opening step; limits that bind, as bits."""
-
-PHASES = ("STANDING", "DOUBLE_SUPPORT", "LEFT_SUPPORT", "RIGHT_SUPPORT")
-"""Phases of the gait, see `walking.phase.Phase`; a record holds the index."""
-STANDING, DOUBLE_SUPPORT, LEFT_SUPPORT, RIGHT_SUPPORT = range(len(PHASES))
-
-CAMERA = record(
-    rotation=(float, 3, 3),
-    position=(float, 3),
-    pan=float,
-    tilt=float,
-    pan_rate=float,
-    tilt_rate=float,
-    yaw_rate=float,
-)
-"""`walking.state.HeadCameraPose`."""
-
-PUBLISHED = record(
-    phase=int,
-    x=float,
-    y=float,
-    yaw=float,
-    covariance=(float, 3, 3),
-    camera=CAMERA,
-    applied_velocity=(float, 3),
-    zmp=(float, 2),
-    dcm=(float, 2),
-    com=(float, 2),
-    roll=float,
-    pitch=float,
-    step_count=int,
-    planned_com=(float, 2),
-    measured_dcm=(float, 2),
-    corners=(float, 8, 2),
-    corner_count=int,
-    zmp_depth=float,
-    feet=(float, 2, 4),
-    capture=(float, 2),
-    bound=int,
-    applied=COMMAND,
-)
-"""`walking.state.WalkingState`, in the odometry frame."""
+"""State of the walk: ticks; wanted strides, strides for intermediate results, and applied command;
+the parts above; pendulum of the body, and that of the plan if it differs; shift of the ZMP by the
+ankles [m]; depth of the planned ZMP in the support polygon [m], whether one foot supports, and the
+feet in contact;
+foot of the last opening step; limits that bind, as bits."""

@@ -1,9 +1,9 @@
 """State that walking publishes: odometry, camera pose, gait, balance."""
 
 from walking.arrays import Array
-from walking.odometry import Odometry
 from walking.command_limits import CommandLimits
 from walking.foothold import Foothold
+from walking.odometry import Odometry
 from walking.phase import Phase
 from walking.value import value
 

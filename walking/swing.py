@@ -85,10 +85,9 @@ def _towards(foot: Record, axis: int, now: float, target: float, ticks_left: int
     c5 = 6.0 * e - 3.0 * v - 0.5 * a
     s = 1.0 / ticks_left
     foot.rate[axis] = (v + s * (a + s * (3.0 * c3 + s * (4.0 * c4 + s * 5.0 * c5)))) / time
-    foot.acceleration[axis] = (a + s * (6.0 * c3 + s * (12.0 * c4 + s * 20.0 * c5))) / (
-        time * time
-    )
-    return now + s * (v + s * (0.5 * a + s * (c3 + s * (c4 + s * c5))))
+    foot.acceleration[axis] = (a + s * (6.0 * c3 + s * (12.0 * c4 + s * 20.0 * c5))) / (time * time)
+    moved_by: float = s * (v + s * (0.5 * a + s * (c3 + s * (c4 + s * c5))))
+    return now + moved_by
 
 
 @compiled

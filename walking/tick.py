@@ -60,8 +60,8 @@ def watch(
     feet_joints: Indices,
     robots: Record,
     parameters: Record,
-) -> None:
-    """Measure the body in a tick in which something else moves the joints.
+) -> bool:
+    """Measure the body; return whether the robot is fallen.
 
     Args:
         walks: state (1,), changed.
@@ -74,11 +74,15 @@ def watch(
         feet_joints: joints of these chains.
         robots: constants (1,).
         parameters: of the walk (1,).
+
+    Returns:
+        whether the tilt of the trunk is that of a fallen robot.
     """
     walk, legs = walks[0], np.empty((2, 4))
     feet_poses(feet_chains, feet_joints, angles, legs)
     measure(walk.sensing, legs, com, orientation, gyro, pads, robots[0], parameters[0])
     walk.ticks += 1
+    return is_fallen(walk, parameters[0])
 
 
 @compiled
@@ -104,7 +108,7 @@ def begin(
     command: Command,
     explicit: bool,
     head: Point,
-) -> float:
+) -> tuple[float, float, int]:
     """Run a tick up to the motion of the dynamic model, after `watch`.
 
     Args:
@@ -131,7 +135,8 @@ def begin(
         head: pan and tilt to look at [rad].
 
     Returns:
-        distance of the pendulum from the support foot if the plan diverged, zero otherwise [m].
+        distance of the pendulum from the support foot if the plan diverged, zero otherwise [m];
+        depth of the planned ZMP in the support polygon [m]; limits that bind, as bits.
     """
     walk, robot, parameters = walks[0], robots[0], parameter_records[0]
     plans = Plans(plan_records, ramps, steps, knots)
@@ -153,14 +158,12 @@ def begin(
     advance_pendulum(walk, plans, region, model)
     distance = _far(walk, gait, robot)
     if distance != 0.0:
-        return distance
+        return distance, walk.zmp_depth, 0
     zmp = (pendulum.zmp_x, pendulum.zmp_y)
     walk.limbs.load = _right_load(gait, region, zmp)
     reachable = _contact_region(walk, gait, parameters.stabilizer.sole_margin, robot)
     walk.zmp_shift_x, walk.zmp_shift_y = zmp_shift(zmp, error, reachable, robot)
-    corners = polygon(
-        robot.support, foothold(walk.unloading), foothold(walk.loading), walk.single
-    )
+    corners = polygon(robot.support, foothold(walk.unloading), foothold(walk.loading), walk.single)
     walk.zmp_depth = depth(corners, zmp[0], zmp[1])
     feet, moving = walk.limbs.feet, walk.placing.moving
     advance(gait, feet, steps[LIVE], live.steps, moving, robot.still, robot, parameters)
@@ -176,7 +179,7 @@ def begin(
         w2 * (pendulum.y - zmp[1]) + acceleration[1],
     )
     set_motion(joints, angles, q, v, a, walk.limbs.pelvis[2], moved, parameters)
-    return 0.0
+    return 0.0, walk.zmp_depth, walk.bound | walk.steering.bound | walk.placing.bound
 
 
 @compiled

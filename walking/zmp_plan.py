@@ -122,7 +122,7 @@ def admits_knots(
 
 @compiled
 def remains_feasible(live: Record, ramps: Record, count: int) -> bool:
-    """Whether the plan in force stays feasible under a reference: its next supports are the same."""
+    """Whether the plan in force stays feasible under a reference, by its next supports."""
     if not live.exists or live.next == live.count:
         return False
     end = live.age
@@ -264,9 +264,7 @@ def lay_out(
     cells, knots = np.empty(capacity, CELL), np.zeros(capacity, KNOT)
     number = _lay_cells(table, planned, sole, cells, knots)
     if number > 0 and is_single(table[0]):
-        number = _limit_first(
-            cells, number, pendulum.zmp_x, pendulum.zmp_y, reach * knots[0].ticks
-        )
+        number = _limit_first(cells, number, pendulum.zmp_x, pendulum.zmp_y, reach * knots[0].ticks)
     inner = cells[number - 1].end if number > 0 else 0
     left = float(total)
     for knot in range(inner):

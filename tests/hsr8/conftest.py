@@ -28,9 +28,9 @@ from navigation.observation import CameraView, Frame
 from navigation.parameters.belief import LocalMapParameters
 from vision.detection import Detection
 from walking.body.joints import JOINT_NAMES
-from walking.odometry import Odometry
 from walking.command import HeadTarget, VelocityCommand
 from walking.foothold import Foothold
+from walking.odometry import Odometry
 from walking.phase import Phase
 from walking.state import Balance, HeadCameraPose, WalkingState
 

@@ -16,9 +16,9 @@ from hsr8.robot_builder import build_walker
 from hsr8.robots.loaded import load_robot
 from hsr8.scenario.plugin import Plugin
 from navigation.decision import GazeDecision
-from walking.odometry import LegOdometry
 from walking.command import CommandState, HeadTarget, VelocityCommand
 from walking.engine import WalkingEngine
+from walking.odometry import LegOdometry
 from walking.parameters import CONTROL_PERIOD, GRAVITY, WalkingParameters
 from walking.scaling import parameters_for
 from walking.sensing import BodySensors

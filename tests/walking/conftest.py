@@ -6,10 +6,26 @@ import numpy as np
 import pytest
 
 from hsr8.robots.loaded import load_robot
+from walking.admission import Model, Plans
 from walking.body.robot_model import RobotModel
 from walking.body.tree import LEFT_LEG, RIGHT_LEG
-from walking.parameters import CONTROL_PERIOD
+from walking.constants import robot_record
+from walking.foothold import Foothold, put
+from walking.footsteps import STILL, cadence, put_timing, velocity_strides
+from walking.gait import stand
+from walking.parameters import CONTROL_PERIOD, PatternParameters, WalkingParameters
+from walking.records import (
+    FOOTHOLD,
+    KNOT,
+    LIVE,
+    PLAN,
+    RAMP,
+    STRIDES,
+    WALK,
+    parameters_record,
+)
 from walking.sensing import BodySensors
+from walking.swing import rest_at
 
 
 @pytest.fixture(scope="session")
@@ -101,3 +117,61 @@ def mirrored_joints(robot):
         [-1.0 if name.endswith(("yaw", "roll", "pan", "gripper")) else 1.0 for name in names]
     )
     return lambda angles: sign * angles[..., swapped]
+
+
+@pytest.fixture(scope="session")
+def make_model(robot):
+    """Constants of a walk with a pattern generator."""
+
+    def make(generator="robust", parameters=None):
+        parameters = parameters or WalkingParameters(pattern=PatternParameters(generator=generator))
+        records, sums = robot_record(robot, parameters)
+        return Model(records[0], parameters_record(parameters)[0], records[0].still, sums)
+
+    return make
+
+
+@pytest.fixture(scope="session")
+def model(make_model):
+    return make_model()
+
+
+@pytest.fixture(scope="session")
+def strides_of(model):
+    """Strides of a velocity in the usual time."""
+
+    def make(velocity, time=None):
+        strides = np.zeros(1, STRIDES)[0]
+        time = time or model.parameters.gait.footstep_time
+        velocity_strides(strides, velocity, time, model.robot, model.parameters)
+        return strides
+
+    return make
+
+
+@pytest.fixture
+def make_walk(model):
+    """State of a walk that stands with parallel feet, and its plans."""
+
+    def make(stance=None):
+        half = float(model.parameters.gait.half_stance)
+        stance = stance or (Foothold(True, 0.0, half, 0.0), Foothold(False, 0.0, -half, 0.0))
+        walk = np.zeros(1, WALK)[0]
+        plans = Plans(
+            np.zeros(3, PLAN),
+            np.zeros((3, 10), RAMP),
+            np.zeros((3, 4), FOOTHOLD),
+            np.zeros((3, 200), KNOT),
+        )
+        gait = plans.records[LIVE].gait
+        for side, foot in enumerate(stance):
+            put(gait.footholds[side], foot)
+            rest_at(walk.limbs.feet[side], foot)
+        for timing in (gait.clock.timing, walk.steering.timing):
+            put_timing(timing, cadence(STILL, model.parameters))
+        stand(gait, model.robot, model.parameters)
+        walk.admission.clock, walk.admission.landing = gait.clock, gait.landing
+        walk.admission.fraction = 1.0
+        return walk, plans
+
+    return make

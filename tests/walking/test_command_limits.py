@@ -5,8 +5,6 @@ import pytest
 from walking.command import CommandState, HeadTarget, VelocityCommand
 from walking.command_limits import Limit
 from walking.engine import WalkingEngine
-from walking.footsteps.planner import FootstepPlanner
-from walking.footsteps.steering import Steering
 from walking.parameters import CONTROL_PERIOD, WalkingParameters
 
 AHEAD = HeadTarget()
@@ -77,24 +75,6 @@ def test_a_footstep_within_all_limits_is_applied_as_commanded(engine, ideal_body
     reports = walk(engine, ideal_body, command, 3.0)
     assert sum(not r.limited for r in reports) > 100
     assert all(r.applied == command for r in reports if not r.limited)
-
-
-def test_while_the_body_is_off_balance_only_another_command_is_altered(robot):
-    p = WalkingParameters()
-    steering = Steering(FootstepPlanner(p.gait, p.limits, robot.sole), p.limits)
-
-    def bound(command, *, balanced):
-        steering.follow(command, 1.0, settled=True, balanced=balanced)
-        return steering.bound
-
-    slow, footstep = VelocityCommand(0.001), CommandState(forward=0.05)
-    assert bound(slow, balanced=True) == bound(slow, balanced=False) == ()
-    assert bound(VelocityCommand(0.2), balanced=False) == (Limit.BALANCE,)
-    assert bound(footstep, balanced=False) == (Limit.BALANCE,)
-    assert bound(footstep, balanced=True) == bound(footstep, balanced=False) == ()
-    assert bound(slow, balanced=False) == (Limit.BALANCE,)
-    beyond = CommandState(forward=1.0)
-    assert bound(beyond, balanced=True) == bound(beyond, balanced=False)
 
 
 def test_nothing_is_altered_by_standing_until_the_body_has_settled(engine, ideal_body):

@@ -9,7 +9,7 @@ from scipy.spatial import ConvexHull
 from walking.body.joints import HEAD
 from walking.command import HeadTarget, VelocityCommand
 from walking.engine import WalkingEngine
-from walking.footsteps.planner import STANCE_YAW_TOLERANCE
+from walking.footsteps import STANCE_YAW_TOLERANCE
 from walking.parameters import CONTROL_PERIOD, HeadParameters, WalkingParameters
 from walking.phase import Phase
 

@@ -1,7 +1,7 @@
 """Report of limits against the footsteps: limited if, and only if, they differ."""
 
 from collections import Counter
-from dataclasses import replace
+from dataclasses import astuple, replace
 
 import numpy as np
 import pytest
@@ -10,8 +10,19 @@ from scipy.spatial.transform import Rotation
 from walking.command import CommandState, HeadTarget, VelocityCommand
 from walking.command_limits import Limit
 from walking.engine import WalkingEngine
-from walking.footsteps.planner import FootstepPlanner
+from walking.foothold import foothold
+from walking.footsteps import (
+    STILL,
+    cadence,
+    command_strides,
+    duration,
+    is_same,
+    landing_of,
+    velocity_strides,
+)
+from walking.gait import support_foot
 from walking.parameters import CONTROL_PERIOD, WalkingParameters
+from walking.records import STRIDES, parameters_record
 
 AHEAD, STAND = HeadTarget(), VelocityCommand()
 HALF_TICK = 0.5 * CONTROL_PERIOD + 1e-9
@@ -46,68 +57,69 @@ def tilted(sensors, roll, pitch):
 class Observer:
     """Compares the footsteps with the command, without the engine's account of it."""
 
-    def __init__(self, engine, parameters, sole):
-        self._engine = engine
-        limits = replace(
-            parameters.limits,
-            **dict.fromkeys(
-                ("step_forward", "step_side", "step_turn", "reach_forward", "reach_side"), WIDE
-            ),
-        )
-        self._usual = FootstepPlanner(parameters.gait, parameters.limits, sole)
-        self._free = FootstepPlanner(replace(parameters.gait, foot_clearance=-WIDE), limits, sole)
+    def __init__(self, engine, parameters, robot):
+        names = ("step_forward", "step_side", "step_turn", "reach_forward", "reach_side")
+        limits = replace(parameters.limits, **dict.fromkeys(names, WIDE))
+        gait = replace(parameters.gait, foot_clearance=-WIDE)
+        self._walk, self._gait = engine._walk, engine._plan.gait
+        self._robot, self._usual = robot, parameters_record(parameters)[0]
+        self._free = parameters_record(replace(parameters, limits=limits, gait=gait))[0]
         self._phase, self._stepped = (0, True), False
 
     def obeys(self, command):
         """Whether the last tick obeyed; None if its support phase ended with it."""
-        gait = self._engine._gait
-        stepped, self._stepped = self._stepped, gait.stepping
-        phase, self._phase = self._phase, (gait.completed, gait.double)
+        gait = self._gait
+        stepped, self._stepped = self._stepped, bool(gait.stepping)
+        phase, self._phase = self._phase, (int(gait.completed), bool(gait.double))
         if self._phase != phase:
             return None
         if not gait.stepping:
             return command == STAND
         if command == STAND and not stepped:
             return False
-        goes_on = self._engine._placement._transition.moving == (command != STAND)
-        return goes_on and self._as_asked(gait, command) and self._under_way(gait)
+        goes_on = bool(self._walk.admission.moving) == (command != STAND)
+        return goes_on and self._as_commanded(command) and self._under_way()
 
-    def _as_asked(self, gait, command):
+    def _as_commanded(self, command):
         """Whether the footsteps to come are those of the command."""
-        timing = gait.timing
+        timing, wanted = self._gait.clock.timing, np.zeros(1, STRIDES)[0]
         if isinstance(command, CommandState):
-            wanted, _ = self._free.explicit(command, 0.0)
+            command_strides(wanted, np.array(astuple(command)), 0.0, self._robot, self._free)
             timely = (
                 abs(timing.double * CONTROL_PERIOD - command.double_support) < HALF_TICK
                 and abs(timing.single * CONTROL_PERIOD - command.single_support) < HALF_TICK
                 and abs(timing.swing_height - command.swing_height) < ROUNDING
             )
         else:
-            wanted = self._free.strides(command.velocity, timing.duration)
-            usual = self._usual.cadence(command.velocity)
+            time, velocity = duration(timing), command.velocity
+            velocity_strides(wanted, velocity, time, self._robot, self._free)
+            usual = cadence(velocity, self._usual)
             # A stop may be faster than the usual cadence, not slower.
-            timely = timing == usual or (command == STAND and timing.duration < usual.duration)
-        made = self._engine._placement._transition.strides
-        same = np.allclose(
-            (*made.left, *made.right), (*wanted.left, *wanted.right), rtol=0.0, atol=ROUNDING
+            faster = time < (usual[0] + usual[1]) * CONTROL_PERIOD
+            timely = timing.item() == usual or (velocity == STILL and faster)
+        made = self._walk.admission.following
+        same = all(
+            np.allclose(made[foot].item(), wanted[foot].item(), rtol=0.0, atol=ROUNDING)
+            for foot in ("left", "right")
         )
-        return timely and bool(same)
+        return bool(timely) and same
 
-    def _under_way(self, gait):
+    def _under_way(self):
         """Whether the footstep under way is one of them."""
-        nominal = gait.nominal(self._engine._placement._transition.strides)
-        return (
-            (not gait.double or gait.clock.shift.end == gait.timing.double)
-            and gait.clock.single.ticks == gait.timing.single
-            and (gait.double or abs(gait.swing_height - gait.timing.swing_height) < ROUNDING)
-            and self._usual.same(nominal, gait.landing)
+        gait, timing = self._gait, self._gait.clock.timing
+        nominal = landing_of(support_foot(gait), self._walk.admission.following)
+        return bool(
+            (not gait.double or gait.clock.shift.end == timing.double)
+            and gait.clock.single.ticks == timing.single
+            and (gait.double or abs(gait.swing_height - timing.swing_height) < ROUNDING)
+            and is_same(nominal, foothold(gait.landing), self._usual)
         )
 
 
 @pytest.mark.parametrize("generator", ["dcm", "robust"])
 @pytest.mark.parametrize("every", [(0.005, 0.1), (0.2, 2.5)])
 def test_limited_is_reported_if_and_only_if_the_footsteps_differ_from_the_command(
-    robot, ideal_body, generator, every
+    robot, model, ideal_body, generator, every
 ):
     usual = WalkingParameters()
     parameters = replace(
@@ -116,7 +128,7 @@ def test_limited_is_reported_if_and_only_if_the_footsteps_differ_from_the_comman
         stabilizer=replace(usual.stabilizer, heading_gain=0.0, speed_gain=0.0),
     )
     engine = WalkingEngine(robot, parameters)
-    observer = Observer(engine, parameters, robot.sole)
+    observer = Observer(engine, parameters, model.robot)
     rng = np.random.default_rng(11)
     reported, wrong, obeyed = Counter(), [], 0
     script, tilt = commands(rng, every), (0.0, 0.0)

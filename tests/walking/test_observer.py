@@ -6,10 +6,10 @@ from math import cos, sin
 import numpy as np
 import pytest
 
-from walking.body.odometry import LegOdometry
 from walking.command import HeadTarget, VelocityCommand
 from walking.engine import WalkingEngine
 from walking.observer import BodyObserver
+from walking.odometry import LegOdometry
 from walking.parameters import WalkingParameters
 from walking.phase import Phase
 

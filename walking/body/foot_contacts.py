@@ -1,7 +1,6 @@
 """Foot contacts, gait phase and footsteps from the measured loads of the feet."""
 
-from walking.estimation import LIGHT_LOAD
-from walking.parameters import CONTROL_PERIOD, GRAVITY, GaitParameters
+from walking.parameters import CONTROL_PERIOD, GRAVITY, LIGHT_LOAD, GaitParameters
 from walking.phase import Phase
 
 CONTACT_LOAD = 2.0 * LIGHT_LOAD  # of the weight; a lifted foot with more of it has landed [1]

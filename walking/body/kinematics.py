@@ -10,7 +10,7 @@ from math import cos, sin, sqrt
 import numpy as np
 
 from compilation import compiled
-from walking.arrays import Array, Indices, Point, Vector
+from walking.arrays import Array, Indices, Vector
 
 Matrix = tuple[float, float, float, float, float, float, float, float, float]
 """Rotation, row by row."""

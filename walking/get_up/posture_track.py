@@ -6,8 +6,8 @@ import numpy as np
 
 from walking.arrays import Array
 from walking.body.robot_model import RobotModel
-from walking.swing import PEAK, minimum_jerk
 from walking.parameters import CONTROL_PERIOD
+from walking.swing import PEAK, minimum_jerk
 
 
 class PostureTrack:

@@ -1,0 +1,170 @@
+"""Pattern generators: tracking, gains of preview control, and admission of plans."""
+
+import numpy as np
+import pytest
+
+from walking.admission import admit, remember
+from walking.foothold import Foothold, foothold
+from walking.footsteps import STILL
+from walking.gait import start, update_phase
+from walking.parameters import PatternParameters
+from walking.patterns import advance_pattern, is_feasible, rejects_infeasible
+from walking.pendulum import dcm_of, dcm_reference
+from walking.preview import preview_gains
+from walking.records import BEST, KNOT, LIVE, PENDULUM, RAMP, ZMP_PLAN
+from walking.reference import set_ramp
+from walking.support import clip, support_region
+
+LEFT, RIGHT = Foothold(True, 0.0, 0.042, 0.0), Foothold(False, 0.0, -0.042, 0.0)
+TRACKING = ["dcm", "preview"]
+
+
+class Tracker:
+    """Pendulum of a generator between two parallel feet."""
+
+    def __init__(self, model, x, y, vy=0.0):
+        self.model, self.pendulum = model, np.zeros(1, PENDULUM)[0]
+        p = self.pendulum
+        p.x, p.y, p.vy, p.zmp_x, p.zmp_y = x, y, vy, x, y
+        self.region = support_region(model.robot.support, RIGHT, LEFT, 0.005)
+        self.plans, self.knots = np.zeros(2, ZMP_PLAN), np.zeros((2, 200), KNOT)
+
+    def advance(self, ramps):
+        model, (live, trial) = self.model, self.plans
+        rest = (self.pendulum, ramps, len(ramps), self.region)
+        advance_pattern(
+            live,
+            self.knots[0],
+            trial,
+            self.knots[1],
+            False,
+            *rest,
+            model.robot,
+            model.parameters,
+            model.sums,
+        )
+        zmp = (self.pendulum.zmp_x, self.pendulum.zmp_y)
+        assert clip(self.region, *zmp) == zmp
+
+
+@pytest.mark.parametrize("name", TRACKING)
+def test_a_displaced_pendulum_comes_to_rest_over_the_reference(make_model, name):
+    tracker = Tracker(make_model(name), 0.02, 0.01, 0.05)
+    assert not rejects_infeasible(tracker.model.parameters)
+    ramps = np.zeros(1, RAMP)
+    set_ramp(ramps[0], 1, (0.01, 0.0), (0.01, 0.0), RIGHT, LEFT)
+    for _ in range(400):
+        tracker.advance(ramps)
+    p = tracker.pendulum
+    np.testing.assert_allclose([p.x, p.y, p.vx, p.vy], [0.01, 0.0, 0.0, 0.0], atol=2e-4)
+
+
+@pytest.mark.parametrize("name", TRACKING)
+def test_the_zmp_tracks_a_sideways_shift(make_model, name):
+    tracker, ramps = Tracker(make_model(name), 0.01, 0.0), np.zeros(2, RAMP)
+    for k in range(60):
+        here = (0.01, 0.03 * k / 60)
+        set_ramp(ramps[0], 60 - k, here, (0.01, 0.03), RIGHT, LEFT)
+        set_ramp(ramps[1], 200, (0.01, 0.03), (0.01, 0.03), RIGHT, LEFT)
+        tracker.advance(ramps)
+    assert dcm_of(tracker.pendulum, tracker.model.robot)[1] == pytest.approx(0.03, abs=6e-3)
+
+
+def test_preview_weights_fade_and_are_complete_within_the_horizon(model):
+    omega = float(model.robot.omega)
+    gains = preview_gains(omega, PatternParameters(preview_time=2.0))
+    weights = np.diff(gains.sums["gain"])
+    assert weights[0] > 0.0
+    assert abs(weights[-1]) < 1e-4 * weights.max()
+    assert gains.sums["gain"][-1] == pytest.approx(gains.total, rel=1e-3)
+    moments = np.cumsum(weights * np.arange(1, len(weights) + 1))
+    np.testing.assert_allclose(gains.sums["moment"][1:], moments, atol=1e-12)
+
+
+class Admission:
+    """Admission of plans by a generator, in the first footstep of a walk."""
+
+    def __init__(self, model, make_walk):
+        self.model = model
+        self.walk, self.plans = make_walk()
+        self.live = self.plans.records[LIVE]
+        self.gait = self.live.gait
+        start(self.gait, 0, True, model.still, model.robot, model.parameters)
+        self.region = support_region(model.robot.support, RIGHT, LEFT, 0.005)
+
+    def on_reference(self, strides):
+        """Put the pendulum on the DCM of a plan with these strides."""
+        self.admit(strides)
+        ramps, p = self.plans.ramps[LIVE], self.walk.pendulum
+        x, y = dcm_reference(ramps, self.live.ramps, self.model.robot)
+        p.x, p.y, p.vx, p.vy = x, y, 0.0, 0.0
+        p.zmp_x, p.zmp_y = ramps[0].ax, ramps[0].ay
+
+    def admit(self, strides, *, moving=True):
+        admission = self.walk.admission
+        remember(admission, self.gait)
+        rest = (self.walk.pendulum, self.region, strides, moving, False, self.model)
+        self.accepted = admit(admission, self.plans, *rest)
+        return admission
+
+    def feasible(self):
+        """Whether the plan in force is feasible by itself."""
+        plans, model = self.plans, self.model
+        trial, knots = np.zeros(1, ZMP_PLAN)[0], np.zeros(200, KNOT)
+        rest = (self.walk.pendulum, plans.ramps[LIVE], self.live.ramps, self.region)
+        return is_feasible(trial, self.live.zmp, knots, *rest, model.robot, model.parameters)
+
+
+@pytest.fixture
+def admission(model, make_walk):
+    return Admission(model, make_walk)
+
+
+def test_a_feasible_change_is_made_at_once(admission, strides_of):
+    admission.on_reference(strides_of((0.1, 0.0, 0.0)))
+    result = admission.admit(strides_of((0.12, 0.0, 0.0)))
+    assert admission.accepted
+    assert result.fraction == 1.0
+    assert admission.feasible()
+
+
+def test_a_change_that_is_too_large_is_made_in_part_and_stays_feasible(admission, strides_of):
+    slow, fast = strides_of((0.1, 0.0, 0.0)), strides_of((0.1, 0.2, 0.0))
+    admission.on_reference(slow)
+    admission.admit(slow)
+    live, best = admission.live.zmp, admission.plans.records[BEST].zmp
+    live.exists, live.phases, live.count = True, best.phases, best.count
+    for k in range(best.phases):
+        live.supports[k] = best.supports[k]
+    before, right = foothold(admission.walk.admission.landing), float(slow.right.y)
+    result = admission.admit(fast)
+    assert 0.0 <= result.fraction < 1.0
+    assert admission.accepted is (result.fraction > 0.0)
+    moved = right + result.fraction * (float(fast.right.y) - right)
+    assert result.following.right.y == pytest.approx(moved)
+    if result.fraction == 0.0:
+        assert foothold(result.landing) == before
+    else:
+        assert admission.feasible()
+
+
+def test_without_a_plan_to_keep_the_wanted_one_is_taken(admission, strides_of):
+    slow, fast = strides_of((0.1, 0.0, 0.0)), strides_of((0.5, 0.2, 0.0))
+    admission.on_reference(slow)
+    admission.admit(slow)
+    admission.walk.pendulum.vx += 3.0
+    result = admission.admit(fast)
+    assert not admission.accepted
+    assert result.fraction == 1.0
+    assert result.following.right.x == fast.right.x
+
+
+def test_a_plan_that_is_tried_changes_nothing_in_force(admission, strides_of):
+    slow = strides_of((0.1, 0.0, 0.0))
+    admission.on_reference(slow)
+    admission.admit(slow)
+    gait = admission.gait.copy()
+    update_phase(gait, admission.model.parameters)
+    assert gait.item() == admission.gait.item()
+    admission.admit(strides_of(STILL))
+    assert admission.gait.clock.shift.item() == gait.clock.shift.item()

@@ -1,0 +1,142 @@
+"""Published state: camera on a tilted body, and the plan in the odometry frame."""
+
+import numpy as np
+import pytest
+from scipy.spatial.transform import Rotation
+
+from walking.admission import plan_in
+from walking.body.joints import HEAD
+from walking.body.kinematics import chain_end
+from walking.command import VelocityCommand
+from walking.foothold import foothold
+from walking.gait import start
+from walking.phase import Phase
+from walking.published import PUBLISHED, Publication, publish_camera, publish_plan
+from walking.records import LIVE, ODOMETRY, SENSING
+
+FEET = ((0.01, 0.042, -0.22, 0.1), (-0.01, -0.042, -0.21, -0.05))  # x, y, z, yaw
+
+
+def set_body(sensing, *, roll=0.0, pitch=0.0, right_load=0.0):
+    for foot, (x, y, z, yaw) in zip(sensing.feet, FEET, strict=True):
+        foot.x, foot.y, foot.z, foot.yaw = x, y, z, yaw
+    sensing.roll, sensing.pitch, sensing.right_load = roll, pitch, right_load
+    sensing.com = 0.012, 0.003, 0.02
+
+
+@pytest.fixture
+def look(robot, model):
+    """Camera of a body that looks aside, and its pose in the base frame."""
+
+    def published(**body):
+        sensing, camera = np.zeros(1, SENSING)[0], np.zeros(1, PUBLISHED)[0]
+        set_body(sensing, **body)
+        joints, rates = robot.ready.copy(), np.zeros_like(robot.ready)
+        joints[HEAD], rates[HEAD] = (0.4, -0.3), (1.0, -2.0)
+        chain, moving = robot.neck.chain
+        gyro = np.array([0.1, 0.2, 0.3])
+        publish_camera(camera, sensing, joints, rates, gyro, chain, moving, model.robot)
+        R_BC, p_BC = np.empty((3, 3)), np.empty(3)
+        chain_end(chain, joints[moving], R_BC, p_BC)
+        return camera, R_BC, p_BC
+
+    return published
+
+
+def test_the_camera_of_a_level_body_is_at_the_height_of_the_leg(look):
+    camera, R_BC, p_BC = look()
+    np.testing.assert_array_equal(camera.rotation, R_BC)
+    assert camera.position == pytest.approx(p_BC - [0.0, 0.0, FEET[0][2]])
+    rates = (camera.pan_rate, camera.tilt_rate, camera.yaw_rate)
+    assert (camera.pan, camera.tilt, *rates) == pytest.approx((0.4, -0.3, 1.0, -2.0, 0.3))
+
+
+@pytest.mark.parametrize("load", [0.0, 0.3, 1.0])
+def test_the_height_is_that_above_the_loaded_foot(look, load):
+    change = look(right_load=load)[0].position - look()[0].position
+    assert change == pytest.approx([0.0, 0.0, load * (FEET[0][2] - FEET[1][2])])
+
+
+@pytest.mark.parametrize(("roll", "pitch"), [(0.2, 0.0), (0.0, -0.3), (0.1, 0.2)])
+def test_a_tilted_trunk_tilts_the_camera(look, roll, pitch):
+    camera, R_BC, p_BC = look(roll=roll, pitch=pitch)
+    tilted = Rotation.from_euler("xy", (roll, pitch)).as_matrix()
+    assert camera.rotation == pytest.approx(tilted @ R_BC)
+    assert camera.position == pytest.approx(tilted @ p_BC - [0.0, 0.0, FEET[0][2]])
+    assert camera.yaw_rate == pytest.approx(float(tilted[2] @ [0.1, 0.2, 0.3]))
+
+
+@pytest.fixture
+def published(model, strides_of, make_walk):
+    """State of a walk in its first double support, odometry at a pose."""
+    walk, plans = make_walk()
+    plan = plans.records[LIVE]
+    start(plan.gait, 0, False, model.still, model.robot, model.parameters)
+    landing, strides = foothold(plan.gait.landing), strides_of((0.2, 0.0, 0.3))
+    plan_in(plans, LIVE, landing, strides, True, model)
+    p, sensing, placing = walk.pendulum, walk.sensing, walk.placing
+    p.x, p.y, p.vx, p.vy, p.zmp_x, p.zmp_y = 0.01, 0.005, 0.1, -0.2, 0.02, 0.01
+    set_body(sensing)
+    sensing.x, sensing.y, sensing.vx, sensing.vy = 0.001, -0.002, 0.01, 0.02
+    placing.moved_x, placing.moved_y = 0.03, -0.01
+    walk.unloading, walk.loading = plan.gait.footholds[1], plan.gait.footholds[0]
+
+    def state(x=0.0, y=0.0, yaw=0.0):
+        odometry, publication = np.zeros(1, ODOMETRY)[0], Publication(4)
+        odometry.x, odometry.y, odometry.yaw = x, y, yaw
+        published, rest = publication.records[0], (odometry, model.robot, model.parameters)
+        steps = plans.steps[LIVE]
+        count = publish_plan(published, publication.footsteps, walk, plan, steps, *rest)
+        return publication.state(count, VelocityCommand(0.2), fallen=False)
+
+    return state
+
+
+def test_the_support_foot_is_first_and_at_its_measured_pose(published):
+    state = published()
+    x, y, _, yaw = FEET[0]
+    first = state.footsteps[0]
+    assert (first.x, first.y, first.yaw) == pytest.approx((x, y, yaw))
+    assert [foot.left for foot in state.footsteps] == [True, False, True, False, True]
+    assert state.balance.feet[0] == pytest.approx((x, y, 0.0, yaw))
+    assert state.com == pytest.approx((0.012, 0.003))
+    assert state.phase is Phase.DOUBLE_SUPPORT
+    assert len(state.balance.support) == 6
+
+
+def test_all_of_it_moves_with_the_odometry_frame(published):
+    one, other = published(), published(0.7, -1.2, 0.9)
+    c, s = np.cos(0.9), np.sin(0.9)
+    R, p = np.array([[c, -s], [s, c]]), np.array([0.7, -1.2])
+    for a, b in (
+        (one.zmp, other.zmp),
+        (one.dcm, other.dcm),
+        (one.com, other.com),
+        (one.balance.com, other.balance.com),
+        (one.balance.dcm, other.balance.dcm),
+        (one.balance.support, other.balance.support),
+        (one.balance.feet[:, :2], other.balance.feet[:, :2]),
+        *((a[1:3], b[1:3]) for a, b in zip(one.footsteps, other.footsteps, strict=True)),
+    ):
+        assert b == pytest.approx(np.asarray(a) @ R.T + p)
+    assert other.balance.capture == pytest.approx(R @ one.balance.capture)
+    turned = [b.yaw - a.yaw for a, b in zip(one.footsteps, other.footsteps, strict=True)]
+    assert turned == pytest.approx([0.9] * len(turned))
+
+
+def test_points_keep_their_places_about_the_pendulum(model, published):
+    state, omega = published(), float(model.robot.omega)
+    c, s = np.cos(FEET[0][3]), np.sin(FEET[0][3])  # the planned support foot has no yaw
+    R = np.array([[c, -s], [s, c]])
+    com = state.balance.com
+    assert state.zmp - com == pytest.approx(R @ [0.01, 0.005])
+    assert state.dcm - com == pytest.approx(R @ [0.1 / omega, -0.2 / omega])
+    assert state.balance.capture == pytest.approx(R @ [0.03, -0.01])
+    error = [0.001 + 0.01 / omega, -0.002 + 0.02 / omega]
+    assert state.balance.dcm - state.dcm == pytest.approx(R @ error)
+
+
+def test_a_command_without_a_limit_is_reported_as_applied(published):
+    report = published().command_limits
+    assert report.applied == report.commanded == VelocityCommand(0.2)
+    assert not report.limited

@@ -1,0 +1,45 @@
+"""Records: types of fields, copies, and parameters by name."""
+
+import numpy as np
+import pytest
+
+from walking import records
+from walking.parameters import WalkingParameters
+from walking.records import FOOTHOLD, GENERATORS, PLAN, WALK, parameters_record, record
+
+
+def test_a_field_with_the_name_of_an_attribute_of_arrays_is_refused():
+    for name in ("size", "base", "strides", "data"):
+        with pytest.raises(TypeError, match=name):
+            record(**{name: float})
+
+
+def test_every_field_begins_at_a_whole_word():
+    types = [value for value in vars(records).values() if isinstance(value, np.dtype)]
+    assert len(types) > 20
+    for kind in types:
+        assert all(offset % 8 == 0 for _, offset, *_ in kind.fields.values())
+        assert kind.itemsize % 8 == 0
+
+
+def test_an_assigned_record_is_a_copy_and_a_read_one_is_shared():
+    plans = np.zeros(2, PLAN)
+    plans[0].landing.x = 1.0
+    plans[1] = plans[0]
+    plans[0].landing.x = 2.0
+    assert plans[1].landing.x == 1.0
+    landing = plans[0].landing
+    landing.y = 3.0
+    assert plans[0].landing.y == 3.0
+    assert np.zeros(1, WALK)[0].limbs.feet.dtype.names[:2] == ("x", "y")
+    assert FOOTHOLD.names == ("left", "x", "y", "yaw")
+
+
+def test_parameters_have_their_names_and_values():
+    parameters = WalkingParameters()
+    values = parameters_record(parameters)[0]
+    for section in values.dtype.names:
+        for name in values[section].dtype.names:
+            expected = getattr(getattr(parameters, section), name)
+            found = values[section][name]
+            assert found == (GENERATORS.index(expected) if name == "generator" else expected)
