@@ -101,7 +101,7 @@ def test_the_support_foot_is_first_and_at_its_measured_pose(published):
     assert state.balance.feet[0] == pytest.approx((x, y, 0.0, yaw))
     assert state.com == pytest.approx((0.012, 0.003))
     assert state.phase is Phase.DOUBLE_SUPPORT
-    assert len(state.balance.support) == 6
+    assert len(state.balance.support) == 4  # the feet are parallel
 
 
 def test_all_of_it_moves_with_the_odometry_frame(published):

@@ -211,11 +211,11 @@ def test_along_the_knots_the_dcm_comes_to_the_reference_and_the_zmp_stays_in_the
     w = float(model.robot.omega)
     dcm, now = np.array(dcm_of(p, model.robot)), np.array([p.zmp_x, p.zmp_y])
     ends, time = np.cumsum(ramps["ticks"][:count]), 0.0
-    for knot in knots:
-        after, h = np.array([knot.x, knot.y]), knot.ticks * CONTROL_PERIOD
+    for ticks, *place in knots.tolist():
+        after, h = np.array(place), ticks * CONTROL_PERIOD
         slope = (after - now) / h
         dcm = after + slope / w + np.exp(w * h) * (dcm - now - slope / w)
-        now, time = after, time + knot.ticks
+        now, time = after, time + ticks
         index = int(np.searchsorted(ends, time))
         if index < count and is_single(ramps[index]):
             foot = foothold(ramps[index].unloading)
