@@ -217,7 +217,7 @@ def _bisect(
     """
     trial, between, moving = plans.records[TRIAL], admission.between, admission.moving
     before, after = admission.clock.timing, admission.goal.timing
-    low, high, found = 0.0, 1.0, False
+    low, high, admitted = 0.0, 1.0, False
     for _ in range(BISECTIONS):
         fraction = 0.5 * (low + high)
         between.double = before.double + round(fraction * (after.double - before.double))
@@ -230,17 +230,17 @@ def _bisect(
         towards_strides(trial.following, admission.following, wanted, fraction)
         plan_in(plans, TRIAL, landing, trial.following, moving, model)
         if _is_feasible(plans, TRIAL, pendulum, region, model):
-            low, found = fraction, True
+            low, admitted = fraction, True
             trial.moving = moving
             put(trial.landing, landing)
             _keep_trial(plans)
         else:
             high = fraction
-    if found:
+    if admitted:
         _take_best(admission, plans, low)
     else:
         _take(admission, last, admission.following, moving, 0.0)
-    return found
+    return admitted
 
 
 @compiled

@@ -63,8 +63,8 @@ def measure(
     tilt = (sensing.roll, sensing.pitch)
     for side in range(2):
         foot = sensing.feet[side]
-        place = (legs[side, 0], legs[side, 1], legs[side, 2])
-        foot.x, foot.y, foot.z = level(place, tilt)
+        ankle = (legs[side, 0], legs[side, 1], legs[side, 2])
+        foot.x, foot.y, foot.z = level(ankle, tilt)
         foot.yaw = legs[side, 3]
         foot.load, foot.pressure_x, foot.pressure_y = load_of(pads[side], robot.sole)
     sensing.com[0], sensing.com[1], sensing.com[2] = level((com[0], com[1], com[2]), tilt)

@@ -41,8 +41,8 @@ Command = tuple[float, float, float, float, float, float]
 @compiled
 def landing_of(support: Foothold, strides: Record) -> Foothold:
     """Return the next foothold of the swing foot."""
-    place = strides.right if support.left else strides.left
-    return placed(support, place.x, place.y, place.yaw)
+    placement = strides.right if support.left else strides.left
+    return placed(support, placement.x, placement.y, placement.yaw)
 
 
 @compiled
@@ -236,23 +236,23 @@ def command_strides(
         rx, ry = within_reach(x, clear, side, parameters)
         if rx != x or ry != clear:
             bound |= REACH
-        place = strides.right if side == RIGHT else strides.left
-        place.x, place.y = rx, clear_of(ry, turned, side, gap, robot.sole)
-        place.yaw = turned
+        placement = strides.right if side == RIGHT else strides.left
+        placement.x, placement.y = rx, clear_of(ry, turned, side, gap, robot.sole)
+        placement.yaw = turned
     return bound
 
 
 @compiled
 def command_of(strides: Record, timing: Record) -> Command:
     """Return the command state of strides and timing, inverse of `command_strides`."""
-    place = strides.left
-    forward, lateral = rotate_back(0.5 * place.yaw, place.x, place.y)
+    placement = strides.left
+    forward, lateral = rotate_back(0.5 * placement.yaw, placement.x, placement.y)
     return (
         timing.single * CONTROL_PERIOD,
         timing.double * CONTROL_PERIOD,
         forward,
-        lateral / cos(0.5 * place.yaw),
-        place.yaw,
+        lateral / cos(0.5 * placement.yaw),
+        placement.yaw,
         timing.swing_height,
     )
 
@@ -288,13 +288,13 @@ def mean_velocity(strides: Record, time: float, parameters: Record) -> Vector:
     vx = vy = wz = 0.0
     for side in (RIGHT, LEFT):
         stance = side * parameters.gait.half_stance
-        place = strides.right if side == RIGHT else strides.left
-        dx = place.x + stance * sin(place.yaw)
-        dy = place.y - stance - stance * cos(place.yaw)
-        along, across = rotate_back(0.5 * place.yaw, dx, dy)
+        placement = strides.right if side == RIGHT else strides.left
+        dx = placement.x + stance * sin(placement.yaw)
+        dy = placement.y - stance - stance * cos(placement.yaw)
+        along, across = rotate_back(0.5 * placement.yaw, dx, dy)
         vx += along
         vy += across
-        wz += place.yaw
+        wz += placement.yaw
     return vx / (2.0 * time), vy / (2.0 * time), wz / (2.0 * time)
 
 
@@ -306,10 +306,10 @@ def towards_strides(strides: Record, one: Record, other: Record, fraction: float
 
 
 @compiled
-def _between(place: Record, one: Record, other: Record, fraction: float) -> None:
-    place.x = one.x + fraction * (other.x - one.x)
-    place.y = one.y + fraction * (other.y - one.y)
-    place.yaw = one.yaw + fraction * (other.yaw - one.yaw)
+def _between(placement: Record, one: Record, other: Record, fraction: float) -> None:
+    placement.x = one.x + fraction * (other.x - one.x)
+    placement.y = one.y + fraction * (other.y - one.y)
+    placement.yaw = one.yaw + fraction * (other.yaw - one.yaw)
 
 
 @compiled

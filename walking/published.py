@@ -313,10 +313,10 @@ def publish_camera(
         moving: joints of the chain.
         robot: constants.
     """
-    mounted, place, own = np.empty((3, 3)), np.empty(3), np.empty(moving.size)
+    mounted, origin, own = np.empty((3, 3)), np.empty(3), np.empty(moving.size)
     for k in range(moving.size):
         own[k] = angles[moving[k]]
-    chain_end(chain, own, mounted, place)
+    chain_end(chain, own, mounted, origin)
     camera.pan = atan2(mounted[1, 2], mounted[0, 2])
     camera.tilt = asin(min(1.0, max(-1.0, mounted[2, 2])))
     neck = robot.neck
@@ -325,20 +325,20 @@ def publish_camera(
         camera.pan_rate = neck.pan_sign * rates[neck.pan_joint]
         camera.tilt_rate = neck.tilt_sign * rates[neck.tilt_joint]
     tilt, load = (sensing.roll, sensing.pitch), sensing.right_load
-    camera.yaw_rate = level_camera(tilt, mounted, place, gyro, camera.rotation, camera.position)
+    camera.yaw_rate = level_camera(tilt, mounted, origin, gyro, camera.rotation, camera.position)
     camera.position[2] += -(1.0 - load) * sensing.feet[0].z - load * sensing.feet[1].z
 
 
 @compiled
 def level_camera(
-    tilt: Point, mounted: Array, place: Array, gyro: Array, rotation: Array, position: Array
+    tilt: Point, mounted: Array, origin: Array, gyro: Array, rotation: Array, position: Array
 ) -> float:
     """Express the camera in the level frame of the trunk's heading.
 
     Args:
         tilt: roll and pitch of the trunk [rad].
         mounted: rotation R_BC of the camera in the base frame (3, 3).
-        place: position p_BC of the camera in the base frame (3,) [m].
+        origin: position p_BC of the camera in the base frame (3,) [m].
         gyro: angular velocity of the trunk in its frame (3,) [rad/s].
         rotation: set to R_RC (3, 3).
         position: set to p_RC (3,) [m].
@@ -353,7 +353,7 @@ def level_camera(
             rotation[i, j] = (
                 R[i, 0] * mounted[0, j] + R[i, 1] * mounted[1, j] + R[i, 2] * mounted[2, j]
             )
-        position[i] = R[i, 0] * place[0] + R[i, 1] * place[1] + R[i, 2] * place[2]
+        position[i] = R[i, 0] * origin[0] + R[i, 1] * origin[1] + R[i, 2] * origin[2]
     yaw_rate: float = R[2, 0] * gyro[0] + R[2, 1] * gyro[1] + R[2, 2] * gyro[2]
     return yaw_rate
 

@@ -137,14 +137,13 @@ def hull(points: Array) -> Array:
         for other in range(k):
             new = new and norm(x - points[other, 0], y - points[other, 1]) > SAME
         if new:
-            place = number
-            while place > 0 and (
-                ordered[place - 1, 0] > x
-                or (ordered[place - 1, 0] == x and ordered[place - 1, 1] > y)
+            slot = number
+            while slot > 0 and (
+                ordered[slot - 1, 0] > x or (ordered[slot - 1, 0] == x and ordered[slot - 1, 1] > y)
             ):
-                ordered[place, 0], ordered[place, 1] = ordered[place - 1, 0], ordered[place - 1, 1]
-                place -= 1
-            ordered[place, 0], ordered[place, 1] = x, y
+                ordered[slot, 0], ordered[slot, 1] = ordered[slot - 1, 0], ordered[slot - 1, 1]
+                slot -= 1
+            ordered[slot, 0], ordered[slot, 1] = x, y
             number += 1
     chain = np.empty((2 * number, 2))
     count = 0

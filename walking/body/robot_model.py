@@ -24,7 +24,7 @@ BASE = "base"
 
 
 class Dynamics:
-    """Dynamic model with buffers of its own, so that engines of the same robot share nothing.
+    """Dynamic model with separate buffers, so that engines of the same robot share nothing.
 
     Args:
         model: of Pinocchio.
