@@ -4,6 +4,7 @@ from dataclasses import dataclass
 from itertools import pairwise
 from math import atan2, cos, hypot, sin
 from pathlib import Path
+from types import SimpleNamespace
 
 from hsr8.recorder.derived import walk_of
 from hsr8.recorder.run.run import Run
@@ -11,7 +12,7 @@ from hsr8.recorder.run.run_reader import open_run
 from hsr8.recorder.table import Table
 from hsr8.render.motion import Motion as TrueMotion
 from hsr8.render.motion import motion_of, rows_at
-from hsr8.render.shown_frame import ShownFrame, shown_frames
+from hsr8.render.shown_frame import shown_frames
 from hsr8.render.walk_panels import INK, LEFT, RIGHT, contacts, outline
 from hsr8.robots.loaded import load_robot
 from hsr8.scenario.loader import load_scenario
@@ -73,7 +74,7 @@ class Tour:
     name: str
     scenario: Scenario
     layout: Layout
-    frames: tuple[ShownFrame, ...]
+    frames: tuple[SimpleNamespace, ...]
     motion: TrueMotion
     walked: Table
     model: RobotModel
@@ -99,7 +100,7 @@ def tour(path: Path) -> Tour:
     )
 
 
-def moments(shown: Tour) -> list[ShownFrame]:
+def moments(shown: Tour) -> list[SimpleNamespace]:
     """One frame of each stretch of the run, if possible with a large virtual obstacle at hand."""
     edges = np.linspace(0.0, shown.frames[-1].time, COLUMNS + 1)
     return [
@@ -108,13 +109,17 @@ def moments(shown: Tour) -> list[ShownFrame]:
     ]
 
 
-def _interest(frame: ShownFrame, start: float, stop: float) -> tuple[float, float]:
+def _interest(frame: SimpleNamespace, start: float, stop: float) -> tuple[float, float]:
     x, y, _ = frame.pose
-    near = [r for vx, vy, r in frame.virtual_obstacles if hypot(vx - x, vy - y) < NEAR]
+    near = [
+        virtual.radius
+        for virtual in frame.virtual_obstacles
+        if hypot(virtual.position[0] - x, virtual.position[1] - y) < NEAR
+    ]
     return round(max(near, default=0.0), 2), -abs(frame.time - 0.5 * (start + stop))
 
 
-def shapes(shown: Tour, frame: ShownFrame) -> list[tuple[tuple[float, float], float]]:
+def shapes(shown: Tour, frame: SimpleNamespace) -> list[tuple[tuple[float, float], float]]:
     """Centre and S_oe of the obstacles as believed."""
     tracks = [
         Track(
@@ -122,7 +127,7 @@ def shapes(shown: Tour, frame: ShownFrame) -> list[tuple[tuple[float, float], fl
             label=t.label,
             position=np.array(t.position),
             velocity=np.array(t.velocity),
-            covariance=_covariance(t.covariance),
+            covariance=np.array(t.covariance),
             radius=t.radius,
             radius_sigma=0.0,
             motion=Motion(t.motion),
@@ -144,13 +149,6 @@ def shapes(shown: Tour, frame: ShownFrame) -> list[tuple[tuple[float, float], fl
     return list(zip([t.position for t in frame.tracks], radii.tolist(), strict=True))
 
 
-def _covariance(values: tuple[float, float, float]) -> Array:
-    whole = np.zeros((4, 4))
-    xx, xy, yy = values
-    whole[:2, :2] = [[xx, xy], [xy, yy]]
-    return whole
-
-
 def draw(tours: list[Tour]) -> Figure:
     """The figure: a row for each run."""
     with styled():
@@ -168,10 +166,10 @@ def draw(tours: list[Tour]) -> Figure:
     return made
 
 
-def _snapshot(axes: Axes, shown: Tour, frame: ShownFrame) -> None:
+def _snapshot(axes: Axes, shown: Tour, frame: SimpleNamespace) -> None:
     row = int(rows_at(shown.motion.time, [frame.time])[0])
-    fov = frame.fov, shown.scenario.camera.vertical_fov
-    visible = placed(window(*frame.gaze, fov, shown.height), frame.truth)
+    fov = frame.fov[0], shown.scenario.camera.vertical_fov
+    visible = placed(window(*frame.head, fov, shown.height), frame.truth)
     axes.add_patch(Polygon(visible, closed=True, facecolor=VIEW, alpha=0.35, edgecolor="none"))
     for obstacle in shown.layout.static:
         disc(axes, obstacle.position, obstacle.radius, facecolor=STILL, edgecolor="none")
@@ -182,11 +180,11 @@ def _snapshot(axes: Axes, shown: Tour, frame: ShownFrame) -> None:
         axes.plot(*shown.motion.movers[earlier, k].T, color=MOVER, linewidth=0.8)
     for at, radius in shapes(shown, frame):
         disc(axes, at, radius, fill=False, edgecolor=INK, linewidth=0.6)
-    for x, y, radius in frame.virtual_obstacles:
+    for virtual in frame.virtual_obstacles:
         disc(
             axes,
-            (x, y),
-            radius,
+            virtual.position,
+            virtual.radius,
             fill=False,
             edgecolor=VIRTUAL,
             linewidth=1.6,
@@ -201,7 +199,9 @@ def _snapshot(axes: Axes, shown: Tour, frame: ShownFrame) -> None:
     square(axes, (-half[0], half[0]), (-half[1], half[1]))
     axes.grid(False)
     hits = np.sum(shown.collisions <= frame.time)
-    axes.set_title(f"{frame.time:.1f} s, {frame.passed} via points, {hits} contacts", fontsize=8)
+    axes.set_title(
+        f"{frame.time:.1f} s, {frame.via_points} via points, {hits} contacts", fontsize=8
+    )
 
 
 def _footprints(axes: Axes, shown: Tour, time: float) -> None:
@@ -213,9 +213,12 @@ def _footprints(axes: Axes, shown: Tour, time: float) -> None:
         )
 
 
-def _way_points(axes: Axes, shown: Tour, frame: ShownFrame) -> None:
+def _way_points(axes: Axes, shown: Tour, frame: SimpleNamespace) -> None:
     points = np.reshape(shown.layout.waypoints, (-1, 2))
-    here, ahead = points[frame.passed % len(points)], points[(frame.passed + 1) % len(points)]
+    here, ahead = (
+        points[frame.via_points % len(points)],
+        points[(frame.via_points + 1) % len(points)],
+    )
     turn = atan2(*(ahead - here)[::-1].tolist())
     axes.annotate("", here + 0.38 * np.array([cos(turn), sin(turn)]), here,
                   arrowprops={"arrowstyle": "-|>", "color": GOAL, "linewidth": 1.2})  # fmt: skip

@@ -1,7 +1,7 @@
 """Tables of a run: NumPy arrays by column, with units."""
 
 from collections.abc import Iterator, Mapping, Sequence
-from types import MappingProxyType
+from types import MappingProxyType, SimpleNamespace
 from typing import Any
 
 import numpy as np
@@ -133,6 +133,28 @@ class Table(Mapping[str, Any]):
         rows: NDArray[np.intp] = np.searchsorted(self["time"], np.asarray(times) + 1e-9, "right")
         return np.maximum(rows - 1, 0)
 
+    def objects(self, *columns: str) -> list[SimpleNamespace]:
+        """Return the rows as objects with an attribute per column, of plain Python values.
+
+        A column of objects becomes a tuple of such objects.
+
+        Args:
+            columns: chosen columns, all by default; ``tracks.position`` chooses a column of the
+                objects in ``tracks``.
+
+        Raises:
+            UsageError: unknown column.
+        """
+        parts: dict[str, list[str]] = {}
+        for column in columns or tuple(self):
+            name, _, part = column.partition(".")
+            parts.setdefault(name, []).extend([part] if part else [])
+        values = (_plain_rows(self[name], chosen) for name, chosen in parts.items())
+        return [
+            SimpleNamespace(**dict(zip(parts, row, strict=True)))
+            for row in zip(*values, strict=True)
+        ]
+
     def to_pandas(self) -> Any:
         """Return a pandas data frame; pandas must be installed."""
         return self.arrow.to_pandas()
@@ -170,6 +192,16 @@ class Items(Table):
         """Return the objects of one row of the parent table."""
         first = int(self.counts[:row].sum())
         return self.rows(first, first + int(self.counts[row]))
+
+
+def _plain_rows(column: Any, parts: Sequence[str]) -> Sequence[Any]:
+    """Return the values of a column as plain Python values, row by row."""
+    if not isinstance(column, Items):
+        values: list[Any] = column.tolist() if isinstance(column, np.ndarray) else column
+        return values
+    objects, ends = column.objects(*parts), np.cumsum(column.counts).tolist()
+    counts = column.counts.tolist()
+    return [tuple(objects[end - n : end]) for end, n in zip(ends, counts, strict=True)]
 
 
 def _decoded(name: str, array: pa.Array, field: pa.Field) -> Any:

@@ -3,13 +3,13 @@
 from collections.abc import Sequence
 from itertools import product
 from math import cos, sin
+from types import SimpleNamespace
 
 import cv2
 import numpy as np
 from numpy.typing import NDArray
 
 from hsr8.recorder import palette
-from hsr8.render.shown_frame import Box, ShownFrame
 from hsr8.render.text import Color, Image, draw_text, font_size, text_width
 
 Array = NDArray[np.float64]
@@ -40,30 +40,34 @@ class CameraOverlay:
         )
         self._letters = font_size(size[1] / 26)
 
-    def draw(self, image: Image, frame: ShownFrame) -> None:
+    def draw(self, image: Image, frame: SimpleNamespace) -> None:
         """Draw the detections and the gaze of a frame over `image` (height, width, 3)."""
-        near_first = sorted(frame.boxes, key=lambda blob: blob.distance)
+        near_first = sorted(frame.detections, key=lambda blob: blob.distance)
         for blob in reversed(near_first):
             self._draw_box(image, blob)
         tags: list[Rectangle] = []
         for number, blob in enumerate(near_first):
             self._draw_tag(image, blob, tags, near_first[:number])
-        self._draw_window(image, frame.gaze, frame.look)
+        self._draw_window(image, frame.head, frame.gaze)
 
-    def _box(self, blob: Box) -> Rectangle:
+    def _box(self, blob: SimpleNamespace) -> Rectangle:
         """Return the box of a detection in the drawn image [pixel]."""
         left, top, right, bottom = blob.box
         edge = 0.5 * (self._size[0] - self._scale * self._camera[0])
         u, v = self._scale * left + edge, self._scale * right + edge
         return u, self._scale * top, v, self._scale * bottom
 
-    def _draw_box(self, image: Image, blob: Box) -> None:
+    def _draw_box(self, image: Image, blob: SimpleNamespace) -> None:
         left, top, right, bottom = self._box(blob)
         corners = np.array([(left, top), (right, top), (right, bottom), (left, bottom)])
         _lines(image, corners, _light(palette.of_label(blob.label)), closed=True)
 
     def _draw_tag(
-        self, image: Image, blob: Box, tags: list[Rectangle], nearer: Sequence[Box]
+        self,
+        image: Image,
+        blob: SimpleNamespace,
+        tags: list[Rectangle],
+        nearer: Sequence[SimpleNamespace],
     ) -> None:
         """Draw the distance above the box, or below it, if the space is free."""
         left, top, right, bottom = map(round, self._box(blob))
@@ -82,9 +86,7 @@ class CameraOverlay:
                 draw_text(image, (column, row), text, _light(palette.of_label(blob.label)), letters)
                 return
 
-    def _draw_window(
-        self, image: Image, gaze: tuple[float, float], look: tuple[float, float]
-    ) -> None:
+    def _draw_window(self, image: Image, gaze: Sequence[float], look: Sequence[float]) -> None:
         """Draw the corners and the centre of a window around the commanded direction."""
         across, up = (2.0 * WINDOW * self._half_fov).tolist()
         for x in (-1.0, 1.0):
@@ -100,7 +102,7 @@ class CameraOverlay:
             for step in (np.array([arm, 0.0]), np.array([0.0, arm])):
                 _lines(image, [middle - step, middle + step], palette.VIEW)
 
-    def _pixel(self, gaze: tuple[float, float], pan: float, tilt: float) -> Array | None:
+    def _pixel(self, gaze: Sequence[float], pan: float, tilt: float) -> Array | None:
         """Return the pixel of a direction (2,), None behind the camera."""
         turn = pan - gaze[0]
         ahead, left = cos(tilt) * cos(turn), cos(tilt) * sin(turn)

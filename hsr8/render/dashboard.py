@@ -3,13 +3,13 @@
 from collections.abc import Sequence
 from dataclasses import dataclass
 from math import hypot
+from types import SimpleNamespace
 
 import numpy as np
 from numpy.typing import NDArray
 
 from hsr8.render.camera_overlay import CameraOverlay
 from hsr8.render.gaze_panel import GazePanel
-from hsr8.render.shown_frame import ShownFrame
 from hsr8.render.text import Image, draw_text, font_size, text_width
 from hsr8.render.timeline import Timeline
 from hsr8.render.top_down import TopDown
@@ -34,7 +34,7 @@ class DashboardFrame:
 
     Attributes:
         time: simulated time [s].
-        frame: latest camera frame.
+        frame: latest camera frame, see `hsr8.render.shown_frame`.
         movers: true positions (n, 2) [m].
         trail: true path of the robot so far (m, 2) [m].
         events: time [s] and kind of each event so far.
@@ -42,7 +42,7 @@ class DashboardFrame:
     """
 
     time: float
-    frame: ShownFrame
+    frame: SimpleNamespace
     movers: Array
     trail: Array
     events: Sequence[tuple[float, str]]
@@ -133,7 +133,7 @@ class Dashboard:
         frame = shown.frame
         collisions = sum(kind == "collision" for _, kind in shown.events)
         error = hypot(frame.pose[0] - frame.truth[0], frame.pose[1] - frame.truth[1])
-        vias = f"{frame.passed}" + ("" if self._vias is None else f" / {self._vias}")
+        vias = f"{frame.via_points}" + ("" if self._vias is None else f" / {self._vias}")
         speed = "time" if self._speed == 1.0 else f"time, {self._speed:g}x"
         numbers = [
             (speed, f"{shown.time:.1f} s"),

@@ -1,12 +1,13 @@
 """Panel with the gaze map GM, the gaze and the partial evaluations."""
 
+from collections.abc import Sequence
 from math import degrees
+from types import SimpleNamespace
 
 import cv2
 import numpy as np
 
 from hsr8.recorder import palette
-from hsr8.render.shown_frame import ShownFrame
 from hsr8.render.text import Image, draw_text, font_size
 
 PANEL, GROOVE = (28, 30, 34), (70, 74, 82)
@@ -37,7 +38,7 @@ class GazePanel:
         heat = cv2.applyColorMap(ramp, cv2.COLORMAP_INFERNO)[:, 0, ::-1]
         self._heat = np.ascontiguousarray(heat)
 
-    def draw(self, image: Image, corner: tuple[int, int], frame: ShownFrame) -> None:
+    def draw(self, image: Image, corner: tuple[int, int], frame: SimpleNamespace) -> None:
         """Draw into `image` (height, width, 3) with the upper left corner at `corner`."""
         left, top = corner
         width, height = self.size
@@ -46,25 +47,25 @@ class GazePanel:
         pad, base = self._pad, self._pad + self._letters - 1
         draw_text(panel, (pad, base), "gaze map", INK, self._letters, strong=True)
         draw_text(
-            panel, (width - pad, base), _described(frame.look), FAINT, self._letters, side="right"
+            panel, (width - pad, base), _described(frame.gaze), FAINT, self._letters, side="right"
         )
         self._draw_map(panel, frame)
         self._draw_evaluations(panel, frame)
 
-    def _draw_map(self, panel: Image, frame: ShownFrame) -> None:
+    def _draw_map(self, panel: Image, frame: SimpleNamespace) -> None:
         part = panel[self._top : self._top + self._map[1], self._pad : self._pad + self._map[0]]
         part[:] = self._heat[0]
         if frame.gaze_map is not None:
             shades = cv2.resize(frame.gaze_map, self._map, interpolation=cv2.INTER_NEAREST)
             part[:] = self._heat[shades]
-        current = self._pixel(frame.gaze)
+        current = self._pixel(frame.head)
         radius = max(2, self._map[1] // 14)
-        chosen = self._pixel(frame.look)
+        chosen = self._pixel(frame.gaze)
         cv2.line(panel, current, chosen, INK, 1, cv2.LINE_AA)
         cv2.circle(panel, chosen, radius + 2, palette.BELIEF, 2, cv2.LINE_AA)
         cv2.circle(panel, current, radius - 1, INK, -1, cv2.LINE_AA)
 
-    def _draw_evaluations(self, panel: Image, frame: ShownFrame) -> None:
+    def _draw_evaluations(self, panel: Image, frame: SimpleNamespace) -> None:
         """Draw a bar per evaluation below the map."""
         pad = self._pad
         row = self._top + self._map[1] + pad + self._letters
@@ -77,7 +78,7 @@ class GazePanel:
             groove[:] = GROOVE
             groove[:, : round(min(1.0, max(0.0, value)) * groove.shape[1])] = palette.VIEW
 
-    def _pixel(self, gaze: tuple[float, float]) -> tuple[int, int]:
+    def _pixel(self, gaze: Sequence[float]) -> tuple[int, int]:
         """Return column and row of a direction in the panel."""
         low, high = self._tilts
         u = (self._max_pan - gaze[0]) / (2.0 * self._max_pan)
@@ -87,7 +88,7 @@ class GazePanel:
         return column, self._top + round(v * (self._map[1] - 1))
 
 
-def _described(look: tuple[float, float]) -> str:
+def _described(look: Sequence[float]) -> str:
     pan, tilt = round(degrees(look[0])), round(degrees(look[1]))
     across = "left" if pan >= 0 else "right"
     return f"{abs(pan)}° {across}, {abs(tilt)}° {'up' if tilt > 0 else 'down'}"

@@ -3,6 +3,7 @@
 from bisect import bisect_right
 from collections.abc import Callable
 from contextlib import ExitStack, closing
+from types import SimpleNamespace
 from typing import Self
 
 import numpy as np
@@ -17,7 +18,7 @@ from hsr8.render.follow import FollowCamera
 from hsr8.render.motion import motion_of, rows_at
 from hsr8.render.push_arrows import SHOWN, Arrow, PushArrow, arrows_at, push_arrows
 from hsr8.render.scene_renderer import Image, SceneRenderer
-from hsr8.render.shown_frame import ShownFrame, shown_frames
+from hsr8.render.shown_frame import shown_frames
 from hsr8.render.timeline import Timeline
 from hsr8.render.top_down import TRAIL
 from hsr8.robots.loaded import load_robot
@@ -144,7 +145,7 @@ class RunImages:
         placed = self._place(renderer, int(self._rows[index]))
         return placed.draw(self._follow.at(index), self._arrows(index))
 
-    def _draw_camera(self, renderer: SceneRenderer, frame: ShownFrame) -> Image:
+    def _draw_camera(self, renderer: SceneRenderer, frame: SimpleNamespace) -> Image:
         """Draw the image of the head camera at the capture of a frame."""
         (row,) = rows_at(self._motion.time, [frame.captured]).tolist()
         return self._place(renderer, row).draw(HEAD_CAMERA)
@@ -175,7 +176,7 @@ class RunImages:
         camera = self._renderer("vision", board.camera_size, CAMERA_OVERSAMPLING)
         latest: tuple[float, Image] | None = None  # one camera image per frame
 
-        def camera_image(frame: ShownFrame) -> Image:
+        def camera_image(frame: SimpleNamespace) -> Image:
             nonlocal latest
             if latest is None or latest[0] != frame.captured:
                 latest = frame.captured, self._draw_camera(camera, frame)
@@ -188,7 +189,7 @@ class RunImages:
 
         return draw
 
-    def _dashboard_frame(self, index: int, frame: ShownFrame) -> DashboardFrame:
+    def _dashboard_frame(self, index: int, frame: SimpleNamespace) -> DashboardFrame:
         time, row = float(self._times[index]), int(self._rows[index])
         pushed = [p for p in self._pushes if 0.0 <= time - p.begin < SHOWN * self._speed]
         state = "lost" if frame.lost else frame.situation.replace("_", " ")

@@ -2,6 +2,7 @@
 
 from collections.abc import Sequence
 from math import cos, pi, sin
+from types import SimpleNamespace
 
 import cv2
 import numpy as np
@@ -9,7 +10,6 @@ from numpy.typing import NDArray
 
 from hsr8.recorder import ellipse, palette
 from hsr8.render.canvas import Canvas
-from hsr8.render.shown_frame import ShownFrame, ShownTrack
 from hsr8.render.text import Image, draw_text, font_size
 from hsr8.world.field.layout import Layout
 
@@ -59,11 +59,11 @@ class TopDown:
             self._ground.disc(obstacle.position, obstacle.radius, SHADE)
             self._ground.ring(obstacle.position, obstacle.radius, INK, self._width)
 
-    def draw(self, frame: ShownFrame, movers: Array, trail: Array) -> Image:
+    def draw(self, frame: SimpleNamespace, movers: Array, trail: Array) -> Image:
         """Return the map at one camera frame.
 
         Args:
-            frame: belief and decisions.
+            frame: belief and decisions, see `hsr8.render.shown_frame`.
             movers: true positions (n, 2) [m].
             trail: true path of the robot so far (m, 2) [m].
 
@@ -78,14 +78,14 @@ class TopDown:
             self._draw_track(canvas, track)
         for obstacle, position in zip(self._layout.movers, movers.tolist(), strict=True):
             canvas.ring(position, obstacle.radius, INK, width)
-        for x, y, radius in frame.virtual_obstacles:
-            canvas.ring((x, y), radius, palette.VIRTUAL, width)
-        self._draw_waypoints(canvas, frame.passed)
+        for virtual in frame.virtual_obstacles:
+            canvas.ring(virtual.position, virtual.radius, palette.VIRTUAL, width)
+        self._draw_waypoints(canvas, frame.via_points)
         canvas.line((frame.pose[:2], frame.target), palette.TARGET, width)
         canvas.disc(frame.target, POINT * self._scale, palette.TARGET)
         canvas.area(_robot(frame.pose, self._scale), palette.BELIEF)
         canvas.line(_robot(frame.truth, self._scale), INK, width, closed=True)
-        self._draw_covariance(canvas, frame.pose[:2], frame.covariance)
+        self._draw_covariance(canvas, frame.pose[:2], frame.pose_covariance)
         shown: Image = cv2.resize(canvas.image, self._size, interpolation=cv2.INTER_AREA)
         return shown
 
@@ -100,21 +100,22 @@ class TopDown:
             corner = (u + self._letters // 2, v - self._letters // 2)
             draw_text(canvas.image, corner, str(number + 1), NUMBER, self._letters, strong=True)
 
-    def _draw_track(self, canvas: Canvas, track: ShownTrack) -> None:
+    def _draw_track(self, canvas: Canvas, track: SimpleNamespace) -> None:
         strong = palette.of_label(track.label)
         pale = tuple((channel + 2 * 246) // 3 for channel in strong)
         canvas.disc(track.position, track.radius, strong if track.visible else pale)
         canvas.ring(track.position, track.radius, strong, self._width)
-        if SIGMAS**2 * (track.covariance[0] + track.covariance[2]) > track.radius**2:
+        if SIGMAS**2 * (track.covariance[0][0] + track.covariance[1][1]) > track.radius**2:
             self._draw_covariance(canvas, track.position, track.covariance)
         if track.motion != "static":
             tip = np.add(track.position, VELOCITY * np.array(track.velocity))
             canvas.line((track.position, tip), palette.BELIEF, self._width)
 
     def _draw_covariance(
-        self, canvas: Canvas, at: Sequence[float], covariance: tuple[float, float, float]
+        self, canvas: Canvas, at: Sequence[float], covariance: Sequence[Sequence[float]]
     ) -> None:
-        xx, xy, yy = covariance
+        """Draw the position part of a covariance (k, k)."""
+        (xx, xy), (_, yy) = covariance[0][:2], covariance[1][:2]
         if xx + yy < (MAX_SIGMA * self._scale) ** 2:
             half, direction = ellipse.axes(np.array([[[xx, xy], [xy, yy]]]))
             canvas.ellipse(at, SIGMAS * half[0], float(direction[0]), palette.BELIEF, self._width)
@@ -127,11 +128,11 @@ def _robot(pose: Sequence[float], scale: float) -> list[tuple[float, float]]:
     return [(x + c * u - s * v, y + s * u + c * v) for u, v in ROBOT]
 
 
-def _view(frame: ShownFrame, scale: float) -> Array:
+def _view(frame: SimpleNamespace, scale: float) -> Array:
     """Return the outline of the field of view in W [m]."""
     x, y, yaw = frame.pose
-    half = min(0.5 * frame.fov, pi)
-    angles = yaw + frame.gaze[0] + half * np.linspace(-1.0, 1.0, 12)
+    half = min(0.5 * frame.fov[0], pi)
+    angles = yaw + frame.head[0] + half * np.linspace(-1.0, 1.0, 12)
     reach = VIEW_RANGE * scale
     rim = np.column_stack([x + reach * np.cos(angles), y + reach * np.sin(angles)])
     return np.vstack([[x, y], rim])

@@ -169,6 +169,21 @@ def test_attributes_are_the_inverse_of_the_columns_at_every_path(tmp_path):
     assert pairs == [{"left": row.pair.left, "right": row.pair.right} for row in content]
 
 
+def test_rows_are_objects_of_plain_values(tmp_path):
+    content = rows(9)
+    table = read_table(written(tmp_path, content), THING, whole=True)
+    chosen = [8, 1, 5]
+    objects = table.take(np.array(chosen)).objects("time", "angle", "parts.name", "guess")
+    assert [{*vars(thing)} for thing in objects] == 3 * [{"time", "angle", "parts", "guess"}]
+    for thing, k in zip(objects, chosen, strict=True):
+        assert (thing.time, thing.angle) == (content[k].time, content[k].angle.tolist())
+        assert [vars(part) for part in thing.parts] == [{"name": p.name} for p in content[k].parts]
+    (first, *_) = table.objects()
+    assert {*vars(first)} == {*table}
+    with pytest.raises(UsageError, match="unknown column 'tim'"):
+        table.objects("tim")
+
+
 def test_a_table_cut_off_at_any_byte_keeps_its_whole_batches(tmp_path):
     content = rows(21)
     file = written(tmp_path, content)

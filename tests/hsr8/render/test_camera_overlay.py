@@ -1,4 +1,4 @@
-from dataclasses import replace
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -6,11 +6,11 @@ import pytest
 from hsr8.recorder import palette
 from hsr8.render import camera_overlay
 from hsr8.render.camera_overlay import CameraOverlay
-from hsr8.render.shown_frame import Box, shown_frame
+from hsr8.render.shown_frame import shown_frame
 
 FOV = np.radians(60.0)
 FOCAL = 120.0 / np.tan(FOV / 2)  # of a image 240 pixels high
-AWAY = {"gaze": (1.5, 0.0), "look": (-1.5, 0.0)}  # chosen behind the camera: no window is drawn
+AWAY = {"head": (1.5, 0.0), "gaze": (-1.5, 0.0)}  # chosen behind the camera: no window is drawn
 
 
 @pytest.fixture
@@ -19,7 +19,7 @@ def summary(fake):
     shown = shown_frame(frame, np.zeros(3))
 
     def changed(**change):
-        return replace(shown, **change)
+        return SimpleNamespace(**vars(shown) | change)
 
     return changed
 
@@ -43,7 +43,7 @@ def _cross(image):
 
 @pytest.mark.parametrize("tilt", [0.0, -0.1])
 def test_the_window_of_a_reached_gaze_is_centred(summary, tilt):
-    frame = summary(boxes=(), gaze=(0.2, tilt), look=(0.2, tilt))
+    frame = summary(detections=(), head=(0.2, tilt), gaze=(0.2, tilt))
     image = _drawn(frame)
     rows, columns = _strokes(image)
     assert 0.5 * (columns.min() + columns.max()) == pytest.approx(160, abs=1)
@@ -52,14 +52,14 @@ def test_the_window_of_a_reached_gaze_is_centred(summary, tilt):
 
 
 def test_the_window_follows_the_pinhole_projection(summary):
-    left = _cross(_drawn(summary(boxes=(), gaze=(0.0, 0.0), look=(0.1, 0.0))))
+    left = _cross(_drawn(summary(detections=(), head=(0.0, 0.0), gaze=(0.1, 0.0))))
     assert left[0] == pytest.approx(160 - FOCAL * np.tan(0.1), abs=4)
-    up = _cross(_drawn(summary(boxes=(), gaze=(0.0, 0.0), look=(0.0, 0.1))))
+    up = _cross(_drawn(summary(detections=(), head=(0.0, 0.0), gaze=(0.0, 0.1))))
     assert up[1] == pytest.approx(120 - FOCAL * np.tan(0.1), abs=4)
 
 
 def test_a_gaze_behind_the_camera_is_not_drawn(summary):
-    assert not _drawn(summary(boxes=(), **AWAY)).any()
+    assert not _drawn(summary(detections=(), **AWAY)).any()
 
 
 @pytest.mark.parametrize("scale", [1, 2])
@@ -100,8 +100,8 @@ def test_distances_do_not_overlap(summary, seed):
         left, top = rng.integers(0, (280, 200))
         width, height = rng.integers(6, (40, 60))
         box = (int(left), int(top), int(left + width), int(top + height))
-        blobs.append(Box("red", box, 0.5 + 0.25 * number))
-    tags = _tags(summary(boxes=tuple(blobs), **AWAY))
+        blobs.append(SimpleNamespace(label="red", box=box, distance=0.5 + 0.25 * number))
+    tags = _tags(summary(detections=tuple(blobs), **AWAY))
     assert 1 <= len(tags) <= len(blobs)
     for k, (_, left, top, right, bottom) in enumerate(tags):
         assert 0 <= top < bottom <= 480
@@ -112,8 +112,9 @@ def test_distances_do_not_overlap(summary, seed):
 
 
 def test_the_nearest_detections_show_their_distance(summary):
-    same = [Box("red", (100, 80, 140, 160), distance) for distance in (3.0, 0.7, 2.0, 1.5)]
-    assert [text for text, *_ in _tags(summary(boxes=tuple(same), **AWAY))] == [
+    box = (100, 80, 140, 160)
+    same = [SimpleNamespace(label="red", box=box, distance=d) for d in (3.0, 0.7, 2.0, 1.5)]
+    assert [text for text, *_ in _tags(summary(detections=tuple(same), **AWAY))] == [
         "0.70 m",
         "1.50 m",
     ]

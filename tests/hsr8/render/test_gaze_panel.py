@@ -1,4 +1,4 @@
-from dataclasses import replace
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -22,6 +22,10 @@ def _drawn(frame):
     return image, panel
 
 
+def replaced(frame, **change):
+    return SimpleNamespace(**vars(frame) | change)
+
+
 def _chosen(image):
     rows, columns = np.nonzero((image == palette.BELIEF).all(axis=-1))
     return columns.mean(), rows.mean()
@@ -36,23 +40,23 @@ def test_the_panel_stays_within_its_rectangle(frame):
 
 
 def test_left_and_up_of_the_head_are_left_and_up(frame):
-    middle = _chosen(_drawn(replace(frame, look=(0.0, -0.35)))[0])
-    left = _chosen(_drawn(replace(frame, look=(0.8, -0.35)))[0])
-    up = _chosen(_drawn(replace(frame, look=(0.0, 0.1)))[0])
+    middle = _chosen(_drawn(replaced(frame, gaze=(0.0, -0.35)))[0])
+    left = _chosen(_drawn(replaced(frame, gaze=(0.8, -0.35)))[0])
+    up = _chosen(_drawn(replaced(frame, gaze=(0.0, 0.1)))[0])
     assert middle[0] == pytest.approx(180, abs=2)
     assert left[0] < middle[0] - 50
     assert up[1] < middle[1] - 20
 
 
 def test_a_gaze_beyond_the_map_is_drawn_at_its_rim(frame):
-    far = _chosen(_drawn(replace(frame, look=(3.0, -0.35)))[0])
-    rim = _chosen(_drawn(replace(frame, look=(PAN, -0.35)))[0])
+    far = _chosen(_drawn(replaced(frame, gaze=(3.0, -0.35)))[0])
+    rim = _chosen(_drawn(replaced(frame, gaze=(PAN, -0.35)))[0])
     assert far == pytest.approx(rim)
 
 
 def test_evaluations_are_bars_of_proportional_length(frame):
     def filled(psi):
-        image = _drawn(replace(frame, psi=psi))[0]
+        image = _drawn(replaced(frame, psi=psi))[0]
         return int((image == palette.VIEW).all(axis=-1).sum())
 
     full = filled((1.0, 1.0, 1.0, 1.0))

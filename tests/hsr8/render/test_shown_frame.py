@@ -47,7 +47,7 @@ def test_frames_do_not_depend_on_the_other_times(run):
     for time in run.frames["time"][::7].tolist():
         (alone,) = shown_frames(run, np.array([time]))
         assert np.array_equal(alone.gaze_map, every[time].gaze_map)
-        assert (alone.tracks, alone.boxes) == (every[time].tracks, every[time].boxes)
+        assert (alone.tracks, alone.detections) == (every[time].tracks, every[time].detections)
         assert (alone.pose, alone.truth) == (every[time].pose, every[time].truth)
 
 
