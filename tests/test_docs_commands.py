@@ -171,7 +171,7 @@ def hsr8(words, capsys):
 def python(words, monkeypatch):
     """Run a program of the page; let one of the repository read its arguments."""
     if words[1] == "-m":
-        assert words[2].split(".")[0] in ("hsr8", "mujoco"), words
+        assert words[2].split(".")[0] in ("hsr8", "mujoco", "pdb", "pytest"), words
         return
     own = Path(words[1]).exists()
     path = Path(words[1]).resolve() if own else ROOT / words[1]
