@@ -12,7 +12,7 @@ export PYTHONDONTWRITEBYTECODE :=
 XDIST ?= -n 2 --dist loadfile
 
 .DEFAULT_GOAL := help
-.PHONY: help setup run test test-all interpreters lint types layers fix lock build clean
+.PHONY: help setup run test test-all interpreters benchmarks docs lint types layers fix lock build clean
 
 help:  ## list of targets
 	@awk 'BEGIN {FS = ":.*## "} /^[a-z-]+:.*## / {printf "  make %-13s %s\n", $$1, $$2}' $(MAKEFILE_LIST)
@@ -32,6 +32,14 @@ test-all: setup  ## all tests, including the slow studies
 interpreters: setup  ## system tests, runs and exports with every further supported Python found here
 	@$(PY) scripts/check_interpreters.py
 
+benchmarks: setup  ## results, about four hours, resumable: make benchmarks ONLY="gaze planners"
+	@$(PY) scripts/benchmarks.py $(if $(ONLY),--only $(ONLY)) $(ARGS)
+
+docs: setup  ## the manual in build/docs (installs Sphinx the first time)
+	@$(PY) -c "import furo, myst_parser" 2>/dev/null || $(PY) -m pip install -qq --disable-pip-version-check --no-build-isolation --editable ".[docs]"
+	@$(PY) -m sphinx --builder html --fail-on-warning --keep-going --quiet docs build/docs
+	@echo ":: build/docs/README.html"
+
 lint: setup  ## ruff: style and formatting
 	@$(PY) -m ruff check $(SOURCES)
 	@$(PY) -m ruff format --check $(SOURCES)
@@ -42,11 +50,12 @@ types: setup  ## mypy, strict
 layers: setup  ## import rules
 	@.venv/bin/lint-imports --no-logo
 
-fix: setup  ## ruff fixes and formatting; regenerate docs/scenarios.md and docs/data.md
+fix: setup  ## ruff fixes and formatting; regenerate docs/scenarios.md, data.md and metrics.md
 	@$(PY) -m ruff check --fix $(SOURCES)
 	@$(PY) -m ruff format $(SOURCES)
 	@$(PY) scripts/write_scenario_reference.py
 	@$(PY) scripts/write_data_reference.py
+	@$(PY) scripts/write_metric_reference.py
 
 lock:  ## resolve the dependencies into requirements.lock (needs the network)
 	@bash scripts/lock.sh $(ARGS)

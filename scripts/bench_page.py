@@ -1,4 +1,4 @@
-"""Collect entries of ``hsr8 bench`` and write their table into ``docs/bench.md``.
+"""Collect entries of ``hsr8 bench`` and write their table into ``docs/results/bench/README.md``.
 
     python scripts/bench_page.py bench
 
@@ -20,7 +20,7 @@ from hsr8.files import atomic
 from study_page import RESULTS
 
 ENTRIES = RESULTS / "bench"
-PAGE = RESULTS.parent / "bench.md"
+PAGE = ENTRIES / "README.md"
 BEGIN = "<!-- written by scripts/bench_page.py -->"
 END = "<!-- end -->"
 FIRST = "default"

@@ -1,6 +1,6 @@
 """Load curve: success and SPT of gazes over four cameras, from the rows of `gaze_study.py`.
 
-    python scripts/camera_figure.py --rows ideal=ideal.jsonl honest=honest.jsonl --out load.png
+    python scripts/camera_figure.py --rows ideal=ideal.jsonl narrow=narrow.jsonl --out load.png
 
 Every file holds the same arms on the same worlds under one camera; the order of the files is that
 of the axis. Bars are 95 % intervals: Wilson's for successes, of the mean for SPT.

@@ -61,7 +61,7 @@ PAPERS = {
 }
 TABLES = {"gazes": GAZES, "blind": _blind(), "bounds": BOUNDS, "paper": PAPERS}
 CAMERAS = {
-    "honest": (),
+    "realistic": (),
     "ideal": ("camera.preset=ideal",),
     "slow-wide": ("camera.vertical_fov_deg=70.0",),
     "narrow": (

@@ -130,7 +130,7 @@ def parse() -> argparse.Namespace:
     add_seeds(parser, range(10))
     parser.add_argument("--loop", choices=("fast", "kinematic", "full"), default="fast")
     parser.add_argument("--exact", action="store_true", help="perfect sensing, fast loop only")
-    parser.add_argument("--camera", choices=sorted(CAMERAS), default="honest")
+    parser.add_argument("--camera", choices=sorted(CAMERAS), default="realistic")
     parser.add_argument("--table", choices=sorted(TABLES), default="gazes")
     parser.add_argument("--only", nargs="*", help="of the table's arms only these")
     parser.add_argument("--arm", nargs="*", default=[], help="more arms: NAME:KEY=VALUE,KEY=VALUE")

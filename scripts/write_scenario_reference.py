@@ -94,10 +94,12 @@ class ReferencePage:
             title = f"`[[{name}]]`" if many else f"`[{name}]`" if name else "Top level"
             yield from ("", f"## {title}", "", text.split("\n\n")[0].replace("\n", " "), "")
             yield from rows
-        if values:
-            yield from _HEADER
-        for key, value in values.items():
-            yield self._row(name, key, value, key in required)
+        lines = {key: self._row(name, key, value, key in required) for key, value in values.items()}
+        basic = [key for key in lines if f"{name}.{key}".lstrip(".") in BASIC]
+        if basic:
+            yield from (f"Basic keys, above: {', '.join(f'`{key}`' for key in basic)}.", "")
+        others = [line for key, line in lines.items() if key not in basic]
+        yield from [*_HEADER, *others] if others else ()
         for key, value in properties.items():
             if key != "constants":  # see the introduction
                 yield from self._section((*path, key), value)

@@ -95,7 +95,7 @@ def test_the_user_is_not_root_and_can_write_the_kernels():
 
 
 @pytest.mark.parametrize(
-    "line", re.findall(r"^docker .*", (ROOT / "docs/docker.md").read_text(), re.M)
+    "line", re.findall(r"^docker .*", (ROOT / "docs/install.md").read_text(), re.M)
 )
 def test_the_page_has_valid_commands(line):
     arguments = shlex.split(line, comments=True)

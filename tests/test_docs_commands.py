@@ -171,7 +171,8 @@ def hsr8(words, capsys):
 def python(words, monkeypatch):
     """Run a program of the page; let one of the repository read its arguments."""
     if words[1] == "-m":
-        assert words[2].split(".")[0] in ("hsr8", "mujoco", "pdb", "pytest"), words
+        module = words[4] if words[2] == "pdb" else words[2]
+        assert module.split(".")[0] in ("hsr8", "mujoco", "pytest"), words
         return
     own = Path(words[1]).exists()
     path = Path(words[1]).resolve() if own else ROOT / words[1]
@@ -203,7 +204,7 @@ def others(words):
     """What other programs can be asked for: a command of theirs, and our extras."""
     if words[:2] == ["pip", "install"]:
         project = tomllib.loads((ROOT / "pyproject.toml").read_text())["project"]
-        for extra in re.findall(r"^hsr8\[(\w+)\]", words[-1]):
+        for extra in re.findall(r"^\.\[(\w+)\]", words[-1]):
             assert extra in project["optional-dependencies"]
     assert words[0] in OTHERS, f"{shlex.join(words)}: say in {__name__} how this is executed"
 
@@ -302,7 +303,7 @@ def test_every_command_of_the_page_works(page, stand_ins, capsys, monkeypatch):
         "python scripts/no_such_study.py",
         "make coffee",
         "bash scripts/no_such.sh",
-        'pip install "hsr8[tea]"',
+        "pip install '.[tea]'",
         "frobnicate",
     ],
 )

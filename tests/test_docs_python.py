@@ -8,7 +8,7 @@ import pytest
 DOCS = Path(__file__).parents[1] / "docs"
 EXAMPLES = [
     pytest.param(code, id=f"{page.name}-{k}")
-    for page in (DOCS / f"{name}.md" for name in ("python", "gym", "log", "data", "worlds"))
+    for page in (DOCS / f"{name}.md" for name in ("python", "gym", "data", "crowds"))
     for k, code in enumerate(re.findall(r"```python\n(.*?)```", page.read_text(), re.S))
     if not re.search(r"^(?:import|from) (?:pandas|duckdb|evo)", code, re.M)
 ]

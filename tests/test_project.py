@@ -8,7 +8,6 @@ from pathlib import Path
 import pytest
 
 import hsr8
-from hsr8.scenario.loader import loads
 
 ROOT = Path(__file__).parents[1]
 PROJECT = tomllib.loads((ROOT / "pyproject.toml").read_text())
@@ -63,10 +62,3 @@ def test_make_alone_lists_every_target() -> None:
 )
 def test_shell_script_parses(script: Path) -> None:
     subprocess.run(["bash", "-n", script], check=True)
-
-
-def test_scenarios_in_the_readme_are_valid() -> None:
-    examples = re.findall(r"^```toml\n(.*?)^```", (ROOT / "README.md").read_text(), re.M | re.S)
-    assert examples
-    for text in examples:
-        assert loads(text).description

@@ -1,4 +1,4 @@
-"""Learned gaze: PPO for 20 minutes on two cores; extra hsr8[train].
+"""Learned gaze: PPO for 20 minutes on two cores; extra `train`.
 
 python examples/gym/ppo_gaze.py
 """

@@ -276,7 +276,7 @@ class Export:
     runs: Positional[Annotated[tuple[Path, ...], arg(metavar="RUN", help_behavior_hint="")]] = ()
     """Run folder, or a parent folder for its newest run."""
     bag: Annotated[File, arg(metavar="DIR")] = None
-    """New rosbag2 folder of the run (MCAP); needs hsr8[ros]."""
+    """New rosbag2 folder of the run (MCAP); needs the extra `ros`."""
     csv: Annotated[File, arg(metavar="DIR")] = None
     """New folder of CSV files, one per table, with units in columns.csv."""
     lerobot: Annotated[File, arg(metavar="DIR")] = None

@@ -106,7 +106,7 @@ def require_rosbags() -> tuple[Any, Messages]:
         from rosbags import rosbag2  # noqa: PLC0415
         from rosbags.typesys import Stores, get_typestore  # noqa: PLC0415
     except ImportError as error:
-        raise UsageError(f"--bag: {error}; install hsr8[ros]") from error
+        raise UsageError(f"--bag: {error}; pip install '.[ros]' in the checkout") from error
     return rosbag2, Messages(get_typestore(Stores.ROS2_JAZZY))
 
 

@@ -1,4 +1,4 @@
-"""Gymnasium environments in which a policy decides gaze, motion or both; extra ``hsr8[gym]``.
+"""Gymnasium environments in which a policy decides gaze, motion or both; extra ``gym``.
 
     import hsr8  # before NumPy
     import gymnasium
@@ -12,7 +12,7 @@ see ``docs/gym.md``.
 try:
     import gymnasium
 except ImportError as error:
-    raise ImportError(f"hsr8.gym: {error}; install hsr8[gym]") from error
+    raise ImportError(f"hsr8.gym: {error}; pip install '.[gym]' in the checkout") from error
 
 from hsr8.gym.environment import Environment
 from hsr8.gym.policy import as_gaze, as_planner

@@ -10,9 +10,10 @@ from numpy.typing import NDArray
 
 from hsr8.render.camera_overlay import CameraOverlay
 from hsr8.render.gaze_panel import GazePanel
+from hsr8.render.legend import Legend
 from hsr8.render.text import Image, draw_text, font_size, text_width
 from hsr8.render.timeline import Timeline
-from hsr8.render.top_down import TopDown
+from hsr8.render.top_down import PAPER, TopDown
 from hsr8.scenario.schema import Scenario
 from hsr8.world.field.layout import Layout
 
@@ -21,11 +22,11 @@ Size = tuple[int, int]
 
 REFERENCE = 720  # image height to which the lengths below apply [pixel]
 GAP, BAR, MARGIN, PANEL = 4, 54, 14, 270  # [pixel]
-VALUE, NAME, TITLE = 20, 13, 14  # font sizes [pixel]
+VALUE, NAME, TITLE, LEGEND = 20, 13, 14, 13  # font sizes [pixel]
 FRAME, BAND = (18, 19, 22), (28, 30, 34)
 INK, FAINT, ALARM = (238, 239, 241), (150, 155, 164), (255, 130, 90)
 MIN_PANEL = 120  # width of a legible gaze map [pixel]
-MIN_NAMED = 40  # height of a band with room for names above its values [pixel]
+MIN_NAMED = 33  # height of a band with room for names above its values [pixel]
 
 
 @dataclass(frozen=True, slots=True)
@@ -80,13 +81,20 @@ class Dashboard:
         self._overlay = CameraOverlay(
             (camera.width, camera.height), self.camera_size, camera.vertical_fov
         )
-        self._above = TopDown(layout, (side, height - self._below))
+        self._named = self._bar >= MIN_NAMED
+        self._legend = Legend(side, LEGEND * unit)
+        room = self._legend.height if self._named else 0
+        self._above = TopDown(layout, (side, height - self._below - room))
         self._timeline = timeline
         gaze = scenario.navigation.gaze
         panel = round(PANEL * unit)
         self._panel = GazePanel(max(panel, 64), gaze.max_pan, (gaze.min_tilt, gaze.max_tilt))
         self._with_panel = panel >= MIN_PANEL and panel < self.scene_size[0]
         self._background: Image = np.full((height, width, 3), FRAME, np.uint8)
+        if self._named:
+            below = self._background[height - self._legend.height :, self._left :]
+            below[:] = PAPER
+            self._legend.draw(below)
 
     def draw(self, scene: Image, camera: Image, shown: DashboardFrame) -> Image:
         """Return a new image (height, width, 3).
@@ -102,7 +110,8 @@ class Dashboard:
         part = image[: self.camera_size[1], self._left :]
         part[:] = camera
         self._overlay.draw(part, frame)
-        image[self._below :, self._left :] = self._above.draw(frame, shown.movers, shown.trail)
+        above = self._above.draw(frame, shown.movers, shown.trail)
+        image[self._below : self._below + len(above), self._left :] = above
         if self._with_panel:
             margin = round(MARGIN * self._unit)
             corner = margin, height - margin - self._panel.size[1]
@@ -115,7 +124,7 @@ class Dashboard:
         return image
 
     def _draw_titles(self, image: Image) -> None:
-        if self._bar < MIN_NAMED:
+        if not self._named:
             return
         letters, pad = font_size(TITLE * self._unit), round(8 * self._unit)
         column = self._left + pad
@@ -125,8 +134,6 @@ class Dashboard:
         draw_text(image, (column, row), "head camera", INK, letters, strong=True)
         row = self._below + pad + letters
         draw_text(image, (column, row), "belief", BAND, letters, strong=True)
-        legend, right = "filled: believed    outlined: true", self._size[0] - pad
-        draw_text(image, (right, row), legend, BAND, letters - 2, side="right")
 
     def _draw_values(self, band: Image, shown: DashboardFrame) -> None:
         """Draw a line of values, each under its name."""
@@ -143,7 +150,7 @@ class Dashboard:
             ("collisions", f"{collisions}"),
             ("state", shown.state),
         ]
-        named = self._bar >= MIN_NAMED
+        named = self._named
         letters, names = font_size(VALUE * self._unit), font_size(NAME * self._unit)
         pad = round(MARGIN * self._unit)
         base = round(0.78 * self._bar) if named else (self._bar + letters) // 2 - 2

@@ -1,4 +1,4 @@
-"""Panel with the gaze map GM, the gaze and the partial evaluations."""
+"""Panel with the value of every gaze, the chosen gaze and the partial evaluations."""
 
 from collections.abc import Sequence
 from math import degrees
@@ -14,7 +14,7 @@ PANEL, GROOVE = (28, 30, 34), (70, 74, 82)
 INK, FAINT = (238, 239, 241), (164, 168, 176)
 OPACITY = 0.86
 MAX_RATIO = 1.0  # height to width of the map, which is narrow for a camera that does not pan
-EVALUATIONS = ("ψ lm", "ψ sf", "ψ ob", "ψ way")  # local map, self, obstacles, way
+EVALUATIONS = ("ground", "pose", "obstacle", "path")  # reasons to look: ψ_lm, ψ_sf, ψ_ob, ψ_way
 
 
 class GazePanel:
@@ -45,7 +45,7 @@ class GazePanel:
         panel = image[top : top + height, left : left + width]
         panel[:] = cv2.addWeighted(panel, 1.0 - OPACITY, np.full_like(panel, PANEL), OPACITY, 0.0)
         pad, base = self._pad, self._pad + self._letters - 1
-        draw_text(panel, (pad, base), "gaze map", INK, self._letters, strong=True)
+        draw_text(panel, (pad, base), "value of gazes", INK, self._letters, strong=True)
         draw_text(
             panel, (width - pad, base), _described(frame.gaze), FAINT, self._letters, side="right"
         )

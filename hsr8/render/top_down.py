@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from hsr8.recorder import ellipse, palette
 from hsr8.render.canvas import Canvas
-from hsr8.render.text import Image, draw_text, font_size
+from hsr8.render.text import Color, Image, draw_text, font_size
 from hsr8.world.field.layout import Layout
 
 Array = NDArray[np.float64]
@@ -102,8 +102,7 @@ class TopDown:
 
     def _draw_track(self, canvas: Canvas, track: SimpleNamespace) -> None:
         strong = palette.of_label(track.label)
-        pale = tuple((channel + 2 * 246) // 3 for channel in strong)
-        canvas.disc(track.position, track.radius, strong if track.visible else pale)
+        canvas.disc(track.position, track.radius, strong if track.visible else pale(strong))
         canvas.ring(track.position, track.radius, strong, self._width)
         if SIGMAS**2 * (track.covariance[0][0] + track.covariance[1][1]) > track.radius**2:
             self._draw_covariance(canvas, track.position, track.covariance)
@@ -119,6 +118,11 @@ class TopDown:
         if xx + yy < (MAX_SIGMA * self._scale) ** 2:
             half, direction = ellipse.axes(np.array([[[xx, xy], [xy, yy]]]))
             canvas.ellipse(at, SIGMAS * half[0], float(direction[0]), palette.BELIEF, self._width)
+
+
+def pale(color: Color) -> Color:
+    """Return the colour of a track that is out of view."""
+    return tuple((channel + 2 * 246) // 3 for channel in color)
 
 
 def _robot(pose: Sequence[float], scale: float) -> list[tuple[float, float]]:

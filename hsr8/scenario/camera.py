@@ -12,7 +12,7 @@ IDEAL = {
     "camera": {"vertical_fov_deg": 70.0, "blind_above": 10_000.0},
     "walking": {"head": {"max_rate": 6.0, "max_acceleration": 60.0}},
 }
-"""Values of the ideal camera and neck; the defaults are those of the honest camera."""
+"""Values of the ideal camera and neck; the defaults are those of the realistic camera."""
 
 DelayMs = Annotated[int, Interval(ge=0, le=500), MultipleOf(CONTROL_PERIOD_MS)]
 
@@ -45,13 +45,13 @@ class Camera(Section):
         ),
     ] = "rendered"
     preset: Annotated[
-        Literal["honest", "ideal"],
+        Literal["realistic", "ideal"],
         doc(
-            "honest: camera and neck like those of small humanoids; ideal: 86 x 70 deg, a neck of "
-            "6 rad/s, every image sharp. Sets vertical_fov_deg, blind_above and walking.head; "
+            "realistic: camera and neck like those of small humanoids; ideal: 86 x 70 deg, a neck "
+            "of 6 rad/s, every image sharp. Sets vertical_fov_deg, blind_above and walking.head; "
             "other given values, and those of a robot's description, take precedence."
         ),
-    ] = "honest"
+    ] = "realistic"
     width: Annotated[int, Interval(ge=32, le=1920), doc("Image width [pixel].")] = 320
     height: Annotated[int, Interval(ge=24, le=1080), doc("Image height [pixel].")] = 240
     vertical_fov_deg: Annotated[

@@ -87,5 +87,5 @@ def test_without_entries_or_of_two_suites_there_is_no_table(page, tmp_path, caps
 
 
 def test_the_page_of_the_project_has_the_markers():
-    text = (bench_page.RESULTS.parent / "bench.md").read_text()
+    text = bench_page.PAGE.read_text()
     assert 0 < text.index(bench_page.BEGIN) < text.index(bench_page.END)

@@ -1,4 +1,4 @@
-"""Runs on the workers of a Dask cluster; requires the extra ``hsr8[dask]``."""
+"""Runs on the workers of a Dask cluster; requires the extra ``dask``."""
 
 import pickle
 import socket
@@ -58,7 +58,7 @@ class DaskExecutor:
             from distributed import Client  # noqa: PLC0415  an extra
         except ImportError as error:
             raise UsageError(
-                f'{option}: package {error.name} is missing; pip install "hsr8[dask]"'
+                f"{option}: package {error.name} is missing; pip install '.[dask]' in the checkout"
             ) from None
         host, _, port = address.rpartition(":")
         try:

@@ -24,6 +24,7 @@ FLAT = 0.004  # their thickness [m]
 PARTICLE, PARTICLE_WEIGHTS = 0.025, (0.2, 4.0)  # drawn radius [m], range of relative weights
 MAX_SIGMA = 0.5  # of a drawn ellipse [m]
 SEEN, UNSEEN = 255, 160  # opacity of tracks in view and out of it
+MAP_OPACITY = 0.7  # opacity of ground in view [1]
 
 
 class BeliefLayer:
@@ -154,7 +155,9 @@ class BeliefLayer:
         for time, cells, origin in zip(frames["time"].tolist(), maps, origins, strict=True):
             # The first row of an image is its top, the first row of the map its minimum y.
             self._map.add(
-                time, data=[cells[::-1].ravel()], translation=np.array([[*origin, MAP_HEIGHT]])
+                time,
+                data=[_seen_ground(cells[::-1])],
+                translation=np.array([[*origin, MAP_HEIGHT]]),
             )
 
     @staticmethod
@@ -190,13 +193,20 @@ def _map_style(cell: float, shape: tuple[int, ...]) -> rr.GridMap:
         format=rr.components.ImageFormat(
             width=shape[1],
             height=shape[0],
-            color_model=rr.ColorModel.L,
+            color_model=rr.ColorModel.RGBA,
             channel_datatype=rr.ChannelDatatype.U8,
         ),
         cell_size=cell,
-        opacity=0.35,
-        colormap=rr.components.Colormap.Grayscale,
+        opacity=0.99,  # below one, so that the viewer blends the pixels
     )
+
+
+def _seen_ground(cells: NDArray[np.uint8]) -> NDArray[np.uint8]:
+    """Return the pixels of a map (4 n,): white, as opaque as the ground is confident."""
+    pixels = np.empty((cells.size, 4), np.uint8)
+    pixels[:, :3] = 255
+    pixels[:, 3] = MAP_OPACITY * cells.ravel()
+    return pixels.ravel()
 
 
 def _wedges(frames: Table, scale: float = 1.0) -> Array:

@@ -162,7 +162,7 @@ def _overview(field_size: float, images: bool, view: RobotView) -> rrb.Container
         ),
     )
     camera = rrb.Spatial2DView(name="Head camera", origin="/world/camera")
-    gaze = rrb.Spatial2DView(name="Gaze map GM", origin="/gaze")
+    gaze = rrb.Spatial2DView(name="Value of gazes", origin="/gaze")
     states = rrb.StateTimelineView(name="States", origin="/state")
     curves = rrb.Tabs(
         *(

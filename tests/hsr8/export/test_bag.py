@@ -189,6 +189,6 @@ def test_a_folder_that_exists_is_kept(run, bag, tmp_path, capsys):
 def test_without_rosbags_the_extra_is_named(run, tmp_path, monkeypatch, capsys):
     monkeypatch.setitem(sys.modules, "rosbags", None)
     assert entry(["export", str(run.path), "--bag", str(tmp_path / "bag")]) == 2
-    assert "install hsr8[ros]" in capsys.readouterr().err
+    assert "pip install '.[ros]'" in capsys.readouterr().err
     assert entry(["run", "quick", "--bag", "--out", str(tmp_path), "--quiet"]) == 2
     assert not [*tmp_path.iterdir()]

@@ -164,7 +164,7 @@ def test_a_missing_model_is_refused_with_every_remedy(tmp_path):
         "MENAGERIE: not set",
         "pip install envpool-assets",
         "pip install icub-models",
-        "pip install 'hsr8[robots]'",
+        "pip install '.[robots]'",
     ):
         assert part in message
 

@@ -30,7 +30,7 @@ def test_the_ideal_camera_sets_lens_and_neck_and_keeps_given_values():
         {},
         {"navigation": 3, "camera": "wide"},
         {"navigation": {"profile": "fast"}, "camera": {"preset": 2}},
-        {"camera": {"preset": "honest", "vertical_fov_deg": 33.0}},
+        {"camera": {"preset": "realistic", "vertical_fov_deg": 33.0}},
     ],
 )
 def test_other_values_stay_for_validation(data):

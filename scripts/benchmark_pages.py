@@ -1,0 +1,243 @@
+"""Pages of the results, written from their data: one page, one Parquet file, one version each."""
+
+import json
+import re
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Any
+
+from hsr8.files import atomic
+
+import pyarrow as pa
+import pyarrow.parquet as pq
+from benchmark_runs import Cell, Definition
+from benchmark_table import COLUMNS, Run, row
+
+ROOT = Path(__file__).resolve().parents[1]
+RESULTS = ROOT / "docs" / "results"
+INCLUDED = ("README.md", "docs/robots.md")
+"""Pages outside of the results that show numbers of them, between markers."""
+MARK = "<!-- made by `make benchmarks` -->"
+MADE = b"benchmark"  # key of the metadata of a data file
+MAX_LINES = 80
+LEVELS = ("mild: success", "medium: success", "strong: success")  # heads of levels
+
+
+class Page:
+    """One page with its data.
+
+    Args:
+        name: of the page.
+        definition: of all results.
+        results: folder of the pages.
+    """
+
+    def __init__(self, name: str, definition: Definition, results: Path = RESULTS) -> None:
+        self.name, self.definition = name, definition
+        self.table = definition.pages[name]
+        self.file = results / f"{name}.md"
+        self.data = results / "data" / f"{name}.parquet"
+
+    def write_data(self, cells: Sequence[Cell], root: Path, made: dict[str, str]) -> None:
+        """Write the data of the page from the finished runs of its cells.
+
+        Args:
+            cells: of the page.
+            root: folder of the runs.
+            made: version, date and machine.
+        """
+        rows = [row(cell, result) for cell in cells for result in cell.results(root)]
+        table = pa.Table.from_pylist(rows).replace_schema_metadata({MADE: json.dumps(made)})
+        self.data.parent.mkdir(parents=True, exist_ok=True)
+        pq.write_table(table, self.data, compression="zstd")
+
+    def read(self) -> tuple[list[Run], dict[str, str]] | None:
+        """Return the rows of the runs, and version, date and machine; None without data."""
+        if not self.data.exists():
+            return None
+        table = pq.read_table(self.data)
+        return table.to_pylist(), json.loads(table.schema.metadata[MADE])
+
+    def text(self) -> str:
+        """Return the page; without data it is empty."""
+        stored = self.read()
+        if stored is None:
+            return ""
+        runs, made = stored
+        page = self.table
+        lines = [MARK, "", f"# {page['title']}", "", f"**{page['question']}**", ""]
+        lines += [filled(page["answer"], runs), "", *self.rows(runs), ""]
+        lines += ["**Setup.** " + page["setup"], ""]
+        lines += ["**Caveats.**", "", *(f"- {text}" for text in page["caveats"]), ""]
+        lines += [f"Seeds {_seeds(runs)}. {_made(made)} [Data](data/{self.name}.parquet).", ""]
+        lines += ["```bash", f"make benchmarks ONLY={self.name}", "```", ""]
+        if len(lines) > MAX_LINES:
+            raise ValueError(f"{self.file}: {len(lines)} lines; expected at most {MAX_LINES}")
+        return "\n".join(lines)
+
+    def rows(self, runs: Sequence[Run]) -> list[str]:
+        """Return the table of the page in Markdown."""
+        page = self.table
+        groups = _groups(runs, page["rows"], page["arms"])
+        if page["rows"] == "levels":
+            return _levels(groups)
+        reference = next(iter(groups.values()), [])
+        if "reference" in page:
+            reference = [run for run in runs if run["arm"] == page["reference"]]
+        if "equal" in page["columns"]:
+            reference = [run for run in runs if run["arm"] == "full"]
+        scenarios = list(dict.fromkeys(run["scenario"] for run in runs))
+        by_scenario = scenarios if page.get("by_scenario") else []
+        heads = [*(f"`{s}`" for s in by_scenario), *(COLUMNS[c][0] for c in page["columns"])]
+        table = _header(["", *heads])
+        for label, group in groups.items():
+            cells = [_counted([r for r in group if r["scenario"] == s]) for s in by_scenario]
+            same = len(group) == len(reference) and group[:1] == reference[:1]
+            against = group if same else reference
+            cells += [COLUMNS[column][1](group, against) for column in page["columns"]]
+            table.append(f"| {label} | {' | '.join(cells)} |")
+        return table
+
+
+def _groups(runs: Sequence[Run], kind: str, arms: Sequence[str]) -> dict[str, list[Run]]:
+    """Return the runs of each row of a table by its label."""
+    groups: dict[str, list[Run]] = {}
+    for arm in arms:
+        of_arm = [run for run in runs if run["arm"] == arm]
+        scenarios = dict.fromkeys(run["scenario"] for run in of_arm)
+        for run in of_arm:
+            label = f"{arm}, {run['level']}" if run["level"] else arm
+            if kind == "scenarios":
+                label = (
+                    f"`{run['scenario']}`" if len(scenarios) > 1 else f"{arm}, `{run['scenario']}`"
+                )
+            groups.setdefault(label, []).append(run)
+    return groups
+
+
+def _levels(groups: dict[str, list[Run]]) -> list[str]:
+    """Return the table of arms with levels: one row per arm."""
+    by_arm: dict[str, list[str]] = {}
+    for group in groups.values():
+        level = group[0]["level"]
+        text = _counted(group)
+        by_arm.setdefault(group[0]["arm"], []).append(f"{level}: {text}" if level else text)
+    width = max(map(len, by_arm.values()), default=0)
+    table = _header(["fault", *LEVELS[:width]])
+    for arm, cells in by_arm.items():
+        table.append(f"| {arm} | {' | '.join(cells + [''] * (width - len(cells)))} |")
+    return table
+
+
+def _header(heads: Sequence[str]) -> list[str]:
+    return [f"| {' | '.join(heads)} |", "|" + "---|" * len(heads)]
+
+
+def _counted(runs: Sequence[Run]) -> str:
+    return f"{sum(run['success'] for run in runs)} of {len(runs)}"
+
+
+def filled(text: str, runs: Sequence[Run]) -> str:
+    """Return a text with its ``{ARM.COLUMN}``, with ``@LEVEL`` or ``/SCENARIO`` after the arm."""
+
+    def cell(match: re.Match[str]) -> str:
+        arm, level, scenario, column = match.groups()
+        chosen = [
+            run
+            for run in runs
+            if run["arm"] == arm
+            and (scenario is None or run["scenario"] == scenario)
+            and (level is None or run["level"] == level)
+        ]
+        if not chosen:
+            return "(not measured)"
+        default = {"difference": "risk", "equal": "full"}.get(column, arm)
+        return COLUMNS[column][1](chosen, [run for run in runs if run["arm"] == default])
+
+    return re.sub(r"\{([\w-]+)(?:@([^./}]+(?:\.\d+[^./}]*)?))?(?:/([\w-]+))?\.(\w+)\}", cell, text)
+
+
+def _seeds(runs: Sequence[Run]) -> str:
+    seeds = [run["seed"] for run in runs]
+    return f"{min(seeds)} to {max(seeds)}" if seeds else "none"
+
+
+def _made(made: dict[str, str]) -> str:
+    return f"Version {made['version']}, code {made['code']}, {made['date']}."
+
+
+def index(definition: Definition, pages: Sequence[Page], earlier: Sequence[str]) -> str:
+    """Return the index of the results.
+
+    Args:
+        definition: of all results.
+        pages: all pages.
+        earlier: names of pages of earlier versions that are still there.
+    """
+    stored = {page.name: page.read() for page in pages}
+    lines = [MARK, "", "# Results", ""]
+    lines += [definition.index["text"].strip(), "", *_header(["page", "question", "answer"])]
+    for page in pages:
+        data = stored[page.name]
+        answer = filled(page.table["answer"], data[0]) if data else "not measured with this version"
+        link = f"[{page.table['title']}]({page.name}.md)" if data else page.table["title"]
+        lines.append(f"| {link} | {page.table['question']} | {answer} |")
+    made = [data[1] for data in stored.values() if data]
+    if made:
+        lines += ["", f"{_made(made[0])} {made[0]['machine']}."]
+    lines += ["", "```bash", "make benchmarks", "```", ""]
+    if earlier:
+        names = ", ".join(f"`{name}`" for name in earlier)
+        text = definition.index["earlier"].strip().format(names=names)
+        lines += ["## Pages of earlier versions", "", text, ""]
+    return "\n".join(lines)
+
+
+def headline(definition: Definition, pages: Sequence[Page]) -> list[str]:
+    """Return the table of the README, with the rows whose pages have data; empty without any."""
+    by_name = {page.name: page for page in pages}
+    rows = []
+    for label, text, name in definition.headline:
+        if stored := by_name[name].read():
+            link = f"[{name}](docs/results/{name}.md)"
+            rows.append(f"| {label} | {filled(text, stored[0])} | {link} |")
+    return [*_header(["measured", "result", "page"]), *rows] if rows else []
+
+
+def with_included(text: str, name: str, table: Sequence[str]) -> str:
+    """Return a page with the table between its markers for `name`, if it has them."""
+    begin, end = f"<!-- benchmark {name} -->", f"<!-- end benchmark {name} -->"
+    if begin not in text:
+        return text
+    before, _, rest = text.partition(begin)
+    _, _, after = rest.partition(end)
+    return "\n".join([before + begin, "", *table, "", end + after])
+
+
+def write(definition: Definition, results: Path = RESULTS) -> None:
+    """Write all pages that have data, the index, and the numbers that other pages include."""
+    pages = [Page(name, definition, results) for name in definition.pages]
+    for page in pages:
+        if text := page.text():
+            atomic.write_text(page.file, text)
+    atomic.write_text(results / "README.md", index(definition, pages, earlier(pages, results)))
+    for name in INCLUDED if results == RESULTS else ():
+        text = (ROOT / name).read_text(encoding="utf-8")
+        if table := headline(definition, pages):
+            text = with_included(text, "headline", table)
+        for page in pages:
+            if stored := page.read():
+                text = with_included(text, page.name, page.rows(stored[0]))
+        atomic.write_text(ROOT / name, text)
+
+
+def earlier(pages: Sequence[Page], results: Path = RESULTS) -> list[str]:
+    """Return the names of the pages that the results do not define or have not replaced."""
+    current = {page.file.name for page in pages if page.read()} | {"README.md"}
+    return sorted(file.stem for file in results.glob("*.md") if file.name not in current)
+
+
+def versions(definition: Definition, results: Path = RESULTS) -> dict[str, dict[str, Any]]:
+    """Return version, date and machine of every page that has data."""
+    pages = [Page(name, definition, results) for name in definition.pages]
+    return {page.name: stored[1] for page in pages if (stored := page.read())}
