@@ -20,7 +20,7 @@ def page(comparison: Comparison, command: str) -> str:
     lines += [f"- {len(seeds)} common seeds, {seeds[0]} to {seeds[-1]} ({', '.join(more)})", ""]
     changed = {**comparison.settings, **comparison.versions}
     if changed:
-        rows = [(f"`{key}`", x, y) for key, (x, y) in changed.items()]
+        rows = [(f"`{key}`", str(x), str(y)) for key, (x, y) in changed.items()]
         lines += table(("differs", "A", "B"), rows)
     else:
         lines += ["Scenario and versions are equal.", ""]

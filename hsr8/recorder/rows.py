@@ -4,13 +4,17 @@ Poses are those of the robot frame R: x, y, heading [m, m, rad]. W is the world 
 "in odometry" are in the odometry frame of the robot, which drifts.
 """
 
+from typing import TYPE_CHECKING
+
 import numpy as np
 
-from hsr8.record import Tick, TickRecord
 from hsr8.recorder.columns import BOOL, BYTES, INT, TEXT, VARYING, Column, Row
 from hsr8.recorder.frame_row import FRAME, POSE, POSE_COVARIANCE, VELOCITY, camera_columns
 from hsr8.recorder.limit_bits import limit_bits
 from walking.arrays import Array
+
+if TYPE_CHECKING:  # reading a run needs no robot
+    from hsr8.record import Tick, TickRecord
 
 JOINTS = ("joints",)
 LIMITS = "active limits of the command, bit k for limit k of `walking.command_limits.Limit`"
@@ -18,17 +22,17 @@ DEPTH = "distance of the planned ZMP from the edge of the soles, negative outsid
 PADS = "front-left, front-right, back-left and back-right"
 
 
-def _tick_limits(tick: Tick) -> int:
+def _tick_limits(tick: "Tick") -> int:
     return limit_bits(tick.limits)
 
 
-def _limits(record: TickRecord) -> int:
+def _limits(record: "TickRecord") -> int:
     """Return the bits of the limits of the command, none without a report."""
     report = record.walking.command_limits
     return 0 if report is None else limit_bits(report.limits)
 
 
-def _limited_command(record: TickRecord) -> Array | tuple[float, ...]:
+def _limited_command(record: "TickRecord") -> Array | tuple[float, ...]:
     """Return the command before its limits (3,) [m/s, m/s, rad/s], NaN without a report."""
     report = record.walking.command_limits
     return np.full(3, np.nan) if report is None else report.commanded.velocity

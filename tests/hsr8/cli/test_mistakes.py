@@ -82,7 +82,7 @@ LINES = [
     ("robot inspect none.urdf", "robot file 'none.urdf' does not exist"),
     ("robot inspect text.xml", "text.xml: invalid robot model"),
     ("robot inspect text.urdf", "text.urdf: cannot be read"),
-    ("robot inspect ball.xml", "ball.xml: feet: no two mirrored chains"),
+    ("robot inspect ball.xml", "ball.xml: feet: the model has no hinge joints"),
     ("robot inspect hsr8 --write a.toml", "--write a.toml: hsr8 is a description already"),
     ("robot inspect ball.xml --write yard.toml", "--write yard.toml: exists"),
     ("robot inspect ball.xml --write a.xml", "--write a.xml: wrong suffix; expected .toml"),
