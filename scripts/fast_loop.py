@@ -29,10 +29,10 @@ from navigation.belief.belief import Belief
 from navigation.decision import GazeDecision
 from navigation.observation import Frame
 from navigation.transform import yaw_rotation
-from walking.body import head_kernel
 from walking.command import HeadTarget, VelocityCommand
+from walking.head import Head
 from walking.odometry import Odometry
-from walking.parameters import CONTROL_PERIOD, HeadParameters
+from walking.parameters import CONTROL_PERIOD
 from walking.phase import Phase
 from walking.state import Balance, HeadCameraPose, WalkingState
 
@@ -44,7 +44,6 @@ Array = NDArray[np.float64]
 
 NEAR = 0.6  # gap from the robot at which a mover is near [m]
 UNKNOWN = 0.15  # distance of a mover from its nearest track at which it is not tracked [m]
-START_TILT = -0.3  # of the head [rad]
 CONTACT_TICKS = 2  # ticks between checks for contacts [1]
 SETTLED = 1.0  # time after which the walking body bobs steadily [s]
 
@@ -95,12 +94,9 @@ class PlanarEngine:
         self._footstep_ticks = max(1, round(limits.footstep / TICK))
         self._robot = load_robot(scenario.robot.model).model
         self._rest = self._robot.ready.copy()
+        self._head = Head(self._robot, scenario.walking)
         self._offset = np.zeros(3)
         self._offset = camera_offset(self, scenario)
-        self._head, self._head_rate = np.array([0.0, START_TILT]), np.zeros(2)
-        self._head_limits = self._robot.neck.range()
-        head: HeadParameters = scenario.walking.head
-        self._law = np.array([head.max_rate, head.max_acceleration, CONTROL_PERIOD])
         self._covariance, self._ticks = np.zeros((3, 3)), 0
         self.steps = 0
 
@@ -112,8 +108,7 @@ class PlanarEngine:
     def step(self, _: object, command: VelocityCommand, head: HeadTarget) -> None:
         """Advance by one tick."""
         for _ in range(round(TICK / CONTROL_PERIOD)):
-            target = head.pan, head.tilt
-            head_kernel.advance(self._head, self._head_rate, target, self._head_limits, self._law)
+            self._head.advance(head)
         if self._ticks % self._footstep_ticks == 0:
             self.body.latch(np.array(command.velocity))
             self.steps += 1
@@ -127,7 +122,8 @@ class PlanarEngine:
 
     def state(self) -> WalkingState:
         """Return the state that the decisions read."""
-        pan, tilt = self._head.tolist()
+        pan, tilt = self._head.angles.tolist()
+        pan_rate, tilt_rate = self._head.rates.tolist()
         rotation, position = self.camera_pose(pan, tilt)
         zero = np.zeros(2)
         x, y, yaw = self.body.odometry.tolist()
@@ -139,8 +135,8 @@ class PlanarEngine:
                 position=position,
                 pan=pan,
                 tilt=tilt,
-                pan_rate=float(self._head_rate[0]),
-                tilt_rate=float(self._head_rate[1]),
+                pan_rate=pan_rate,
+                tilt_rate=tilt_rate,
                 yaw_rate=self.body.yaw_rate,
             ),
             applied_velocity=self.body.body,
@@ -160,7 +156,7 @@ class PlanarEngine:
         joints = self._rest.copy()
         head = self._robot.tree.head
         if head is not None:
-            joints[list(head)] = self._robot.neck.joints(pan, tilt)
+            joints[list(head)] = self._head.joints(pan, tilt)
         rotation, position = self._robot.frame_pose(self._robot.tree.camera, joints)
         return rotation, position + self._offset
 

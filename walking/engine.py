@@ -278,6 +278,7 @@ def _values(command: Command) -> tuple[tuple[float, float, float, float, float, 
 def _longest(parameters: WalkingParameters) -> int:
     """Return an upper bound of the control ticks of a planned ZMP."""
     gait, limits = parameters.gait, parameters.limits
-    single = MAX_STRETCH * max(gait.footstep_time, limits.max_single) + gait.min_swing_time
-    double = max(gait.footstep_time, limits.max_double, gait.start_time, gait.stop_time)
+    footstep = max(gait.footstep_time, gait.min_footstep_time)
+    single = MAX_STRETCH * max(footstep, limits.max_single) + gait.min_swing_time
+    double = max(footstep, limits.max_double, gait.start_time, gait.stop_time)
     return ceil(SUPPORTS * (single + double) / CONTROL_PERIOD)

@@ -17,7 +17,7 @@ class Head:
 
     Args:
         robot: model of the robot.
-        parameters: of its motion.
+        parameters: parameters of its motion.
     """
 
     def __init__(self, robot: RobotModel, parameters: WalkingParameters) -> None:
@@ -31,9 +31,22 @@ class Head:
     def advance(self, target: HeadTarget) -> Array:
         """Run one tick; return the setpoints of pan and tilt joint [rad], none if it is fixed."""
         advance_head(self._limbs, (target.pan, target.tilt), self._robot, self._parameters)
+        return self.joints(*self._limbs.head.tolist())
+
+    @property
+    def angles(self) -> Array:
+        """Pan and tilt (2,) [rad]."""
+        return np.array(self._limbs.head)
+
+    @property
+    def rates(self) -> Array:
+        """Rates of pan and tilt (2,) [rad/s]."""
+        return np.array(self._limbs.head_rate)
+
+    def joints(self, pan: float, tilt: float) -> Array:
+        """Return the angles of pan and tilt joint for pan and tilt [rad], none if it is fixed."""
         if not self._robot.neck.movable:
             return np.zeros(0)
-        pan, tilt = self._limbs.head.tolist()
         return np.array(head_joints(pan, tilt, self._joints, self._robot))
 
 
