@@ -119,7 +119,7 @@ def _text(
     if what == "missing":
         return "missing; expected a value" + (f": {meaning}" if meaning else "")
     if what == "json_invalid":
-        return "too many tables within each other"
+        return "tables or lists are nested too deeply"
     annotation, marks = chosen(annotation_at(path, kind, data), details["input"])
     listed, value = choices(annotation), details["input"]
     if what in _NO_TAG:

@@ -34,7 +34,7 @@ ANYWHERE = [  # also of a model that does not exist
     ('camera = {body = "x", position = [1, 2]}', "camera.position: too short, got [1, 2]"),
     ('servo = "ruler"', 'servo: wrong value, got "ruler"; expected "own" or "rule"'),
     ("servo.lag = 0", "servo.lag: wrong value, got 0; expected at least 0.001 and at most 1 s"),
-    ("zero" + "={a" * 300 + "=1" + "}" * 300, "too many tables within each other"),
+    ("zero" + "={a" * 300 + "=1" + "}" * 300, "nested too deeply"),
     ("radius = 0.001", "radius: wrong value, got 0.001; expected at least 0.01 and at most 2 m"),
     ("servo.lagg = 0.1", "servo.lagg: unknown key; did you mean 'lag'?"),
     (
