@@ -90,5 +90,5 @@ def test_executors_are_local_or_have_an_address():
 
 def test_a_missing_extra_names_the_installation_command(monkeypatch):
     monkeypatch.setitem(sys.modules, "distributed", None)
-    with pytest.raises(UsageError, match=r"pip install \"hsr8\[dask\]\""):
+    with pytest.raises(UsageError, match=r"pip install '\.\[dask\]'"):
         DaskExecutor("127.0.0.1:9")
