@@ -59,6 +59,6 @@ def located_plugins(table: Mapping[str, Any], folder: Path) -> dict[str, Any]:
     for kind, reference in plugin.items():
         name, colon, word = str(reference).rpartition(":")
         file = folder / os.path.expanduser(name)
-        beside = colon and kind in KINDS and os.path.isfile(file)
-        located[kind] = f"{file.absolute()}:{word}" if beside else reference
+        relative_file = colon and kind in KINDS and os.path.isfile(file)
+        located[kind] = f"{file.absolute()}:{word}" if relative_file else reference
     return {**table, "plugin": located}
