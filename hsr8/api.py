@@ -15,7 +15,8 @@ from hsr8.plugin_walker import CustomWalker
 from hsr8.recorder.log_level import LogLevel
 from hsr8.recorder.run.manifest import CALL
 from hsr8.recorder.run.run_folder import SCENARIO, new_run_folder
-from hsr8.scenario.loader import as_words, load_scenario
+from hsr8.scenario.layers import as_words
+from hsr8.scenario.loader import load_scenario
 from hsr8.scenario.schema import Scenario
 
 

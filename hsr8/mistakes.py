@@ -3,6 +3,7 @@
 import re
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
+from itertools import islice
 from typing import Any, get_args
 
 from annotated_types import Ge, Gt, Le, Lt, MultipleOf
@@ -10,6 +11,7 @@ from pydantic import BaseModel, ValidationError
 from pydantic_core import ErrorDetails
 
 from hsr8.errors import escaped
+from hsr8.files.key_lines import lines_of
 from hsr8.keys import Path, annotation_at, choices, chosen, hints, holds, texts
 from hsr8.suggestion import suggestion
 
@@ -60,14 +62,35 @@ class Mistake:
     text: str
 
 
+def mistake_lines(
+    error: ValidationError, kind: Any, data: Any, source: str = "", text: str = ""
+) -> list[str]:
+    """Return the first mistakes that pydantic found, a line each: place, key, mistake.
+
+    Args:
+        error: error of the validation of `data`.
+        kind: type of the uppermost table.
+        data: tables as given.
+        source: file that begins the lines.
+        text: TOML text of the file, for the lines of the keys.
+    """
+    mistakes = list(islice(mistakes_of(error, kind, data), MAX_LISTED))
+    places = lines_of(text, [mistake.path for mistake in mistakes])
+    lines = []
+    for path, reason in ((mistake.path, mistake.text) for mistake in mistakes):
+        place = f"{source}:{places[path]}" if path in places else source
+        lines.append(": ".join(part for part in (place, dotted(path), reason) if part))
+    return lines
+
+
 def mistakes_of(
-    error: ValidationError, kind: type[BaseModel], data: Any, more_keys: Iterable[str] = ()
+    error: ValidationError, kind: Any, data: Any, more_keys: Iterable[str] = ()
 ) -> Iterator[Mistake]:
     """Yield the mistakes that pydantic found.
 
     Args:
-        error: from the validation of `data`.
-        kind: of the uppermost table.
+        error: error of the validation of `data`.
+        kind: type of the uppermost table.
         data: tables as given.
         more_keys: further keys of the uppermost table in a file.
     """
@@ -104,9 +127,7 @@ def known_keys(kind: Any) -> list[str]:
     return list(texts(kind))  # all others are constants
 
 
-def _text(
-    details: ErrorDetails, path: Path, kind: type[BaseModel], data: Any, more_keys: Iterable[str]
-) -> str:
+def _text(details: ErrorDetails, path: Path, kind: Any, data: Any, more_keys: Iterable[str]) -> str:
     what, context, got = details["type"], details.get("ctx", {}), shown(details["input"])
     meaning = _meaning(path, kind, data)
     if what == "value_error":
@@ -169,7 +190,7 @@ def _tags(annotation: Any, tag: str) -> list[str]:
     return listed + [value for part in get_args(annotation) for value in _tags(part, tag)]
 
 
-def _unknown(path: Path, kind: type[BaseModel], data: Any, more_keys: Iterable[str]) -> str:
+def _unknown(path: Path, kind: Any, data: Any, more_keys: Iterable[str]) -> str:
     """Text about an unknown key: where it belongs, or a similar one, and the known ones."""
     key, table = str(path[-1]), _table(path, kind, data)
     known = [*known_keys(table), *(more_keys if len(path) == 1 else ())]
@@ -179,7 +200,7 @@ def _unknown(path: Path, kind: type[BaseModel], data: Any, more_keys: Iterable[s
     return f"unknown key{hint}; expected one of {', '.join(known)}"
 
 
-def _misplaced(path: Path, kind: type[BaseModel]) -> str:
+def _misplaced(path: Path, kind: Any) -> str:
     """Remedy for a key of the uppermost table that is within another one; empty for other keys."""
     key = str(path[-1])
     if len(path) == 1 or key not in known_keys(kind) or hints(chosen(hints(kind)[key])[0]):
@@ -187,7 +208,7 @@ def _misplaced(path: Path, kind: type[BaseModel]) -> str:
     return f"; {key!r} is a key of the whole file: move it above the first [table]"
 
 
-def _elsewhere(key: str, kind: type[BaseModel]) -> Path:
+def _elsewhere(key: str, kind: Any) -> Path:
     """Uppermost path of a key with this name; empty without one."""
     tables: list[tuple[Path, Any]] = [((), kind)]
     for path, table in tables:  # grows during the search
@@ -200,12 +221,12 @@ def _elsewhere(key: str, kind: type[BaseModel]) -> Path:
     return ()
 
 
-def _table(path: Path, kind: type[BaseModel], data: Any) -> Any:
+def _table(path: Path, kind: Any, data: Any) -> Any:
     """Type of the table around the key at a path."""
     return chosen(annotation_at(path[:-1], kind, data), _at(path[:-1], data))[0]
 
 
-def _meaning(path: Path, kind: type[BaseModel], data: Any) -> str:
+def _meaning(path: Path, kind: Any, data: Any) -> str:
     """Text of the innermost documented key of a path."""
     for k in range(len(path), 0, -1):
         if (text := texts(_table(path[:k], kind, data)).get(str(path[k - 1]))) is not None:

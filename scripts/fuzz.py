@@ -18,7 +18,8 @@ from unittest.mock import patch
 from hsr8.errors import ScenarioError, SimulationDiverged, UsageError
 from hsr8.loop import Simulation
 from hsr8.robots import models
-from hsr8.scenario.loader import BUILT_IN, built_in_names, load_scenario, loads
+from hsr8.scenario.layers import BUILT_IN, built_in_names
+from hsr8.scenario.loader import load_scenario, loads
 from vision.color import COLOR_CLASSES, ColorTable, load_table, save_table
 from vision.errors import VisionError
 

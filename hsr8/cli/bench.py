@@ -10,9 +10,14 @@ from hsr8.cli.sweep import INTERRUPTED, folder_name, report_lost_runs, require_n
 from hsr8.cli.termination import like_ctrl_c
 from hsr8.errors import Hsr8Error, UsageError
 from hsr8.evaluation.bench.entry import FILE, Entry, row
-from hsr8.evaluation.bench.mistakes import checked_name
 from hsr8.evaluation.bench.page import entry_page
-from hsr8.evaluation.bench.suite import SHIPPED, changed_settings, read_suite, scenario_hash
+from hsr8.evaluation.bench.suite import (
+    SHIPPED,
+    changed_settings,
+    checked_name,
+    read_suite,
+    scenario_hash,
+)
 from hsr8.evaluation.sweep.folder import REPORT
 from hsr8.evaluation.sweep.runs import Execution, definitions, run_sweeps
 from hsr8.evaluation.sweep.seeds import parse_seeds

@@ -1,7 +1,6 @@
 """Robot description: the file ``robot.toml`` next to a model, its keys and their meaning."""
 
 import json
-from itertools import islice
 from pathlib import Path
 from typing import Annotated, Any, Literal
 
@@ -18,10 +17,9 @@ from pydantic import (
 )
 
 from hsr8.errors import ModelError
-from hsr8.files.key_lines import lines_of
 from hsr8.files.regular import read_text
 from hsr8.files.toml import TomlError, parse_toml
-from hsr8.mistakes import MAX_LISTED, NAME, NAMES, TABLE, dotted, form, mistakes_of
+from hsr8.mistakes import NAME, NAMES, TABLE, form, mistake_lines
 
 MODEL_SUFFIXES = (".xml", ".mjcf", ".urdf")
 
@@ -236,6 +234,10 @@ class RobotDescription(Table):
         Literal["serial"] | None,
         doc("Drive the joints of legs with rods, couplings, gears or several motors directly."),
     ] = None
+    tuned: Annotated[
+        bool,
+        doc("Whether the default parameters of walking are those of the robot; else scaled ones."),
+    ] = False
     effort: Annotated[
         dict[Name, Positive],
         doc("Maximum torque by joint, where the model is silent or wrong [N m]."),
@@ -320,15 +322,7 @@ def checked(data: dict[str, Any], source: str, text: str = "") -> RobotDescripti
     try:
         return RobotDescription.model_validate_json(json.dumps(data, default=str))
     except ValidationError as error:
-        mistakes = list(islice(mistakes_of(error, RobotDescription, data), MAX_LISTED))
-        places = lines_of(text, [mistake.path for mistake in mistakes])
-        lines = [
-            f"{source}:{places[m.path]}: " if m.path in places else f"{source}: " for m in mistakes
-        ]
-        lines = [
-            f"{line}{dotted(m.path)}{': ' * bool(m.path)}{m.text}"
-            for line, m in zip(lines, mistakes, strict=True)
-        ]
+        lines = mistake_lines(error, RobotDescription, data, source, text)
         if len(lines) > 1:
             lines.insert(0, f"{source}: {error.error_count()} mistakes")
         raise ModelError("\n  ".join(lines)) from error

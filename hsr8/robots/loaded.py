@@ -30,7 +30,6 @@ from hsr8.robots.tree import tree_of
 from walking.body.robot_model import RobotModel
 from walking.parameters import WalkingParameters
 from walking.rehearsal import within_joints
-from walking.robot_measures import HSR_VIII
 from walking.rules import fit, one_leg_load
 from walking.scaling import parameters_for
 
@@ -282,12 +281,11 @@ def _fitted(
     Raises:
         ModelError: the robot cannot stand.
     """
-    scaled = parameters_for(robot)
-    standard = robot.measures() == HSR_VIII  # it walks with exactly the defaults
-    fitted = scaled if standard else fit(robot, scaled)
+    scaled = WalkingParameters() if description.tuned else parameters_for(robot)
+    fitted = scaled if description.tuned else fit(robot, scaled)
     _stand(robot, fitted, description, source)
     strength = _strength(robot, fitted, description, source)
-    if standard:
+    if description.tuned:
         return fitted, strength
     calibration = description.calibration
     known = None if calibration is None else calibration.speed.model_dump()

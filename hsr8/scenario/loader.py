@@ -1,10 +1,6 @@
-"""Scenario files: lookup, inheritance, overrides, validation and output."""
+"""Scenarios: reading, completion for their robot, validation and output."""
 
-import hashlib
 import json
-import re
-import tomllib
-import unicodedata
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from itertools import islice
@@ -15,32 +11,27 @@ import tomlkit
 from pydantic import ValidationError
 
 from hsr8.errors import ModelError, ScenarioError
-from hsr8.files.key_lines import lines_of
-from hsr8.files.regular import read_text
-from hsr8.files.toml import MAX_SIZE, TomlError, parse_toml
 from hsr8.keys import Path, depth
 from hsr8.mistakes import MAX_LISTED, Mistake, dotted, mistakes_of
 from hsr8.robots.scale import DEFAULT_ROBOT, RobotDefaults, RobotScale
 from hsr8.scenario.checks import check
 from hsr8.scenario.constants import CONSTANTS, misplaced, placed, separated, with_constants
-from hsr8.scenario.plugin import KINDS, located_plugins
+from hsr8.scenario.layers import (
+    BUILT_IN,
+    Layer,
+    Table,
+    as_words,
+    find_scenario,
+    layered,
+    parsed_override,
+    read_layers,
+)
+from hsr8.scenario.plugin import KINDS
 from hsr8.scenario.presets import expand_presets, followers, merged, under
 from hsr8.scenario.reference import FILE_KEYS
-from hsr8.scenario.robot import located
 from hsr8.scenario.scaling import is_complete, scaled, with_scaled_defaults
 from hsr8.scenario.schema import Scenario
-from hsr8.scenario.track_file import legible, located_tracks, read_tracks
-from hsr8.suggestion import suggestion
-
-BUILT_IN = FilePath(__file__).resolve().parents[1] / "scenarios"
-MAX_EXTENDED = 16  # files that extend each other
-
-Table = dict[str, Any]
-
-
-def built_in_names() -> list[str]:
-    """Names of the built-in scenarios."""
-    return sorted(path.stem for path in BUILT_IN.glob("*.toml"))
+from hsr8.scenario.track_file import legible, read_tracks
 
 
 def load_scenario(
@@ -75,33 +66,9 @@ def load_scenario(
     """
     words = [("--set", word) for word in as_words(overrides)]
     words += [(source, word) for source, given in (more or {}).items() for word in given]
-    layers = _read(_find(name_or_path), ())
-    scenario, draft = _Sources(layers, options or {}, words, seed).scenario(name_or_path)
-    _note_untrusted(scenario, draft, trust)
-    return scenario
-
-
-def as_words(overrides: Sequence[str] | Mapping[str, Any]) -> tuple[str, ...]:
-    """Return overrides as ``key=value``.
-
-    Raises:
-        ScenarioError: a value cannot be written in TOML.
-    """
-    if isinstance(overrides, str):  # also a sequence of strings
-        return (overrides,)
-    if not isinstance(overrides, Mapping):
-        return tuple(overrides)
-    words = []
-    for key, value in overrides.items():
-        plain = value.tolist() if hasattr(value, "tolist") else value  # NumPy
-        try:
-            text = tomlkit.item([plain]).as_string()  # in a list, tables are inline
-        except ValueError:
-            raise ScenarioError(
-                f"setting {key}: expected a TOML value, got {type(value).__name__}"
-            ) from None
-        words.append(f"{key}={text[1:-1]}")
-    return tuple(words)
+    layers = read_layers(find_scenario(name_or_path))
+    layers += [Layer(dict(table), option) for option, table in (options or {}).items()]
+    return _scenario(name_or_path, layers, words, seed, trust=trust)
 
 
 def loads(text: str, name: str = "scenario") -> Scenario:
@@ -110,9 +77,7 @@ def loads(text: str, name: str = "scenario") -> Scenario:
     Raises:
         ScenarioError: as `load_scenario`.
     """
-    scenario, draft = _Sources(_layered(text, name, name, BUILT_IN, ())).scenario(name)
-    _note_untrusted(scenario, draft, trust=False)
-    return scenario
+    return _scenario(name, layered(text, name, name, BUILT_IN, ()), trust=False)
 
 
 def _note_untrusted(scenario: Scenario, draft: "_Draft", trust: bool | None) -> None:
@@ -152,87 +117,100 @@ def tables(scenario: Scenario) -> Table:
     return separated(json.loads(scenario.model_dump_json(exclude_none=True)))
 
 
-@dataclass
-class _Layer:
-    """Tables from one file or option."""
+def _scenario(
+    name: str,
+    layers: Sequence[Layer],
+    words: Sequence[tuple[str, str]] = (),
+    seed: int | None = None,
+    *,
+    trust: bool | None,
+) -> Scenario:
+    """Return the scenario of some layers.
 
-    table: Table
-    source: str
-    text: str | None = None  # of a file
-    built_in: bool = False
+    Args:
+        name: name in messages.
+        layers: files and tables of options in ascending precedence.
+        words: options and their overrides ``key=value``, which take precedence.
+        seed: seed that takes precedence over all others.
+        trust: see `load_scenario`.
 
-    def locations(self, paths: Sequence[Path]) -> dict[Path, str]:
-        """File and line, or option, that gives the key at each path."""
-        lines = {} if self.text is None else lines_of(self.text, paths)
-        return {p: f"{self.source}:{lines[p]}" if p in lines else self.source for p in paths}
+    Raises:
+        ScenarioError: it is wrong.
+    """
+    try:
+        draft = _draft(name, layers, words)
+        if seed is not None:
+            draft.add(Layer({"seed": seed}, "--seed"))
+        scenario = draft.finish(name)
+    except RecursionError:
+        raise ScenarioError(f"{name}: tables or lists are nested too deeply") from None
+    _note_untrusted(scenario, draft, trust)
+    return scenario
 
 
-@dataclass
-class _Sources:
-    """Files, tables of options, and overrides with their flags, in ascending precedence."""
+def _draft(name: str, layers: Sequence[Layer], words: Sequence[tuple[str, str]]) -> "_Draft":
+    """Return the merged tables; the built-in ones and all defaults are those of the robot.
 
-    layers: list[_Layer]
-    options: Mapping[str, Mapping[str, Any]] = field(default_factory=dict)
-    words: Sequence[tuple[str, str]] = ()
-    seed: int | None = None
+    A complete scenario needs nothing from its robot, which may be missing.
 
-    def scenario(self, name: str) -> "tuple[Scenario, _Draft]":
-        """Return the scenario for its robot, and its tables.
+    Raises:
+        ScenarioError: an override is wrong, or the robot is.
+    """
+    given = [Layer(parsed_override(word, {}, flag), f"{flag} {word}") for flag, word in words]
+    given = [*layers, *given]
+    model, draft = _robot_of(given), _Draft()
+    built_in = [layer for layer in layers if layer.built_in]  # they extend built-in ones only
+    for layer in built_in:
+        draft.add(layer)
+    defaults = RobotDefaults()
+    if built_in and model != DEFAULT_ROBOT:
+        defaults = _defaults(model, name, given)
+        draft.data = scaled(draft.data, defaults.scale.factor)
+    for layer in layers[len(built_in) :]:
+        draft.add(layer)
+    for flag, word in words:
+        draft.add(Layer(parsed_override(word, draft.data, flag), f"{flag} {word}"))
+    if not (built_in or model == DEFAULT_ROBOT or draft.misplaced_keys() or draft.complete):
+        defaults = _defaults(model, name, given)
+    draft.data, draft.scale = under(draft.data, placed(defaults.table)), defaults.scale
+    return draft
 
-        Raises:
-            ScenarioError: it is wrong.
-        """
-        try:
-            draft = self._draft(RobotDefaults())
-            if draft.robot != DEFAULT_ROBOT and not draft.misplaced_keys():
-                draft = self._for_robot(draft, name)
-            return draft.finish(name), draft
-        except RecursionError:
-            raise ScenarioError(f"{name}: tables or lists are nested too deeply") from None
 
-    def _for_robot(self, draft: "_Draft", name: str) -> "_Draft":
-        """Tables for the robot of a draft; a complete draft needs nothing from its robot."""
-        if draft.complete and not any(layer.built_in for layer in self.layers):
-            return draft
-        try:
-            defaults = robot_defaults(draft.robot)
-        except ModelError as error:
-            raise draft.error(name, [Mistake(("robot", "model"), str(error))]) from error
-        return self._draft(defaults)
+def _robot_of(layers: Sequence[Layer]) -> str:
+    """Return the name or file of the robot; that of HSR-VIII while the value is wrong."""
+    model: Any = DEFAULT_ROBOT
+    for layer in layers:
+        robot = layer.located().get("robot")
+        model = robot.get("model", model) if isinstance(robot, dict) else model
+    return model if isinstance(model, str) else DEFAULT_ROBOT
 
-    def _draft(self, defaults: RobotDefaults) -> "_Draft":
-        """All tables for a robot."""
-        draft = _Draft(defaults.scale)
-        for layer in self.layers:
-            if layer.built_in:  # extends built-in scenarios only
-                draft.add(layer)
-        draft.data = merged(placed(defaults.table), _for_scale(draft.data, defaults.scale))
-        for layer in self.layers:
-            if not layer.built_in:
-                draft.add(layer)
-        for option, options in self.options.items():
-            draft.add(_Layer(dict(options), option))
-        for flag, word in self.words:
-            draft.add(_Layer(_parse_override(word, draft.data, flag), f"{flag} {word}"))
-        if self.seed is not None:
-            draft.add(_Layer({"seed": self.seed}, "--seed"))
-        return draft
+
+def _defaults(model: str, name: str, layers: list[Layer]) -> RobotDefaults:
+    """Return the defaults of a robot.
+
+    Raises:
+        ScenarioError: the robot cannot be loaded.
+    """
+    try:
+        return robot_defaults(model)
+    except ModelError as error:
+        mistake = Mistake(("robot", "model"), str(error))
+        raise _Draft(layers=layers).error(name, [mistake]) from error
 
 
 @dataclass
 class _Draft:
-    """Merged tables, the layers they consist of, and the scale of all defaults."""
+    """Merged tables.
 
-    scale: RobotScale
+    Attributes:
+        scale: scale of the defaults that are missing.
+        data: tables.
+        layers: layers that they consist of.
+    """
+
+    scale: RobotScale = field(default_factory=RobotScale)
     data: Table = field(default_factory=dict)
-    layers: list[_Layer] = field(default_factory=list)
-
-    @property
-    def robot(self) -> str:
-        """Name or file of the robot; that of HSR-VIII while the value is wrong."""
-        robot = self.data.get("robot")
-        model = robot.get("model", DEFAULT_ROBOT) if isinstance(robot, dict) else DEFAULT_ROBOT
-        return model if isinstance(model, str) else DEFAULT_ROBOT
+    layers: list[Layer] = field(default_factory=list)
 
     @property
     def complete(self) -> bool:
@@ -243,13 +221,9 @@ class _Draft:
         """Return the keys of the libraries that are not where they belong."""
         return _first(misplaced(self.data))
 
-    def add(self, layer: _Layer) -> None:
+    def add(self, layer: Layer) -> None:
         """Merge a layer over the present tables."""
-        folder = FilePath(layer.source).parent
-        table = located_tracks(located(layer.table, folder), folder)
-        if layer.text is not None:
-            table = located_plugins(table, folder)
-        self.data = merged(self.data, table)
+        self.data = merged(self.data, layer.located())
         self.layers.append(layer)
 
     def finish(self, name: str) -> Scenario:
@@ -299,7 +273,7 @@ class _Draft:
             return (CONSTANTS, *path)
         return path
 
-    def layer(self, path: Path) -> _Layer | None:
+    def layer(self, path: Path) -> Layer | None:
         """Return the layer that gives the longest part of `path`, the last one of several."""
         depths = [depth(layer.table, path) for layer in self.layers]
         deepest = max(depths, default=0)
@@ -320,142 +294,6 @@ class _Draft:
 def _first(problems: Iterable[Mistake]) -> list[Mistake]:
     """The problems of a message, and one more if there are more."""
     return list(islice(problems, MAX_LISTED + 1))
-
-
-def _for_scale(table: Table, scale: RobotScale) -> Table:
-    """Tables for HSR-VIII at another scale."""
-    return table if scale == RobotScale() else scaled(table, scale.factor)
-
-
-def _find(name_or_path: str) -> FilePath:
-    names = built_in_names()
-    if name_or_path in names:
-        return BUILT_IN / f"{name_or_path}.toml"
-    path = FilePath(name_or_path)
-    if path.suffix == ".toml" or len(path.parts) > 1:
-        return path
-    hint = suggestion(name_or_path, [*names, *_files(path.parent)])
-    raise ScenarioError(
-        f"unknown scenario {name_or_path!r}{hint}; expected a .toml file or one of "
-        f"{', '.join(names)}"
-    )
-
-
-def _files(folder: FilePath) -> list[str]:
-    """Names of the scenario files in a folder."""
-    return sorted(file.name for file in folder.glob("*.toml"))
-
-
-def _read(file: FilePath, above: tuple[FilePath, ...]) -> list[_Layer]:
-    try:
-        text = read_text(file, MAX_SIZE)
-    except FileNotFoundError:
-        hint = suggestion(file.name, _files(file.parent))
-        raise ScenarioError(f"scenario file {str(file)!r} does not exist{hint}") from None
-    except OSError as error:
-        raise ScenarioError(f"scenario file {str(file)!r}: {error.strerror}") from None
-    return _layered(text, str(file), file.stem, file.parent, (*above, file))
-
-
-def _layered(
-    text: str, source: str, stem: str, folder: FilePath, files: tuple[FilePath, ...]
-) -> list[_Layer]:
-    """The layers of the scenario that `text` extends, and `text`."""
-    try:
-        data = parse_toml(text)
-    except TomlError as error:
-        raise ScenarioError(f"{source}: {error}") from None
-    data.setdefault("name", _name(stem))
-    built_in = bool(files) and files[-1].parent == BUILT_IN
-    layer = _Layer(data, source, text, built_in)
-    layers: list[_Layer] = []
-    if "extends" in data:
-        key = ("extends",)
-        location = f"{layer.locations([key])[key]}: extends"
-        layers = _read(_parent(data.pop("extends"), location, folder, files), files)
-    return [*layers, layer]
-
-
-def _name(stem: str) -> str:
-    """Name of a scenario from the name of its file: letters and digits of any script."""
-    normal = unicodedata.normalize("NFC", stem)
-    allowed = "".join(c if c in "._-" or _kind(c) in "LMN" else "\0" for c in normal)
-    name = re.sub("\0+", "-", allowed)
-    while name and _kind(name[0]) not in "LN":
-        name = name[1:]
-    if not name:  # of other characters alone
-        digest = hashlib.sha256(stem.encode(errors="surrogateescape")).hexdigest()
-        return f"scenario-{digest[:8]}"
-    return name[:64]
-
-
-def _kind(character: str) -> str:
-    """Unicode's major category: L for letters, M for marks on them, N for digits."""
-    return unicodedata.category(character)[0]
-
-
-def _parent(name: object, source: str, folder: FilePath, files: tuple[FilePath, ...]) -> FilePath:
-    """File of the scenario that another one extends: built in, or in the same folder."""
-    names = built_in_names()
-    if not isinstance(name, str):
-        raise ScenarioError(f"{source}: must be the name of a scenario, got {name!r}")
-    if name in names:
-        parent = BUILT_IN / f"{name}.toml"
-    elif name.endswith(".toml") and FilePath(name).name == name:
-        parent = folder / name
-    else:
-        raise ScenarioError(
-            f"{source}: unknown scenario {name!r}{suggestion(name, names)}; expected a .toml file "
-            f"in the same folder or one of {', '.join(names)}"
-        )
-    if len(files) > MAX_EXTENDED:
-        raise ScenarioError(f"{source}: more than {MAX_EXTENDED} files extend each other")
-    if parent in files:
-        chain = " -> ".join(str(f) for f in (*files, parent))
-        raise ScenarioError(f"{source}: scenarios extend each other in a loop: {chain}")
-    return parent
-
-
-def _parse_override(override: str, data: Table, flag: str) -> Table:
-    """Nested table of ``a.b=value``; lists are copied with one entry changed."""
-    source = f"{flag} {override}"
-    key, equals, text = override.partition("=")
-    parts = key.strip().split(".")
-    if not equals or not all(parts):
-        raise ScenarioError(f"{source}: expected key=value, for example {flag} camera.period_ms=80")
-    if parts == ["extends"]:
-        raise ScenarioError(f"{source}: extends is allowed in files only")
-    try:
-        parsed = tomllib.loads(f"value = {text}")
-    except (ValueError, RecursionError):
-        parsed = {"value": text.strip()}
-    value = parsed["value"] if len(parsed) == 1 else text
-    for k in range(len(parts) - 1, 0, -1):
-        value = _put(parts[k], value, _at(data, parts[:k]), source)
-    return {parts[0]: value}
-
-
-def _put(part: str, value: Any, old: Any, source: str) -> Any:
-    """`old` with one entry changed if it is a list, else a new table."""
-    if not isinstance(old, list):
-        return {part: value}
-    if not part.isdecimal() or int(part) >= len(old):
-        raise ScenarioError(f"{source}: expected an index from 0 to {len(old) - 1}, got {part!r}")
-    entry = old[int(part)]
-    if isinstance(entry, dict) and isinstance(value, dict):
-        value = merged(entry, value)
-    return [*old[: int(part)], value, *old[int(part) + 1 :]]
-
-
-def _at(data: Any, parts: Sequence[str]) -> Any:
-    for part in parts:
-        if isinstance(data, list) and part.isdecimal() and int(part) < len(data):
-            data = data[int(part)]
-        elif isinstance(data, dict):
-            data = data.get(part)
-        else:
-            return None
-    return data
 
 
 def robot_defaults(model: str) -> RobotDefaults:

@@ -8,7 +8,7 @@ import pytest
 
 import hsr8
 from hsr8.evaluation.replay import replay
-from hsr8.scenario.loader import BUILT_IN
+from hsr8.scenario.layers import BUILT_IN
 from hsr8.scenario.track_file import recorded_tracks
 
 SETTINGS = {"robot.body": "kinematic", "camera.source": "analytic", "duration": 6.0}

@@ -9,13 +9,13 @@ from annotated_types import Interval
 from pydantic import TypeAdapter, ValidationError
 
 from hsr8.errors import UsageError
-from hsr8.evaluation.bench.mistakes import mistakes
 from hsr8.evaluation.bench.score import Score, score
 from hsr8.evaluation.sweep.definition import Differences
 from hsr8.evaluation.sweep.folder import DEFINITION
 from hsr8.evaluation.sweep.job import RunResult
 from hsr8.files import atomic
 from hsr8.files.regular import read_text
+from hsr8.mistakes import mistake_lines
 from hsr8.scenario.section import Section
 
 FILE = "bench.json"  # in the folder of an entry
@@ -118,14 +118,18 @@ class Entry:
             ValueError: `value` is not such a result.
         """
         if not isinstance(value, dict) or "format" not in value:
-            raise ValueError("format is missing")
+            raise ValueError("format: missing; expected a value")
         if value["format"] != FORMAT:
-            raise ValueError(f"format is not {FORMAT}, got {value['format']}")
+            raise ValueError(f"format: wrong value, got {value['format']}; expected {FORMAT}")
         fields = {key: value[key] for key in cls.__dataclass_fields__ if key in value}
-        entry = TypeAdapter(cls).validate_json(json.dumps(fields), strict=True)
-        for runs in entry.runs.values():
-            for run in runs:
+        checked: tuple[Any, Any] = cls, fields
+        try:
+            entry = TypeAdapter(cls).validate_json(json.dumps(fields), strict=True)
+            for run in (run for runs in entry.runs.values() for run in runs):
+                checked = Run, run
                 Run.model_validate(run)
+        except ValidationError as error:
+            raise ValueError(mistake_lines(error, *checked)[0]) from error
         return entry
 
 
@@ -146,8 +150,6 @@ def read_entry(path: Path) -> Entry:
         return Entry.from_json(json.loads(read_text(file)))
     except OSError as error:
         text = f"cannot be read: {error.strerror}"
-    except ValidationError as error:
-        text = mistakes(error)[0]
     except (json.JSONDecodeError, RecursionError) as error:
         text = f"invalid JSON: {error}"
     except ValueError as error:

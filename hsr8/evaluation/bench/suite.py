@@ -2,6 +2,7 @@
 
 import hashlib
 import json
+import re
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Annotated, Any
@@ -10,12 +11,12 @@ from annotated_types import Interval, Len
 from pydantic import AfterValidator, ValidationError
 
 from hsr8.errors import ScenarioError, UsageError
-from hsr8.evaluation.bench.mistakes import checked_name, mistakes
 from hsr8.evaluation.sweep.definition import Differences, table_differences
 from hsr8.evaluation.sweep.seeds import parse_seeds
 from hsr8.evaluation.sweep.table import flatten
 from hsr8.files.regular import read_text
 from hsr8.files.toml import TomlError, parse_toml
+from hsr8.mistakes import mistake_lines
 from hsr8.scenario.loader import load_scenario, tables
 from hsr8.scenario.schema import Scenario
 from hsr8.scenario.section import Section
@@ -26,6 +27,20 @@ FREE = ("walking", "vision", "belief", "navigation", "plugin", "recorder", "desc
 NOT_FREE = ("walking.head", "navigation.mission")
 CONDITIONS = ("robot.body", "camera", "sensors", "walking.head")
 """Sections and keys of the suite that an entry may change; its results name the changes."""
+
+
+def checked_name(name: str) -> str:
+    """Return the name of a suite or an entry.
+
+    Raises:
+        ValueError: it is not a name.
+    """
+    if not re.fullmatch(r"[A-Za-z0-9][A-Za-z0-9._-]{0,63}", name):
+        raise ValueError(
+            f"wrong form, got {name!r}; expected letters, digits, '.', '_' and '-', at most 64, "
+            "the first a letter or digit"
+        )
+    return name
 
 
 def _without_plugins(settings: tuple[str, ...]) -> tuple[str, ...]:
@@ -103,12 +118,16 @@ def read_suite(file: Path) -> Suite:
         UsageError: the file is not a suite.
     """
     try:
-        data = parse_toml(read_text(file))
+        text = read_text(file)
+        data = parse_toml(text)
         suite = Suite.model_validate_json(json.dumps(data, default=str))
     except OSError as error:
         raise UsageError(f"--suite {file}: cannot be read: {error.strerror}") from error
     except ValidationError as error:
-        lines = [f"--suite {file}: not a suite", *mistakes(error)]
+        lines = [
+            f"--suite {file}: not a suite",
+            *mistake_lines(error, Suite, data, str(file), text),
+        ]
         raise UsageError("\n  ".join(lines)) from error
     except TomlError as error:
         raise UsageError(f"--suite {file}: {error}") from error

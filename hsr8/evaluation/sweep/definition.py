@@ -15,7 +15,8 @@ from hsr8.errors import ScenarioError
 from hsr8.evaluation.sweep.table import flatten
 from hsr8.recorder.run.manifest import versions
 from hsr8.robots.models import models_dir
-from hsr8.scenario.loader import Table, loads, tables
+from hsr8.scenario.layers import Table
+from hsr8.scenario.loader import loads, tables
 from hsr8.version import VERSION
 
 PACKAGES = ("compilation", "hsr8", "navigation", "walking", "vision")

@@ -2,7 +2,7 @@ import json
 
 from hsr8.cli.list import main
 from hsr8.cli.options import List
-from hsr8.scenario.loader import built_in_names
+from hsr8.scenario.layers import built_in_names
 
 
 def test_every_built_in_scenario_is_listed(capsys):

@@ -2,7 +2,7 @@ import json
 import tomllib
 
 from hsr8.cli.main import entry
-from hsr8.scenario.loader import BUILT_IN
+from hsr8.scenario.layers import BUILT_IN
 
 
 def test_the_schema_has_every_key_of_the_built_in_scenarios(capsys):

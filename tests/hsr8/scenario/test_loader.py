@@ -16,7 +16,8 @@ from hypothesis import strategies as st
 
 from hsr8.errors import ScenarioError
 from hsr8.mistakes import MAX_LISTED
-from hsr8.scenario.loader import built_in_names, dump, load_scenario, loads
+from hsr8.scenario.layers import built_in_names
+from hsr8.scenario.loader import dump, load_scenario, loads
 from hsr8.scenario.reference import json_schema
 
 COURSE = 'mission = {kind = "course"}\n'

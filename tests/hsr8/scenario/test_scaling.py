@@ -8,7 +8,8 @@ from hypothesis import strategies as st
 from hsr8.errors import ModelError, ScenarioError
 from hsr8.robots.scale import RobotDefaults, RobotScale
 from hsr8.scenario import loader
-from hsr8.scenario.loader import built_in_names, dump, load_scenario, loads
+from hsr8.scenario.layers import built_in_names
+from hsr8.scenario.loader import dump, load_scenario, loads
 from hsr8.scenario.scaling import is_complete, scaled
 from hsr8.scenario.schema import Scenario
 from hsr8.scenario.section import Section

@@ -46,15 +46,24 @@ def test_all_is_the_score_of_all_families(make_entry):
 @pytest.mark.parametrize(
     ("change", "message"),
     [
-        (lambda value: value.update(format=2), "format is not 1, got 2"),
-        (lambda value: value.pop("versions"), "versions is missing"),
-        (lambda value: value.update(suite_version="1"), "suite_version: .*, got 1"),
+        (lambda value: value.update(format=2), "format: wrong value, got 2; expected 1"),
+        (lambda value: value.pop("versions"), "versions: missing; expected a value"),
+        (
+            lambda value: value.update(suite_version="1"),
+            'suite_version: wrong value, got "1"; expected a whole number',
+        ),
         (lambda value: value.update(settings={"a": ["b"]}), "settings.a"),
-        (lambda value: value["runs"]["course"][0].update(outcome="good"), "outcome: .*, got good"),
-        (lambda value: value["runs"]["course"][0].update(path_length_m="far"), "got far"),
+        (
+            lambda value: value["runs"]["course"][0].update(outcome="good"),
+            'outcome: wrong value, got "good"; expected',
+        ),
+        (
+            lambda value: value["runs"]["course"][0].update(path_length_m="far"),
+            'path_length_m: wrong value, got "far"; expected a number',
+        ),
         (lambda value: value["runs"]["course"][0].update(time_to_goal_s=0.0), "got 0.0"),
-        (lambda value: value["runs"]["course"][0].pop("falls"), "falls is missing"),
-        (lambda value: value.update(runs=[1]), "runs: input should be"),
+        (lambda value: value["runs"]["course"][0].pop("falls"), "falls: missing; expected a value"),
+        (lambda value: value.update(runs=[1]), "runs: wrong value, got \\[1\\]; expected a table"),
     ],
 )
 def test_other_files_are_refused(make_entry, tmp_path, change, message):
@@ -69,10 +78,10 @@ def test_other_files_are_refused(make_entry, tmp_path, change, message):
 @pytest.mark.parametrize(
     ("text", "reason"),
     [
-        ("{}", "format is missing"),
-        ("[]", "format is missing"),
-        ('{"format": 9}', "format is not 1, got 9"),
-        ('{"format": 1}', "name is missing"),
+        ("{}", "format: missing; expected a value"),
+        ("[]", "format: missing; expected a value"),
+        ('{"format": 9}', "format: wrong value, got 9; expected 1"),
+        ('{"format": 1}', "name: missing; expected a value"),
         ("", "invalid JSON: Expecting value: line 1 column 1 (char 0)"),
         (None, "cannot be read: No such file or directory"),
     ],

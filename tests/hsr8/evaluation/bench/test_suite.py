@@ -129,13 +129,21 @@ def test_files_of_scenarios_are_next_to_the_suite(small, monkeypatch):
 @pytest.mark.parametrize(
     ("old", "new", "message"),
     [
-        ("version = 3", "", "version is missing"),
-        ("version = 3", "version = 0", "version: input should be greater than or equal to 1"),
-        ("version = 3", "version = 3\nsize = 3", "size: extra inputs are not permitted, got 3"),
+        ("version = 3", "", "small.toml: version: missing; expected a value"),
+        (
+            "version = 3",
+            "version = 0",
+            "small.toml:[0-9]+: version: wrong value, got 0; expected at least 1",
+        ),
+        (
+            "version = 3",
+            "version = 3\nsize = 3",
+            "size: unknown key; expected one of name, version",
+        ),
         ('quick = "1000"', 'quick = "x"', "quick: not a seed or a range, got 'x'"),
         ('name = "small"', "name = ", "invalid TOML"),
         ('"small"', '"A/b"', "name: .*, got 'A/b'; expected letters, digits, '.', '_' and '-'"),
-        ("[families]", "[familes]", "families is missing"),
+        ("[families]", "[familes]", "familes: unknown key; did you mean 'families'"),
     ],
 )
 def test_mistakes_in_a_suite_are_named(small, old, new, message):

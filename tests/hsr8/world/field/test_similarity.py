@@ -9,7 +9,8 @@ import pytest
 
 from hsr8.robots.scale import RobotDefaults, RobotScale
 from hsr8.scenario import loader
-from hsr8.scenario.loader import built_in_names, load_scenario
+from hsr8.scenario.layers import built_in_names
+from hsr8.scenario.loader import load_scenario
 from hsr8.world.field.certificate import min_clearance
 from hsr8.world.field.generator import draw_world
 
