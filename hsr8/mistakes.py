@@ -77,9 +77,10 @@ def mistake_lines(
     mistakes = list(islice(mistakes_of(error, kind, data), MAX_LISTED))
     places = lines_of(text, [mistake.path for mistake in mistakes])
     lines = []
-    for path, reason in ((mistake.path, mistake.text) for mistake in mistakes):
-        place = f"{source}:{places[path]}" if path in places else source
-        lines.append(": ".join(part for part in (place, dotted(path), reason) if part))
+    for mistake in mistakes:
+        begin = f"{source}:{places[mistake.path]}" if mistake.path in places else source
+        parts = begin, dotted(mistake.path), mistake.text
+        lines.append(": ".join(part for part in parts if part))
     return lines
 
 
