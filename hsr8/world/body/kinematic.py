@@ -67,7 +67,7 @@ class KinematicBody:
         self._surroundings = Surroundings(model, robot, layout)
         self._index = self._surroundings.index
         sensor_rng, self._slip_rng = rng.spawn(2)
-        self._suite = SensorSuite(noise, sensor_rng, CONTROL_PERIOD, len(self._index.names))
+        self._suite = SensorSuite(noise, sensor_rng, CONTROL_PERIOD, self._index)
         self._weight = float(model.body_subtreemass[self._index.base_body]) * GRAVITY
         self._slip = np.array([SLIP * layout.scale, SLIP * layout.scale, YAW_SLIP])
         self._landed, self._lifted = LANDED * layout.scale, LIFTED * layout.scale
@@ -79,7 +79,6 @@ class KinematicBody:
         self._ready_height = float(self.data.qpos[self._index.root_qpos + 2])
         mujoco.mj_kinematics(model, self.data)
         self._joints = self.data.qpos[self._index.joint_qpos].copy()
-        self._rates = np.zeros_like(self._joints)
         self._gyro = np.zeros(3)
         self._force = np.array([0.0, 0.0, GRAVITY])
         self._loads = self._weight * LOAD_FRACTIONS
@@ -96,15 +95,10 @@ class KinematicBody:
         return self._tick * CONTROL_PERIOD
 
     def sense(self) -> BodySensors:
-        root = self._index.root_qpos
-        return self._suite.read(
-            joint_position=self._joints,
-            joint_velocity=self._rates,
-            gyro=self._gyro,
-            accelerometer=self._force,
-            orientation=self.data.qpos[root + 3 : root + 7],
-            foot_force=self._pads[self._support],
-        )
+        index, sensordata = self._index, self.data.sensordata
+        sensordata[index.accelerometer] = self._force
+        sensordata[index.foot_force] = self._pads[self._support]
+        return self._suite.read(self.data)
 
     def setpoints(self, targets: JointTargets) -> Array:
         return targets.position
@@ -116,7 +110,7 @@ class KinematicBody:
         `update_kinematics`.
         """
         self._tick += 1
-        self._rates = (targets.position - self._joints) / CONTROL_PERIOD
+        rates = (targets.position - self._joints) / CONTROL_PERIOD
         self._joints = targets.position.copy()
         root, dof = self._index.root_qpos, self._index.root_dof
         qpos = self.data.qpos
@@ -126,7 +120,7 @@ class KinematicBody:
         after, velocity = qpos[root : root + 7], self.data.qvel[dof : dof + 3]
         imu_motion(before, after, CONTROL_PERIOD, velocity, self._gyro, self._force)
         self.data.qvel[dof + 3 : dof + 6] = self._gyro
-        self.data.qvel[self._index.joint_dof] = self._rates
+        self.data.qvel[self._index.joint_dof] = rates
         if self._tick % CONTACT_TICKS == 0:
             self._surroundings.move(self.data, self.time)
             mujoco.mj_kinematics(self.model, self.data)

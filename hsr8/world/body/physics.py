@@ -90,7 +90,7 @@ class PhysicsBody:
         self._pusher = Pusher(model, pushes, CONTROL_PERIOD)
         self._faults = WorldFaults(model, self._index, faults, layout.scale)
         self._saturation = SaturationWatch(model, self._index)
-        self._suite = SensorSuite(noise, rng, CONTROL_PERIOD, len(self._index.names))
+        self._suite = SensorSuite(noise, rng, CONTROL_PERIOD, self._index)
         self._substeps = round(CONTROL_PERIOD / model.opt.timestep)
         if abs(self._substeps * model.opt.timestep - CONTROL_PERIOD) > 1e-9:
             raise ValueError(
@@ -114,16 +114,7 @@ class PhysicsBody:
         return self._substep * self._timestep
 
     def sense(self) -> BodySensors:
-        data, index = self.data, self._index
-        root, dof = index.root_qpos, index.root_dof
-        return self._suite.read(
-            joint_position=data.qpos[index.joint_qpos],
-            joint_velocity=data.qvel[index.joint_dof],
-            gyro=data.qvel[dof + 3 : dof + 6],
-            accelerometer=data.sensordata[index.accelerometer],
-            orientation=data.qpos[root + 3 : root + 7],
-            foot_force=data.sensordata[index.foot_force],
-        )
+        return self._suite.read(self.data)
 
     def setpoints(self, targets: JointTargets) -> Array:
         return targets.setpoint
@@ -149,7 +140,10 @@ class PhysicsBody:
             self._substep += 1
         surroundings.watch.watch(data)
         self._saturation.watch(data)
-        self._check_divergence()
+        # A sum of squares is finite only if all terms are finite.
+        qacc = data.qacc
+        if not isfinite(qacc.dot(qacc)) or any(data.warning.number.tolist()):
+            raise self._divergence()
 
     def update_kinematics(self) -> None:
         mujoco.mj_kinematics(self.model, self.data)
@@ -184,16 +178,13 @@ class PhysicsBody:
         mujoco.mj_getState(self.model, self.data, self._state, mujoco.mjtState.mjSTATE_INTEGRATION)
         return self._state.tobytes()
 
-    def _check_divergence(self) -> None:
-        # A sum of squares is finite only if all terms are finite.
-        qacc = self.data.qacc
-        if isfinite(qacc.dot(qacc)) and not any(self.data.warning.number.tolist()):
-            return
+    def _divergence(self) -> SimulationDiverged:
+        """Return the error of a state that is no longer valid."""
         speeds = np.abs(self.data.qvel)
         dof = int(np.argmax(np.where(np.isfinite(speeds), speeds, np.inf)))
         body = self.model.body(self.model.dof_bodyid[dof]).name
         worst = int(np.argmax(np.abs(self.data.ctrl[self._index.actuators])))
-        raise SimulationDiverged(
+        return SimulationDiverged(
             f"the physics diverged at tick {round(self.time / CONTROL_PERIOD)} "
             f"(t = {self.time:.3f} s): body {body!r} moves at {speeds[dof]:.3g} rad/s or m/s; "
             f"largest setpoint of the last command: {self._index.names[worst]} at "

@@ -16,7 +16,10 @@ Array = NDArray[np.float64]
 CLOSING_SPEED = 0.02  # of a robot at fault towards an obstacle, in a world of scale 1 [m/s]
 MAX_CLEARANCE = 100.0  # [m]
 
+OTHER, GROUND = -1, -2  # parts of a contact that are not feet
+
 Ints = NDArray[np.intp]
+Ints32 = NDArray[np.int32]
 
 
 class ContactWatch:
@@ -40,14 +43,14 @@ class ContactWatch:
         ]
         self._force = np.zeros(6)
         self._fromto = np.zeros(6)
-        ground = (index.floor, *index.bumps)
-        self._ground = [geom in ground for geom in range(model.ngeom)]
-        soles = index.foot_geoms
-        self._side = [soles.index(geom) if geom in soles else -1 for geom in range(model.ngeom)]
+        self._parts = np.full(model.ngeom, OTHER, dtype=np.intp)
+        self._parts[[index.floor, *index.bumps]] = GROUND
+        self._parts[list(index.foot_geoms)] = 0, 1
+        self._pyramidal = model.opt.cone == mujoco.mjtCone.mjCONE_PYRAMIDAL
         self._contacts: dict[tuple[int, int], Contact] = {}
         # All parts of an object share axis and radius: the first one represents it from above.
         self._axes = np.concatenate([index.obstacle_geoms, index.beacon_geoms[:, 0]])
-        self._parts: list[list[int]] = [
+        self._geoms_of: list[list[int]] = [
             *index.obstacle_geoms[:, None].tolist(),
             *index.beacon_geoms.tolist(),
         ]
@@ -99,17 +102,17 @@ class ContactWatch:
 
     def clearance(self, data: mujoco.MjData) -> float:
         """Return the distance to the nearest obstacle or beacon [m]; infinite without any."""
-        geoms = self._index.robot_geoms
-        if not self._parts:
+        if not len(self._axes):
             return inf
-        bounds = gap_bounds(data.geom_xpos, self._axes, self._sizes, geoms, self._spheres).ravel()
-        gap = self._distance(data, int(bounds.argmin()), MAX_CLEARANCE)
+        bounds = gap_bounds(
+            data.geom_xpos, self._axes, self._sizes, self._index.robot_geoms, self._spheres
+        )
+        pair, gap, limit = int(bounds.argmin()), inf, MAX_CLEARANCE
         # No gap is below its bound, so that few pairs need the exact distance.
-        near = np.flatnonzero(bounds < gap)
-        for pair in near[np.argsort(bounds[near])].tolist():
-            if bounds[pair] >= gap:
-                break
-            gap = min(gap, self._distance(data, pair, max(gap, 0.0)))
+        while bounds[pair] < gap:
+            gap = min(gap, self._distance(data, pair, limit))
+            bounds[pair], limit = inf, max(gap, 0.0)
+            pair = int(bounds.argmin())
         return gap
 
     def _distance(self, data: mujoco.MjData, pair: int, limit: float) -> float:
@@ -121,35 +124,77 @@ class ContactWatch:
         model, geom = self._model, self._robot_geoms[number]
         gaps: list[float] = [
             mujoco.mj_geomDistance(model, data, geom, part, limit, self._fromto)
-            for part in self._parts[obstacle]
+            for part in self._geoms_of[obstacle]
         ]
         return min(limit, *gaps)
 
     def feet(self, data: mujoco.MjData) -> tuple[Array, Array]:
         """Return the normal force under each foot (2,) [N] and the centre of pressure (2,) [m]."""
-        load = [0.0, 0.0]
-        x = y = 0.0
-        contact, ground, side = data.contact, self._ground, self._side
-        positions = contact.pos.tolist()
-        for i, (one, other) in enumerate(contact.geom.tolist()):
-            foot = side[other] if ground[one] else side[one] if ground[other] else -1
-            if foot < 0:
-                continue
-            mujoco.mj_contactForce(self._model, data, i, self._force)
-            force = float(self._force[0])
-            load[foot] += force
-            x += force * positions[i][0]
-            y += force * positions[i][1]
-        total = load[0] + load[1]
-        pressure = np.array([x, y]) / total if total > 0.0 else np.full(2, np.nan)
-        return np.array(load), pressure
+        contact = data.contact
+        load, pressure = np.zeros(2), np.full(2, np.nan)
+        # Copies, because MuJoCo's arrays are views of its records, with gaps.
+        feet_forces(
+            contact.geom.copy(),
+            contact.pos.copy(),
+            contact.efc_address.copy(),
+            contact.dim.copy(),
+            data.efc_force,
+            self._parts,
+            self._pyramidal,
+            load,
+            pressure,
+        )
+        return load, pressure
+
+
+@compiled
+def feet_forces(
+    geoms: Ints32,
+    positions: Array,
+    addresses: Ints32,
+    dimensions: Ints32,
+    forces: Array,
+    parts: Ints,
+    pyramidal: bool,
+    load: Array,
+    pressure: Array,
+) -> None:
+    """Set the normal force under each foot and the centre of pressure.
+
+    Args:
+        geoms: geoms of each contact (n, 2).
+        positions: position of each contact in W (n, 3) [m].
+        addresses: address of each contact in `forces`, negative without a force (n,).
+        dimensions: dimension of each contact (n,).
+        forces: constraint forces of MuJoCo [N].
+        parts: side of the foot of every geom, 0 or 1; `GROUND`; `OTHER` (ngeom,).
+        pyramidal: whether the friction cones are pyramids, whose edges share the normal force.
+        load: set to the normal force under the left and the right foot (2,) [N].
+        pressure: set to the centre of pressure in W if there is a load (2,) [m].
+    """
+    x, y = 0.0, 0.0
+    for i in range(len(geoms)):
+        one, other = parts[geoms[i, 0]], parts[geoms[i, 1]]
+        foot = other if one == GROUND else one if other == GROUND else OTHER
+        if foot < 0 or addresses[i] < 0:
+            continue
+        edges = 2 * (dimensions[i] - 1) if pyramidal and dimensions[i] > 1 else 1
+        force = 0.0
+        for k in range(edges):
+            force += forces[addresses[i] + k]
+        load[foot] += force
+        x += force * positions[i, 0]
+        y += force * positions[i, 1]
+    total = load[0] + load[1]
+    if total > 0.0:
+        pressure[0], pressure[1] = x / total, y / total
 
 
 @compiled
 def gap_bounds(
     positions: Array, obstacles: Ints, radii: Array, geoms: Ints, spheres: Array
 ) -> Array:
-    """Return lower bounds of the gaps between n obstacles and m geoms, from above (n, m) [m].
+    """Return lower bounds of the gaps between n obstacles and m geoms, from above (n m,) [m].
 
     Args:
         positions: of all geoms in W (ngeom, 3) [m].
@@ -158,11 +203,11 @@ def gap_bounds(
         geoms: of the robot (m,).
         spheres: bounding radius of each geom of the robot (m,) [m].
     """
-    bounds = np.empty((len(obstacles), len(geoms)))
+    bounds = np.empty(len(obstacles) * len(geoms))
     for i in range(len(obstacles)):
         x, y = positions[obstacles[i], 0], positions[obstacles[i], 1]
         for k in range(len(geoms)):
             dx, dy = positions[geoms[k], 0] - x, positions[geoms[k], 1] - y
             distance = sqrt(dx * dx + dy * dy)
-            bounds[i, k] = distance - spheres[k] - radii[i]
+            bounds[i * len(geoms) + k] = distance - spheres[k] - radii[i]
     return bounds

@@ -6,14 +6,15 @@ import mujoco
 import numpy as np
 from numpy.typing import NDArray
 
+from compilation import compiled
 from hsr8.robots.tree import max_torque
 from hsr8.world.model.index import ModelIndex
 
 Array = NDArray[np.float64]
+Ints = NDArray[np.intp]
 
 AT_LIMIT = 0.999  # fraction of the maximum torque that counts as saturated [1]
 TOUCHING = 1e-4  # angle beyond the range at which a joint touches its stop [rad]
-BLOCK = 64  # control ticks evaluated at a time
 
 
 @dataclass(frozen=True, slots=True)
@@ -50,48 +51,76 @@ class SaturationWatch:
     def __init__(self, model: mujoco.MjModel, index: ModelIndex) -> None:
         self._index = index
         joints = model.dof_jntid[index.joint_dof]
-        self._max_torque = max_torque(model, joints, index.actuators)
         limited = model.jnt_limited[joints, None] != 0
         ranges = np.where(limited, model.jnt_range[joints], [-np.inf, np.inf])
-        self._lower, self._upper = ranges[:, 0] - TOUCHING, ranges[:, 1] + TOUCHING
-        # Pending ticks: copying one is cheap, evaluating one is not.
-        self._force = np.zeros((BLOCK, model.nu))
-        self._angle, self._speed = np.zeros((BLOCK, model.nq)), np.zeros((BLOCK, model.nv))
-        self._pending = 0
-        n = len(index.actuators)
-        none = np.zeros(n, dtype=np.int64)
-        self._total = Saturation(index.names, 0, none, 0, none, np.zeros(n), np.zeros(n))
+        torque = max_torque(model, joints, index.actuators)
+        self._limits = np.stack([torque, ranges[:, 0] - TOUCHING, ranges[:, 1] + TOUCHING])
+        self._addresses = np.stack([index.actuators, index.joint_qpos, index.joint_dof])
+        n = len(index.names)
+        self._ticks = np.zeros((2, n + 1), dtype=np.int64)
+        self._peaks = np.zeros((2, n))
 
     def watch(self, data: mujoco.MjData) -> None:
         """Add the state after a control tick."""
-        row = self._pending
-        self._force[row], self._angle[row] = data.actuator_force, data.qpos
-        self._speed[row] = data.qvel
-        self._pending = row + 1
-        if self._pending == BLOCK:
-            self._evaluate()
+        count(
+            data.actuator_force,
+            data.qpos,
+            data.qvel,
+            self._addresses,
+            self._limits,
+            self._ticks,
+            self._peaks,
+        )
 
     def so_far(self) -> Saturation:
         """Return the saturation since the start of the run."""
-        if self._pending:
-            self._evaluate()
-        return self._total
-
-    def _evaluate(self) -> None:
-        index, rows, before = self._index, slice(self._pending), self._total
-        self._pending = 0
-        # A limit of the joint, unlike one of the servo, clips later than here.
-        torque = np.minimum(np.abs(self._force[rows, index.actuators]) / self._max_torque, 1.0)
-        angle = self._angle[rows, index.joint_qpos]
-        saturated = torque >= AT_LIMIT
-        stopped = (angle < self._lower) | (angle > self._upper)
-        speed = np.abs(self._speed[rows, index.joint_dof])
-        self._total = Saturation(
-            names=index.names,
-            torque_any=before.torque_any + int(saturated.any(axis=1).sum()),
-            torque_ticks=before.torque_ticks + saturated.sum(axis=0),
-            stop_any=before.stop_any + int(stopped.any(axis=1).sum()),
-            stop_ticks=before.stop_ticks + stopped.sum(axis=0),
-            peak_torque=np.maximum(before.peak_torque, torque.max(axis=0)),
-            peak_speed=np.maximum(before.peak_speed, speed.max(axis=0)),
+        torque, stop = self._ticks.copy()
+        peak_torque, peak_speed = self._peaks.copy()
+        return Saturation(
+            names=self._index.names,
+            torque_any=int(torque[-1]),
+            torque_ticks=torque[:-1],
+            stop_any=int(stop[-1]),
+            stop_ticks=stop[:-1],
+            peak_torque=peak_torque,
+            peak_speed=peak_speed,
         )
+
+
+@compiled
+def count(
+    force: Array,
+    qpos: Array,
+    qvel: Array,
+    addresses: Ints,
+    limits: Array,
+    ticks: NDArray[np.int64],
+    peaks: Array,
+) -> None:
+    """Count the joints that are saturated in one control tick, and update their peaks.
+
+    Args:
+        force: forces of the actuators [N m].
+        qpos: generalised position, MuJoCo order (nq,).
+        qvel: generalised velocity, MuJoCo order (nv,).
+        addresses: address of each joint in `force`, `qpos` and `qvel` (3, n).
+        limits: maximum torque [N m] and angles beyond the range [rad] of each joint (3, n).
+        ticks: control ticks at maximum torque and at the end of the range, by joint and of any
+            joint; updated (2, n + 1).
+        peaks: peak torque over maximum torque [1] and peak speed [rad/s] of each joint;
+            updated (2, n).
+    """
+    n = addresses.shape[1]
+    any_torque, any_stop = False, False
+    for k in range(n):
+        # A limit of the joint, unlike one of the servo, clips later than here.
+        torque = min(abs(force[addresses[0, k]]) / limits[0, k], 1.0)
+        angle = qpos[addresses[1, k]]
+        saturated, stopped = torque >= AT_LIMIT, angle < limits[1, k] or angle > limits[2, k]
+        ticks[0, k] += saturated
+        ticks[1, k] += stopped
+        any_torque, any_stop = any_torque or saturated, any_stop or stopped
+        peaks[0, k] = max(peaks[0, k], torque)
+        peaks[1, k] = max(peaks[1, k], abs(qvel[addresses[2, k]]))
+    ticks[0, n] += any_torque
+    ticks[1, n] += any_stop

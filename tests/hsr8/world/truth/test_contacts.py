@@ -113,10 +113,16 @@ def test_feet_in_the_air_have_no_load_and_no_centre_of_pressure(watched):
 
 
 def test_a_standing_robot_loads_both_feet(watched):
-    watch, data, model, _ = watched()
+    watch, data, model, index = watched()
     for _ in range(400):
         mujoco.mj_step(model, data)
     load, pressure = watch.feet(data)
+    under = np.zeros((2, 6))
+    for i, geoms in enumerate(data.contact.geom.tolist()):
+        force = np.zeros(6)
+        mujoco.mj_contactForce(model, data, i, force)
+        under[index.foot_geoms.index(max(geoms))] += force
+    assert load.tolist() == under[:, 0].tolist()
     assert load.sum() == pytest.approx(9.81 * model.body("base_link").subtreemass[0], rel=0.05)
     assert load.min() > 0.2 * load.max()
     assert np.hypot(*(pressure - data.qpos[:2])) < 0.08
