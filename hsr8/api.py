@@ -12,9 +12,9 @@ from hsr8.evaluation.recording import Result, record, renderer_of, started_folde
 from hsr8.files.temporary import require_temporary
 from hsr8.loop import Simulation
 from hsr8.plugin_walker import CustomWalker
-from hsr8.recorder.log_level import LogLevel
 from hsr8.recorder.run.manifest import CALL
 from hsr8.recorder.run.run_folder import SCENARIO, new_run_folder
+from hsr8.recorder.run.run_reader import open_run
 from hsr8.scenario.layers import as_words
 from hsr8.scenario.loader import load_scenario
 from hsr8.scenario.schema import Scenario
@@ -26,7 +26,7 @@ def run(
     seed: SupportsIndex | None = None,
     settings: Sequence[str] | Mapping[str, Any] = (),
     out: str | Path | None = None,
-    log: bool | str = True,
+    log: bool = False,
     planner: MotionPlanner | None = None,
     gaze: GazeController | None = None,
     walker: CustomWalker | None = None,
@@ -38,7 +38,7 @@ def run(
         seed: seed of the world and of all noise; default: that of the scenario.
         settings: override those of the scenario, as ``key=value`` or by dotted key.
         out: parent folder of the run folder; by default no files are kept.
-        log: also write the Rerun log; True, False, ``"minimal"``, ``"standard"`` or ``"full"``.
+        log: also write the Rerun log into the run folder.
         planner: replaces the planner of the scenario.
         gaze: replaces the gaze controller of the scenario.
         walker: replaces the walking engine of the scenario.
@@ -46,14 +46,15 @@ def run(
     Raises:
         ScenarioError: the scenario or a setting is invalid, or its world cannot be drawn.
         RenderingUnavailable: the camera needs OpenGL and there is none.
-        UsageError: the run folder cannot be made, `log` is not a level, or `planner`, `gaze` or
-            `walker` returned an invalid value.
+        UsageError: the run folder cannot be made, `log` is given without `out`, or `planner`,
+            `gaze` or `walker` returned an invalid value.
         RecordingFailed: the run folder can no longer be written.
         TypeError: settings were given for a loaded scenario.
         KeyboardInterrupt: Ctrl-C; the run folder is complete up to then.
     """
-    level = _level(log)
-    if out is not None and level is not None:
+    if log and out is None:
+        raise UsageError("log: needs a folder, got out=None; expected the parent of run folders")
+    if log:
         require_temporary()
     loaded = scenario if isinstance(scenario, Scenario) else load_scenario(str(scenario), settings)
     if isinstance(scenario, Scenario) and settings:
@@ -72,8 +73,12 @@ def run(
             words += ["--set", *as_words(settings)] if settings else []
             plugins = {"planner": planner, "gaze": gaze, "walker": walker}
             command = _call(plugins) or tuple(map(shlex.quote, words))
-            folder = started_folder(path, loaded, command, renderer, level)
-        result = record(simulation, folder, log=level)
+            folder = started_folder(path, loaded, command, renderer)
+        result = record(simulation, folder)
+        if log:
+            from hsr8.rerun_log.run_log import write_log  # noqa: PLC0415  takes a third of a second
+
+            write_log(open_run(path))
     if result.exit_reason == "interrupted":
         raise KeyboardInterrupt  # also ends a loop over runs
     return result
@@ -87,11 +92,3 @@ def _call(plugins: Mapping[str, object]) -> tuple[str, ...]:
         if value is not None
     ]
     return (f"{CALL}{', '.join(names)})",) if names else ()
-
-
-def _level(log: bool | str) -> LogLevel | None:
-    if isinstance(log, bool):
-        return LogLevel.STANDARD if log else None
-    if log not in tuple(LogLevel):
-        raise UsageError(f"log: got {log!r}; expected True, False, {', '.join(LogLevel)}")
-    return LogLevel(log)

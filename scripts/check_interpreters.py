@@ -76,7 +76,7 @@ def check(version: str, interpreter: Path, expected: str) -> None:
 
 def state_hash(python: Path, out: Path, version: str) -> str:
     """Run `HASHED` with a log and return its state hash."""
-    words = ["run", *HASHED, "--quiet", "--out", str(out / "runs")]
+    words = ["run", *HASHED, "--log", "--quiet", "--out", str(out / "runs")]
     _step(f"{version}: run", [str(python), "-m", "hsr8", *words], codes=VERDICTS)
     (file,) = out.glob("runs/*/*/metrics.json")
     assert (file.parent / "log.rrd").stat().st_size

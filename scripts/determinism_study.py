@@ -69,8 +69,8 @@ def swept(case: Case, out: Path, workers: int) -> Run:
 
 
 CONDITIONS: dict[str, Callable[[Case, Path], Run]] = {
-    "no log": lambda case, out: case.run(out, "--no-log"),
-    "log": lambda case, out: case.run(out),
+    "no log": lambda case, out: case.run(out),
+    "log": lambda case, out: case.run(out, "--log"),
     "sweep, 1 worker": lambda case, out: swept(case, out, 1),
     "sweep, 2 workers": lambda case, out: swept(case, out, 2),
 }

@@ -18,8 +18,6 @@ from hsr8.evaluation.recording import record, started_folder
 from hsr8.gl import require_gl
 from hsr8.loop import Simulation
 from hsr8.record import Tick
-from hsr8.recorder.log.rerun_log import RerunLog
-from hsr8.recorder.log_level import LogLevel
 from hsr8.recorder.recorder import Recorder
 from hsr8.recorder.run.run_folder import RunFolder
 from hsr8.robots.normal_form import HEAD_CAMERA
@@ -95,12 +93,11 @@ class Bench:
         floor = Floor(simulation)
         with tempfile.TemporaryDirectory() as out, Stopwatch() as watch:
             path = RunFolder.create(Path(out), scenario.name, seed)
-            log = LogLevel.STANDARD
-            folder = started_folder(path, simulation.scenario, ("bench",), require_gl(), log)
+            folder = started_folder(path, simulation.scenario, ("bench",), require_gl())
             self.watch = watch
             self._watch(simulation)
             with closing(floor):
-                result = record(simulation, folder, log=log, on_tick=floor.on_tick)
+                result = record(simulation, folder, on_tick=floor.on_tick)
         self.simulated = result.metrics["sim_time_s"]
         self.floor = watch.total(*FLOOR) + watch.beside(*FLOOR)
         stages = [stage for stage in watch.times if stage not in FLOOR]
@@ -169,7 +166,6 @@ class Bench:
             (type(parts["_planner"]), "plan", "planner"),
             (type(parts["_gaze"]), "choose", "gaze"),
             (Recorder, "append", "tables"),
-            (RerunLog, "add", "Rerun log"),
             (Floor, "on_tick", "floor: its own turn"),
             (Floor, "physics", FLOOR[0]),
             (Floor, "image", FLOOR[1]),

@@ -1,7 +1,7 @@
 """The figures of Yoo and Kim (2010), drawn from the running code, for docs/figures.md.
 
-    hsr8 run paper --out runs/figures/extended --no-log
-    hsr8 run paper --out runs/figures/paper --no-log --set navigation.profile=paper
+    hsr8 run paper --out runs/figures/extended
+    hsr8 run paper --out runs/figures/paper --set navigation.profile=paper
     python scripts/paper_figures.py --tours runs/figures/extended runs/figures/paper
 
 Figs. 1, 4 and 7 come from short runs of the real loop that the script makes itself, with the

@@ -6,7 +6,6 @@ from typing import Any
 
 from hsr8.cli.options import Bench, Check, Run, RunOptions, ScenarioOptions, Sweep
 from hsr8.errors import UsageError
-from hsr8.recorder.log_level import LogLevel
 
 
 def settings(options: ScenarioOptions | Bench) -> tuple[str, ...]:
@@ -59,16 +58,3 @@ def option_tables(options: ScenarioOptions) -> dict[str, dict[str, Any]]:
             "--camera": {"camera": {"source": options.camera}},
         }
     return {flag: table for flag, table in tables.items() if getattr(options, flag[2:]) is not None}
-
-
-def log_level(options: Run) -> LogLevel | None:
-    """Return the level of the log; None for no log.
-
-    Raises:
-        UsageError: the log is to be viewed and there is none.
-    """
-    if not options.no_log:
-        return LogLevel(options.log_level or LogLevel.STANDARD)
-    if options.view is not None:
-        raise UsageError("--view: shows the log, got --no-log; leave out one of them")
-    return None

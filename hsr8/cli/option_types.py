@@ -38,11 +38,6 @@ Camera = Annotated[
     _choice("rendered", "analytic", "neck-reach", "omnidirectional"),
     NO_DEFAULT,
 ]
-Level = Annotated[
-    Literal["minimal", "standard", "full"] | None,
-    _choice("minimal", "standard", "full"),
-    NO_DEFAULT,
-]
 View = Annotated[Literal["native", "web"] | None, _choice("native", "web"), NO_DEFAULT]
 Flag = Annotated[bool, NO_DEFAULT]
 Scenario = Positional[

@@ -14,7 +14,6 @@ from hsr8.cli.option_types import (
     Flag,
     Integer,
     Json,
-    Level,
     Number,
     Quiet,
     RobotName,
@@ -60,10 +59,8 @@ class Run(RunOptions):
     """Seed of world and noise; default: that of the scenario."""
     out: Path = Path("runs")
     """Parent folder of run folders."""
-    no_log: Flag = False
-    """Write no Rerun log."""
-    log_level: Level = None
-    """minimal: poses and events; standard (default): also images, beliefs; full: all frames."""
+    log: Flag = False
+    """Also write the Rerun log at the end; `hsr8 replay` makes it otherwise."""
     view: View = None
     """Show the log during the run: in a window or in a browser."""
     video: Flag = False
@@ -239,6 +236,8 @@ class Replay:
     """Open the log of a run in the Rerun viewer; a missing log is made from the tables."""
 
     run: RunPath
+    full: Flag = False
+    """Make the log anew with every record and frame; default: 17 poses, 6 frames per second."""
     view: View = None
     """native (default): a window; web: a page for a browser on this machine."""
     screenshot: File = None

@@ -24,23 +24,22 @@ from hsr8.files.atomic import draft
 from hsr8.files.temporary import require_temporary
 from hsr8.gl import require_gl
 from hsr8.loop import Simulation
-from hsr8.recorder.log_level import LogLevel
 from hsr8.recorder.run.run_folder import new_run_folder
 from hsr8.recorder.run.run_reader import open_run
 from hsr8.render.live_view import LiveView, live_view
+from hsr8.rerun_log.run_log import write_log
 from hsr8.scenario.schema import Scenario
 
 BAG = "bag"  # folder in that of the run
 SIGNALS = (signal.SIGINT, signal.SIGTERM)
 
 
-def start(options: Run, scenario: Scenario, log: LogLevel | None, command: Sequence[str]) -> int:
+def start(options: Run, scenario: Scenario, command: Sequence[str]) -> int:
     """Run the scenario and report.
 
     Args:
         options: as given.
         scenario: to run.
-        log: level of the log; None for no log.
         command: words of the command line that makes exactly this run.
 
     Raises:
@@ -52,13 +51,13 @@ def start(options: Run, scenario: Scenario, log: LogLevel | None, command: Seque
         require_rosbags()
     if options.video:
         require_gl()
-    if log is not None:
+    if options.log or options.view:
         require_temporary()
     with two_processes(scenario.camera.source, quiet=options.quiet):
-        return _start(options, scenario, log, command)
+        return _start(options, scenario, command)
 
 
-def _start(options: Run, scenario: Scenario, log: LogLevel | None, command: Sequence[str]) -> int:
+def _start(options: Run, scenario: Scenario, command: Sequence[str]) -> int:
     renderer = renderer_of(scenario)
     new = new_run_folder(options.out, scenario.name, scenario.seed)  # before any compilation
     with new as path, _view(options) as view, ExitStack() as after:
@@ -70,14 +69,14 @@ def _start(options: Run, scenario: Scenario, log: LogLevel | None, command: Sequ
             simulation.interrupt()
 
         with crash_report(path), on_signals(SIGNALS, interrupt):
-            folder = started_folder(path, scenario, command, renderer, log)
+            folder = started_folder(path, scenario, command, renderer)
             outputs = Outputs(options, path, after)
             with ExitStack() as shown:
                 on_tick = None
                 if not options.quiet:
                     on_tick = shown.enter_context(Progress(scenario.duration)).show
                 address = view.address if view else ""
-                result = record(simulation, folder, log=log, live=address, on_tick=on_tick)
+                result = record(simulation, folder, live=address, on_tick=on_tick)
         if options.json:
             outputs.complete()
         _report(options, result, outputs.failures)
@@ -92,7 +91,7 @@ def _start(options: Run, scenario: Scenario, log: LogLevel | None, command: Sequ
 
 
 class Outputs:
-    """Bag and video of a run; their failures are reported after its results.
+    """Log, bag and video of a run; their failures are reported after its results.
 
     Args:
         options: as given.
@@ -106,7 +105,7 @@ class Outputs:
 
     def __init__(self, options: Run, path: Path, after: ExitStack) -> None:
         self._path = path
-        self._bag = options.bag
+        self._log, self._bag = options.log, options.bag
         self._video: VideoProcess | None = None
         if options.video:
             silent = options.quiet or options.json
@@ -115,10 +114,13 @@ class Outputs:
         self.exit_code = 0
 
     def complete(self) -> None:
-        """Write the bag and wait for the video, once."""
+        """Write log and bag and wait for the video, once."""
+        log, self._log = self._log, False
         bag, self._bag = self._bag, False
         video, self._video = self._video, None
         try:
+            if log:
+                write_log(open_run(self._path))
             if bag:
                 target = self._path / BAG
                 with crash_report(self._path), writing("--bag", target), draft(target) as folder:

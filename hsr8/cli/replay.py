@@ -22,7 +22,7 @@ def main(options: Replay) -> int:
         UsageError: there is no such run or log, or no display.
     """
     run = open_run(options.run)
-    log = run.log_file or _made(run)
+    log = (None if options.full else run.log_file) or _made(run, full=options.full)
     if options.screenshot is not None:
         require_file_name("--screenshot", options.screenshot, (".png",))
         size = parse_size(options.size)
@@ -58,13 +58,13 @@ def main(options: Replay) -> int:
     return 0
 
 
-def _made(run: StoredRun) -> Path:
+def _made(run: StoredRun, *, full: bool) -> Path:
     """Write the log of a run that has none."""
     run.scenario()  # reports a scenario that cannot be read
     print("writing the log", file=sys.stderr, flush=True)
-    from hsr8.render.finished_log import write_log  # noqa: PLC0415  takes seconds
+    from hsr8.rerun_log.run_log import write_log  # noqa: PLC0415  takes seconds
 
-    return write_log(run)
+    return write_log(run, full=full)
 
 
 def _time(options: Replay, run: StoredRun) -> float:

@@ -11,7 +11,6 @@ from rich.console import Console
 from hsr8.cli import tables
 from hsr8.evaluation.registry import METRICS, Shown, shown_in
 from hsr8.evaluation.verdict import Criterion, exit_code
-from hsr8.recorder.run import run_folder
 
 VERDICTS = {  # definitions
     "success": METRICS["success"].text,
@@ -44,9 +43,12 @@ def show(
     if criteria:
         console.print(tables.rows([asdict(criterion) for criterion in criteria]))
     word = shlex.quote(str(path))
-    lines = [f"run folder  {path}", f"video       hsr8 render {word}"]
-    if (path / run_folder.LOG).exists():
-        lines.insert(1, f"log         hsr8 replay {word}")
-    lines += [f"plots       hsr8 plot {word}", f"again       {command}"]
+    lines = (
+        f"run folder  {path}",
+        f"log         hsr8 replay {word}",
+        f"video       hsr8 render {word}",
+        f"plots       hsr8 plot {word}",
+        f"again       {command}",
+    )
     for line in lines:
         console.print(line, highlight=False, soft_wrap=True, markup=False)

@@ -4,7 +4,7 @@ import shlex
 import sys
 from dataclasses import replace
 
-from hsr8.cli.command_line import command_words, log_level, option_tables, settings
+from hsr8.cli.command_line import command_words, option_tables, settings
 from hsr8.cli.options import Run
 from hsr8.scenario.loader import load_scenario
 
@@ -16,7 +16,6 @@ def main(options: Run) -> int:
         UsageError: the scenario, a setting or the output folder is invalid.
         RenderingUnavailable: the camera needs OpenGL and there is none.
     """
-    log = log_level(options)
     scenario = load_scenario(
         options.scenario,
         settings(options),
@@ -29,4 +28,4 @@ def main(options: Run) -> int:
     from hsr8.cli.recorded_run import start  # noqa: PLC0415  takes seconds
 
     repeated = replace(options, seed=scenario.seed, view=None)
-    return start(options, scenario, log, tuple(map(shlex.quote, command_words(repeated))))
+    return start(options, scenario, tuple(map(shlex.quote, command_words(repeated))))

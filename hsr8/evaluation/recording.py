@@ -17,10 +17,8 @@ from hsr8.gl import require_gl
 from hsr8.loop import Simulation
 from hsr8.plugin_file import digests
 from hsr8.record import Tick
-from hsr8.recorder.log_level import IMAGES, LogLevel
 from hsr8.recorder.memory import Memory
-from hsr8.recorder.recorder import PERIOD, Recorder, Sink
-from hsr8.recorder.run import run_folder
+from hsr8.recorder.recorder import IMAGES, PERIOD, Recorder, Sink
 from hsr8.recorder.run.manifest import CALL, Manifest
 from hsr8.recorder.run.run import MemoryRun, Run
 from hsr8.recorder.run.run_folder import RunFolder
@@ -78,7 +76,7 @@ def renderer_of(scenario: Scenario) -> str:
 
 
 def started_folder(
-    path: Path, scenario: Scenario, command: Sequence[str], renderer: str, log: LogLevel | None
+    path: Path, scenario: Scenario, command: Sequence[str], renderer: str
 ) -> RunFolder:
     """Write manifest and scenario of a run into its folder.
 
@@ -87,29 +85,25 @@ def started_folder(
         scenario: scenario with the seed of the run.
         command: words of the command line that repeats the run.
         renderer: name of the renderer of the head camera.
-        log: level of detail of the Rerun log; None for no log.
 
     Raises:
         RecordingFailed: the folder cannot be written.
     """
-    manifest = _manifest(scenario, command, renderer, log)
+    manifest = _manifest(scenario, command, renderer)
     return RunFolder(path, manifest, dump(scenario))
 
 
-def _manifest(
-    scenario: Scenario, command: Sequence[str], renderer: str, log: LogLevel | None = None
-) -> Manifest:
+def _manifest(scenario: Scenario, command: Sequence[str], renderer: str) -> Manifest:
     manifest = Manifest.now(scenario.name, scenario.seed, command, renderer)
     libraries = manifest.libraries | digests(scenario.plugin) | digest(scenario.robot.model)
     libraries |= track_digests(scenario.world.mover)
-    return replace(manifest, libraries=libraries, log=log or "")
+    return replace(manifest, libraries=libraries)
 
 
 def record(
     simulation: Simulation,
     folder: RunFolder | None = None,
     *,
-    log: LogLevel | None = None,
     live: str = "",
     on_tick: Callable[[Tick], None] | None = None,
 ) -> Result:
@@ -118,7 +112,6 @@ def record(
     Args:
         simulation: simulation that is not yet started.
         folder: receives tables and results; None keeps them in memory.
-        log: level of detail of the Rerun log in the folder; None for no log.
         live: address of a viewer that shows the log during the run; empty for none.
         on_tick: receives every control tick.
 
@@ -126,7 +119,7 @@ def record(
         RecordingFailed: the folder cannot be written.
     """
     try:
-        return _record(simulation, folder, log, live, on_tick)
+        return _record(simulation, folder, live, on_tick)
     except RecordingFailed:
         if folder is not None:
             with suppress(RecordingFailed):
@@ -137,20 +130,18 @@ def record(
 def _record(
     simulation: Simulation,
     folder: RunFolder | None,
-    log: LogLevel | None,
     live: str,
     on_tick: Callable[[Tick], None] | None,
 ) -> Result:
     started, diverged, scenario = perf_counter(), "", simulation.scenario
     memory = Memory() if folder is None else Memory(metrics.COLUMNS)
     sinks: list[Sink] = [memory] if folder is None else [folder, memory]
-    if folder is not None and log is not None:
-        # Imported late: runs without a log start a third of a second earlier.
-        from hsr8.recorder.log.rerun_log import RerunLog  # noqa: PLC0415
+    if live:
+        # Imported late: runs without a viewer start a third of a second earlier.
+        from hsr8.rerun_log.run_log import RunLog  # noqa: PLC0415
 
         world = simulation.model, simulation.humanoid, simulation.layout
-        file = folder.path / run_folder.LOG
-        sinks.append(RerunLog(file, world, scenario, level=log, live=live))
+        sinks.append(RunLog(live, world, scenario, name=f"{scenario.name} {scenario.seed}"))
     with CompilationWatch() as compiling:
         recorder = Recorder(
             simulation.humanoid.model.names,

@@ -3,6 +3,7 @@
 from collections.abc import Iterable, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from contextlib import ExitStack
+from dataclasses import dataclass
 from functools import partial
 from typing import Any, Protocol
 
@@ -11,7 +12,6 @@ import pyarrow as pa
 from hsr8.frame_record import FrameRecord
 from hsr8.record import Tick
 from hsr8.recorder.columns import batch_of, schema_of
-from hsr8.recorder.log_level import ImageRates
 from hsr8.recorder.recorded import FrameSampler, RecordedImage, image_row, objects_of
 from hsr8.recorder.rows import TABLES
 from hsr8.recorder.table import Table
@@ -20,6 +20,23 @@ from hsr8.recorder.throttle import Throttle
 Tables = dict[str, Table]
 
 PERIOD = 200  # ticks of a batch: a killed run loses at most one second
+
+
+@dataclass(frozen=True, slots=True)
+class ImageRates:
+    """Images of the head camera that a run keeps.
+
+    Attributes:
+        period: minimum interval between two images [s].
+        quality: quality of the compression [%].
+    """
+
+    period: float
+    quality: int
+
+
+IMAGES = {"none": None, "standard": ImageRates(0.18, 75), "full": ImageRates(0.0, 90)}
+"""Rates by the scenario's key ``recorder.images``."""
 
 
 class Sink(Protocol):

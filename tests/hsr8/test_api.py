@@ -12,7 +12,6 @@ from hsr8.recorder.run.run_reader import open_run
 from hsr8.recorder.table_difference import first_cell
 from navigation.belief.belief import Belief
 from navigation.decision import GazeDecision, MotionDecision
-from tests.hsr8.recorder.log.reading import Log
 
 STAND_INS = {"robot.body": "kinematic", "camera.source": "analytic", "duration": 1.0}
 
@@ -36,7 +35,7 @@ def test_nothing_is_written_by_default(tmp_path, monkeypatch):
 
 
 def test_a_run_in_memory_is_that_on_disk(tmp_path, monkeypatch):
-    stored = hsr8.run("quick", seed=3, settings=STAND_INS, out=tmp_path, log=False).run
+    stored = hsr8.run("quick", seed=3, settings=STAND_INS, out=tmp_path).run
     monkeypatch.setattr("tempfile.mkdtemp", lambda *_, **__: pytest.fail("a temporary folder"))
     kept = hsr8.run("quick", seed=3, settings=STAND_INS).run
     assert kept.path is None
@@ -56,7 +55,7 @@ def test_a_run_in_memory_is_that_on_disk(tmp_path, monkeypatch):
 
 
 def test_the_folder_holds_the_same_results_and_can_be_repeated(tmp_path):
-    result = hsr8.run("quick", seed=3, settings=STAND_INS, out=tmp_path, log=False)
+    result = hsr8.run("quick", seed=3, settings=STAND_INS, out=tmp_path)
     run = open_run(tmp_path)
     assert result.folder == run.path
     assert run.metrics()["state_hash"] == result.metrics["state_hash"]
@@ -66,7 +65,7 @@ def test_the_folder_holds_the_same_results_and_can_be_repeated(tmp_path):
 
 def test_the_command_in_the_folder_makes_the_same_run(tmp_path):
     def repeated(name, *scenario, **options):
-        result = hsr8.run(*scenario, out=tmp_path / name, log=False, **options)
+        result = hsr8.run(*scenario, out=tmp_path / name, **options)
         head, verb, source, _, seed, *settings = shlex.split(
             str(open_run(tmp_path / name).manifest["command"])
         )
@@ -87,7 +86,7 @@ def test_the_folder_names_custom_planner_and_gaze(tmp_path):
 
 def test_seeds_may_come_from_numpy(tmp_path):
     drawn = np.random.default_rng(0).integers(100, size=1)[0]
-    result = hsr8.run("quick", seed=drawn, settings=STAND_INS, out=tmp_path, log=False)
+    result = hsr8.run("quick", seed=drawn, settings=STAND_INS, out=tmp_path)
     assert open_run(result.folder).seed == drawn
     with pytest.raises(ScenarioError, match="expected an integer"):
         hsr8.run("quick", seed=-1)
@@ -101,21 +100,10 @@ def test_ctrl_c_ends_the_loop_around_a_run_and_leaves_its_folder(tmp_path):
             return super().plan(belief, task)
 
     with pytest.raises(KeyboardInterrupt):
-        hsr8.run("quick", settings=STAND_INS, out=tmp_path, planner=Stops(), log=False)
+        hsr8.run("quick", settings=STAND_INS, out=tmp_path, planner=Stops())
     run = open_run(tmp_path)
     assert run.manifest["exit_reason"] == run.metrics()["exit_reason"] == "interrupted"
     assert 0.3 < run.records["time"][-1] < 1.0
-
-
-def test_the_log_follows_its_level(tmp_path):
-    first = {}
-    for level in ("minimal", "full"):
-        result = hsr8.run("quick", settings=STAND_INS, out=tmp_path / level, log=level)
-        first[level] = (Log(result.folder / "log.rrd").entities(), result.metrics["state_hash"])
-    (minimal, one), (full, other) = first.values()
-    assert one == other
-    assert minimal < full
-    assert "/belief/tracks" in full - minimal
 
 
 @pytest.mark.gl
@@ -129,10 +117,9 @@ def test_images_are_kept_by_their_setting_with_or_without_a_log(tmp_path, kept, 
         assert run.images["index"].tolist() == [*shown]
 
 
-def test_an_unknown_level_is_refused_before_the_run(tmp_path):
-    with pytest.raises(UsageError, match="minimal, standard, full"):
-        hsr8.run("quick", settings=STAND_INS, out=tmp_path, log="all")
-    assert list(tmp_path.iterdir()) == []
+def test_a_log_without_a_folder_is_refused():
+    with pytest.raises(UsageError, match="log: needs a folder"):
+        hsr8.run("quick", settings=STAND_INS, log=True)
 
 
 def test_without_opengl_no_folder_is_left(tmp_path, monkeypatch):

@@ -48,7 +48,7 @@ def run(tmp_path_factory):
     """A run folder as a kill leaves it."""
     out = tmp_path_factory.mktemp("fuzz")
     words = ["run", "quick", "--body", "kinematic", "--camera", "analytic", "--quiet"]
-    more = ["--no-log", "--duration", "1.2", "--out", str(out)]
+    more = ["--duration", "1.2", "--out", str(out)]
     assert entry([*words, *more]) == 1
     (folder,) = (out / "quick").iterdir()
     manifest = (folder / "manifest.json").read_text()

@@ -103,7 +103,7 @@ def test_a_file_with_a_policy_takes_part_in_commands(tmp_path, monkeypatch, caps
         "    return lambda observation: -0.5 * observation['head'] - 0.2\n"
         "Mine = hsr8.gym.as_gaze(load)\n"
     )
-    words = ["--body", "kinematic", "--camera", "analytic", "--duration", "3", "--no-log"]
+    words = ["--body", "kinematic", "--camera", "analytic", "--duration", "3"]
     assert entry(["run", "quick", *words, "--set", "plugin.gaze=mine.py:Mine"]) in (0, 1)
     assert entry(["verify", "runs/quick", "--trust"]) == 0
     assert capsys.readouterr().out.count("bit for bit") == 3

@@ -70,7 +70,7 @@ damages = st.lists(
 def whole(tmp_path_factory):
     """A run as a kill leaves it, and a sweep of two runs."""
     out = tmp_path_factory.mktemp("whole")
-    assert entry(["run", "quick", *LIGHT, "--no-log", "--duration", "1.2", "--out", str(out)]) == 1
+    assert entry(["run", "quick", *LIGHT, "--duration", "1.2", "--out", str(out)]) == 1
     (run,) = (out / "quick").iterdir()
     manifest = run / "manifest.json"
     manifest.write_text(manifest.read_text().replace('"timeout"', '"running"'))

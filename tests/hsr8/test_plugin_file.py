@@ -283,7 +283,7 @@ def test_check_reads_the_file_of_a_plugin_without_running_it(stranger, capsys, s
 
 def test_a_run_records_the_digest_and_can_be_verified(folder, capsys):
     plugins = ("--set", "plugin.planner=mine.py:Ahead", "plugin.gaze=mine.py:Down", "duration=3.0")
-    assert entry(["run", "quick", *FAST, *plugins, "--no-log", "--out", "runs"]) == 1
+    assert entry(["run", "quick", *FAST, *plugins, "--out", "runs"]) == 1
     (manifest,) = folder.glob("runs/quick/*/manifest.json")
     libraries = json.loads(manifest.read_text())["libraries"]
     assert digests(Plugin(planner="mine.py:Ahead")).items() <= libraries.items()
@@ -332,7 +332,7 @@ def test_an_error_in_a_plugin_is_reported_with_its_line(folder, capsys, name, me
 def test_the_time_of_the_error_is_reported(folder, capsys):
     for name in ("Trips", "Wanders"):
         plugins = ("--set", f"plugin.planner=mine.py:{name}")
-        assert entry(["run", "quick", *FAST, *plugins, "--no-log", "--out", "runs"]) == 2
+        assert entry(["run", "quick", *FAST, *plugins, "--out", "runs"]) == 2
         when = re.search(r", at (\S+) s of simulated time$", capsys.readouterr().err, re.MULTILINE)
         assert 0.5 <= float(when[1]) < 1.5
 

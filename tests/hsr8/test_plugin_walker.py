@@ -302,9 +302,7 @@ def test_a_run_records_the_digest_and_can_be_verified_and_drawn(folder, capsys):
 
 
 def test_a_run_with_an_object_records_its_class(folder):
-    hsr8.run(
-        "quick", settings=FAST, walker=Fixed(load_robot("hsr8").model.ready), log=False, out=folder
-    )
+    hsr8.run("quick", settings=FAST, walker=Fixed(load_robot("hsr8").model.ready), out=folder)
     (manifest,) = folder.glob("quick/*/manifest.json")
     assert f"walker={__name__}.Fixed" in str(json.loads(manifest.read_text())["command"])
 
@@ -321,7 +319,7 @@ def test_a_run_with_an_object_records_its_class(folder):
 )
 def test_an_error_of_a_walker_is_one_message(folder, capsys, name, message):
     walker = ("--set", f"plugin.walker=mine.py:{name}")
-    assert entry(["run", "quick", *QUICK, *walker, "--no-log", "--out", "runs"]) == 2
+    assert entry(["run", "quick", *QUICK, *walker, "--out", "runs"]) == 2
     error = capsys.readouterr().err
     assert message in error
     assert "internal" not in error

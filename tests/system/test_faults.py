@@ -139,7 +139,7 @@ PHYSICAL = [
 
 
 def test_a_run_with_all_faults_is_computed_again_bit_for_bit(tmp_path, capsys):
-    words = ["run", "quick", "--camera", "analytic", "--duration", "1.2", "--no-log", "--quiet"]
+    words = ["run", "quick", "--camera", "analytic", "--duration", "1.2", "--quiet"]
     words += ["--set", f"fault=[{','.join([*ALL, *PHYSICAL])}]"]
     entry([*words, "--out", str(tmp_path)])
     run = open_run(tmp_path)

@@ -25,7 +25,7 @@ def run(tmp_path_factory):
         'extends = "course"\n[world]\nn_static = 2\nn_moving = 0\n[[world.mover]]\n'
         f'motion = "track"\nfile = "people.csv"\n{KEYS}'
     )
-    hsr8.run(file, seed=3, settings=SETTINGS, out=folder / "runs", log=False)
+    hsr8.run(file, seed=3, settings=SETTINGS, out=folder / "runs")
     (folder / "people.csv").unlink()
     return hsr8.open_run(folder / "runs")
 
@@ -55,7 +55,7 @@ def test_a_run_is_verified_and_repeated_without_the_file(run, tmp_path):
     assert all(stage.equal for stage in replay(run))
     copy = tmp_path / "scenario.toml"
     shutil.copy(run.scenario_file, copy)
-    hsr8.run(copy, seed=3, out=tmp_path, log=False)
+    hsr8.run(copy, seed=3, out=tmp_path)
     again = hsr8.open_run(tmp_path)
     assert again.metrics()["state_hash"] == run.metrics()["state_hash"]
     digest = json.loads((run.path / "manifest.json").read_text())["libraries"]["tracks people.csv"]

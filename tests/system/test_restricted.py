@@ -78,11 +78,11 @@ KINEMATIC = "--body kinematic --camera analytic --duration 0.5"
 @pytest.mark.timeout(600)
 def test_a_run_uses_the_compiled_code_of_the_read_only_installation():
     subprocess.run(  # the code of this run is in the installation
-        [sys.executable, "-m", "hsr8", "run", "quick", *KINEMATIC.split(), "--quiet", "--no-log"],
+        [sys.executable, "-m", "hsr8", "run", "quick", *KINEMATIC.split(), "--quiet"],
         cwd="/tmp",
         check=False,
     )
-    done = in_container(f"hsr8 run quick {KINEMATIC} --no-log --json --out /mnt/data")
+    done = in_container(f"hsr8 run quick {KINEMATIC} --json --out /mnt/data")
     assert done.returncode == 1, done.stderr  # no goal in so short a time
     assert json.loads(done.stdout)["walk_ticks"] == 101
     assert "compiling" not in done.stderr
@@ -91,12 +91,11 @@ def test_a_run_uses_the_compiled_code_of_the_read_only_installation():
 @pytest.mark.parametrize(
     ("command", "remedy"),
     [
-        (f"hsr8 run quick {KINEMATIC} --no-log", "choose another with --out"),
+        (f"hsr8 run quick {KINEMATIC}", "choose another with --out"),
         (f"hsr8 run quick {KINEMATIC} --out /mnt/data", "expected TMPDIR=DIR"),
         (f"hsr8 sweep quick --seeds 1 {KINEMATIC} --out /mnt/data", "expected TMPDIR=DIR"),
         (
-            f"hsr8 run quick {KINEMATIC} --no-log --quiet --out /mnt/data;"
-            "hsr8 plot /mnt/data/quick/*",
+            f"hsr8 run quick {KINEMATIC} --quiet --out /mnt/data;hsr8 plot /mnt/data/quick/*",
             "expected MPLCONFIGDIR=DIR",
         ),
         (

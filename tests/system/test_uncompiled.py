@@ -21,7 +21,7 @@ def compiled(tmp_path_factory):
 
 def recorded(folder, *options, **environment):
     """Return a run of a new process."""
-    words = ["run", "quick", "--body", "kinematic", "--camera", "analytic", "--no-log", "--quiet"]
+    words = ["run", "quick", "--body", "kinematic", "--camera", "analytic", "--quiet"]
     words += ["--duration", str(DURATION), "--out", str(folder)]
     done = subprocess.run(
         [sys.executable, *options, "-m", "hsr8", *words],

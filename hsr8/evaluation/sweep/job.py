@@ -14,8 +14,9 @@ from hsr8.evaluation.crash import FILE, crash_report
 from hsr8.evaluation.recording import Result, record, renderer_of, started_folder
 from hsr8.evaluation.verdict import exit_code
 from hsr8.loop import Simulation
-from hsr8.recorder.log_level import LogLevel
 from hsr8.recorder.run.run_folder import new_run_folder
+from hsr8.recorder.run.run_reader import open_run
+from hsr8.rerun_log.run_log import write_log
 from hsr8.scenario.schema import Scenario
 
 RunResult = dict[str, Any]
@@ -83,13 +84,15 @@ def run_job(job: Job) -> Iterator[RunResult]:
 
 def _record(job: Job, path: Path) -> Result:
     """Record the run into a new folder."""
-    log = LogLevel.STANDARD if job.log else None
     renderer = renderer_of(job.scenario)
     simulation = Simulation(job.scenario, job.seed)
     signal.signal(signal.SIGTERM, lambda *_: simulation.interrupt())
     with crash_report(path):
-        folder = started_folder(path, job.scenario, (job.command,), renderer, log)
-        return record(simulation, folder, log=log)
+        folder = started_folder(path, job.scenario, (job.command,), renderer)
+        result = record(simulation, folder)
+        if job.log:
+            write_log(open_run(path))
+        return result
 
 
 def _result(result: Result) -> RunResult:

@@ -44,7 +44,6 @@ class Manifest:
         python: version.
         machine: operating system and processor.
         libraries: version by name, and the arithmetic in use.
-        log: level of the Rerun log; empty without a log.
         format: format number of the run folder.
         rows: number of rows of each table, at the end.
     """
@@ -59,7 +58,6 @@ class Manifest:
     python: str
     machine: str
     libraries: dict[str, str]
-    log: str = ""
     format: int = FORMAT
     rows: dict[str, int] = field(default_factory=dict)
 

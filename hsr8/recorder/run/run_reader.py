@@ -68,9 +68,10 @@ class StoredRun(Run):
 
     @property
     def log_file(self) -> Path | None:
-        """Rerun log; None after ``--no-log``."""
-        file = self.path / run_folder.LOG
-        return file if file.is_file() else None
+        """Rerun log of the whole run; None without one, or if it was made during the run."""
+        file, manifest = self.path / run_folder.LOG, self.path / run_folder.MANIFEST
+        whole = file.is_file() and file.stat().st_mtime_ns >= manifest.stat().st_mtime_ns
+        return file if whole and not self.running else None
 
     def metrics(self) -> dict[str, Any]:
         """Return the results; empty if the run did not get there."""

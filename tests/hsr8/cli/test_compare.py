@@ -5,7 +5,7 @@ import pytest
 from hsr8.cli.main import entry
 from hsr8.recorder.run.run_reader import open_run
 
-FAST = ["run", "quick", "--body", "kinematic", "--camera", "analytic", "--no-log", "--quiet"]
+FAST = ["run", "quick", "--body", "kinematic", "--camera", "analytic", "--quiet"]
 
 
 @pytest.fixture(scope="module")

@@ -18,7 +18,7 @@ def recorded(tmp_path_factory):
     out = tmp_path_factory.mktemp("runs")
     black = 'fault=[{kind="camera-black",start=1.0,duration=0.5}]'
     for name, more in (("a", []), ("b", ["--set", black])):
-        entry([*RUN, "--no-log", "--quiet", "--out", str(out / name), *more])
+        entry([*RUN, "--quiet", "--out", str(out / name), *more])
     return open_run(out / "a").path, open_run(out / "b").path
 
 

@@ -9,7 +9,7 @@ from hsr8.recorder.run.run_reader import open_run
 @pytest.fixture
 def run(tmp_path, capsys):
     """A run of a second."""
-    fast = ["--body", "kinematic", "--camera", "analytic", "--duration", "1", "--no-log"]
+    fast = ["--body", "kinematic", "--camera", "analytic", "--duration", "1"]
     entry(["run", "quick", *fast, "--quiet", "--out", str(tmp_path)])
     capsys.readouterr()
     return open_run(tmp_path)

@@ -41,8 +41,6 @@ LINES = [
     ("check quick --robot no.toml", "robot file 'no.toml' does not exist"),
     ("run quick --view", "Missing value for argument '--view'"),
     ("run quick --view webb", "('native', 'web')"),
-    ("run quick --view web --no-log", "--view: shows the log, got --no-log"),
-    ("run quick --log-level most", "('minimal', 'standard', 'full')"),
     ("run quick --json=yes", "Unrecognized options: yes"),
     ("run quick 7", "Unrecognized options: 7"),
     ("run quick --resume", "Unrecognized options: --resume"),

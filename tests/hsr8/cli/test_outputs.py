@@ -8,13 +8,12 @@ import pytest
 from hsr8.api import run as api_run
 from hsr8.cli.main import entry
 from hsr8.errors import RenderingUnavailable
-from hsr8.recorder.log.rerun_log import RerunLog
 from hsr8.recorder.run import run_folder
 from hsr8.recorder.run.run_folder import RunFolder
 from hsr8.recorder.run.run_reader import open_run
-from hsr8.render.finished_log import write_log
+from hsr8.rerun_log.run_log import RunLog, write_log
 
-FAST = ("--body", "kinematic", "--camera", "analytic", "--no-log")
+FAST = ("--body", "kinematic", "--camera", "analytic")
 
 
 @pytest.fixture
@@ -65,7 +64,7 @@ def test_an_interrupted_log_does_not_count_as_complete(run, monkeypatch):
     def interrupted(self, tables):
         raise KeyboardInterrupt
 
-    monkeypatch.setattr(RerunLog, "add", interrupted)
+    monkeypatch.setattr(RunLog, "add", interrupted)
     with pytest.raises(KeyboardInterrupt):
         write_log(run)
     assert run.log_file is None
@@ -194,6 +193,6 @@ def test_a_camera_that_fails_leaves_no_open_file(tmp_path, monkeypatch):
     monkeypatch.setattr("hsr8.loop.RenderedCamera", failing)
     monkeypatch.setattr("hsr8.api.renderer_of", lambda scenario: "none")
     with pytest.raises(RenderingUnavailable) as error:  # whose frames hold the recorder
-        api_run("quick", out=tmp_path, log=False)
+        api_run("quick", out=tmp_path)
     assert error.traceback
     assert not [file for file in psutil.Process().open_files() if str(tmp_path) in file.path]

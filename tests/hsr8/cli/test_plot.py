@@ -13,9 +13,7 @@ def run(tmp_path_factory):
     out = tmp_path_factory.mktemp("runs")
     push = 'fault=[{kind="push",start=1.0,magnitude=0.3}]'
     settings = ["--set", "command.vx=0.2", "--set", push, "--camera", "analytic"]
-    code = entry(
-        ["run", "walk", "--duration", "1.5", "--out", str(out), "--no-log", "--quiet", *settings]
-    )
+    code = entry(["run", "walk", "--duration", "1.5", "--out", str(out), "--quiet", *settings])
     assert code == 0
     return out
 

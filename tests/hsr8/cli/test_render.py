@@ -9,7 +9,7 @@ from hsr8.errors import RenderingUnavailable
 @pytest.fixture(scope="module")
 def run(tmp_path_factory):
     out = tmp_path_factory.mktemp("runs")
-    options = ["--body", "kinematic", "--camera", "analytic", "--duration", "0.5", "--no-log"]
+    options = ["--body", "kinematic", "--camera", "analytic", "--duration", "0.5"]
     entry(["run", "quick", *options, "--quiet", "--out", str(out)])
     return out
 

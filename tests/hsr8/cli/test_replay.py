@@ -8,7 +8,7 @@ from hsr8.recorder.run.run_reader import open_run
 
 @pytest.fixture
 def run(tmp_path):
-    options = ["--body", "kinematic", "--camera", "analytic", "--duration", "1", "--no-log"]
+    options = ["--body", "kinematic", "--camera", "analytic", "--duration", "1"]
     entry(["run", "quick", *options, "--quiet", "--out", str(tmp_path)])
     return open_run(tmp_path).path
 

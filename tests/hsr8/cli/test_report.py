@@ -37,7 +37,7 @@ def test_results_criteria_and_next_commands_are_shown(results, tmp_path):
     for words in ("quick, seed 3", "path length [m]", "goal reached", "<= 0", "hsr8 run quick"):
         assert words in text
     assert f"hsr8 render {tmp_path}" in text
-    assert "hsr8 replay" not in text, "there is no log"
+    assert f"hsr8 replay {tmp_path}" in text
     assert "time to goal" not in text
 
 
@@ -45,11 +45,6 @@ def test_both_verdicts_are_explained_where_they_are_shown(results, tmp_path):
     text = shown(tmp_path, results=results, criteria=(Criterion("falls", "<= 0", "0", True),))
     assert f"success       no ({report.VERDICTS['success']})" in text
     assert f"criteria_met  yes ({report.VERDICTS['criteria_met']})" in text
-
-
-def test_a_log_can_be_replayed(tmp_path):
-    (tmp_path / "log.rrd").touch()
-    assert f"hsr8 replay {tmp_path}" in shown(tmp_path, results={})
 
 
 def test_a_path_with_spaces_is_quoted(tmp_path):

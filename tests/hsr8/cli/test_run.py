@@ -20,7 +20,7 @@ def _run(tmp_path, *more):
 
 
 def test_json_is_the_only_output(tmp_path, capsys):
-    code = _run(tmp_path, "--json", "--no-log")
+    code = _run(tmp_path, "--json")
     printed = capsys.readouterr().out
     results = json.loads(printed)
     assert printed.count("\n") == 1
@@ -34,18 +34,9 @@ def test_json_is_the_only_output(tmp_path, capsys):
     assert run.log_file is None
 
 
-def test_the_size_of_the_log_follows_its_level(tmp_path):
-    sizes = []
-    for level in ("minimal", "full"):
-        _run(tmp_path / level, "--quiet", "--duration", "0.5", "--log-level", level)
-        file = open_run(tmp_path / level).log_file
-        sizes.append(file.stat().st_size)
-    assert sizes[0] < 0.8 * sizes[1]
-
-
 def test_the_log_does_not_change_the_run(tmp_path, capsys):
     hashes = set()
-    for more in (["--no-log", "--quiet"], ["--quiet"], []):
+    for more in (["--quiet"], [], ["--log", "--quiet"]):
         _run(tmp_path, "--seed", "5", *more)
         hashes.add(open_run(tmp_path).metrics()["state_hash"])
     assert len(hashes) == 1
@@ -54,7 +45,7 @@ def test_the_log_does_not_change_the_run(tmp_path, capsys):
 
 
 def test_the_folder_has_the_command_to_repeat_the_run(tmp_path, capsys):
-    _run(tmp_path, "--no-log", "--seed", "9", "--set", "world.n_moving=0", "world.n_static=3")
+    _run(tmp_path, "--seed", "9", "--set", "world.n_moving=0", "world.n_static=3")
     run = open_run(tmp_path)
     printed = capsys.readouterr().out
     assert str(run.path) in printed
@@ -68,9 +59,9 @@ def test_the_folder_has_the_command_to_repeat_the_run(tmp_path, capsys):
 
 
 def test_the_resolved_scenario_is_the_same_run(tmp_path, capsys):
-    _run(tmp_path, "--no-log", "--quiet", "--seed", "4")
+    _run(tmp_path, "--quiet", "--seed", "4")
     run = open_run(tmp_path)
-    entry(["run", str(run.scenario_file), "--out", str(tmp_path / "b"), "--no-log", "--quiet"])
+    entry(["run", str(run.scenario_file), "--out", str(tmp_path / "b"), "--quiet"])
     assert open_run(tmp_path / "b").metrics()["state_hash"] == run.metrics()["state_hash"]
 
 
@@ -90,13 +81,13 @@ def test_a_run_that_cannot_begin_leaves_no_folder(tmp_path, monkeypatch, capsys,
 
 
 def test_quiet_is_quiet(tmp_path, capsys):
-    _run(tmp_path, "--no-log", "--quiet")
+    _run(tmp_path, "--quiet")
     printed = capsys.readouterr()
     assert printed.out == printed.err == ""
 
 
 def test_a_run_that_meets_its_criteria_passes(tmp_path, capsys):
-    assert _run(tmp_path, "--no-log", "--set", "criteria.goal_reached=false") == 0
+    assert _run(tmp_path, "--set", "criteria.goal_reached=false") == 0
     assert "criteria_met  yes" in capsys.readouterr().out
 
 
@@ -163,5 +154,5 @@ def test_an_internal_error_leaves_its_traceback_in_the_run_folder(tmp_path, monk
 
 
 def test_set_overrides_the_other_options(tmp_path, capsys):
-    _run(tmp_path, "--no-log", "--quiet", "--set", "duration=0.4")
+    _run(tmp_path, "--quiet", "--set", "duration=0.4")
     assert open_run(tmp_path).metrics()["sim_time_s"] == pytest.approx(0.4)

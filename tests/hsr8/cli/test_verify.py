@@ -17,7 +17,7 @@ RUN = ["run", "quick", "--body", "kinematic", "--camera", "analytic", "--duratio
 def recorded(tmp_path_factory):
     """A run with camera latency."""
     out = tmp_path_factory.mktemp("runs")
-    entry([*RUN, "--no-log", "--quiet", "--set", "camera.latency_ms=60", "--out", str(out)])
+    entry([*RUN, "--quiet", "--set", "camera.latency_ms=60", "--out", str(out)])
     return open_run(out).path
 
 
@@ -190,7 +190,7 @@ def test_a_robot_file_is_found_from_every_folder(tmp_path, monkeypatch, capsys):
     shutil.copy(find_description("hsr8"), file)
     file.write_text(file.read_text().replace("radius = 0.12", "radius = 0.13"))
     monkeypatch.chdir(tmp_path)
-    assert entry([*RUN, "--robot", "mine.toml", "--no-log", "--quiet"]) == 1
+    assert entry([*RUN, "--robot", "mine.toml", "--quiet"]) == 1
     (tmp_path / "elsewhere").mkdir()
     monkeypatch.chdir(tmp_path / "elsewhere")
     assert entry(["verify", "../runs/quick"]) == 0
@@ -209,7 +209,7 @@ def test_a_diverged_run_diverges_again_at_the_same_tick(tmp_path, monkeypatch, r
         apply(self, targets)
 
     monkeypatch.setattr(KinematicBody, "apply", diverging)
-    assert entry([*RUN, "--no-log", "--quiet", "--out", str(tmp_path)]) == 3
+    assert entry([*RUN, "--quiet", "--out", str(tmp_path)]) == 3
     run = open_run(tmp_path)
     assert entry(["verify", str(run.path), "--json"]) == 0
     assert stages(capsys)["physics"]["count"] == len(run.ticks)
@@ -219,7 +219,7 @@ def test_a_diverged_run_diverges_again_at_the_same_tick(tmp_path, monkeypatch, r
 
 def test_a_planned_walk_that_diverges_ends_the_run_with_its_time(tmp_path, capsys):
     """The robot believes that it leans: it steps aside faster and faster."""
-    leaning = ["--set", "sensors.roll_bias=0.3", "--seed", "0", "--duration", "4", "--no-log"]
+    leaning = ["--set", "sensors.roll_bias=0.3", "--seed", "0", "--duration", "4"]
     assert entry([*RUN[:-2], *leaning, "--quiet", "--out", str(tmp_path)]) == 3
     shown = capsys.readouterr()
     assert "the planned walk diverged" in shown.err

@@ -103,9 +103,7 @@ def test_what_differs_between_the_two_is_told():
 
 def test_a_planner_of_ones_own_is_a_difference(tmp_path):
     for name, planner in (("theirs", None), ("mine", Still())):
-        hsr8.run(
-            "quick", seed=3, settings=STAND_INS, out=tmp_path / name, log=False, planner=planner
-        )
+        hsr8.run("quick", seed=3, settings=STAND_INS, out=tmp_path / name, planner=planner)
     theirs, mine = open_side(tmp_path / "theirs"), open_side(tmp_path / "mine")
     call = f"hsr8.run(planner={__name__}.Still)"
     assert compare(theirs, mine).versions == {"decisions": ("-", call)}

@@ -5,7 +5,6 @@ import pytest
 
 from hsr8.evaluation.recording import record, started_folder
 from hsr8.loop import Simulation
-from hsr8.recorder.log_level import LogLevel
 from hsr8.scenario.loader import load_scenario
 
 
@@ -22,10 +21,7 @@ def recorded(path):
     settings = ['robot.body="kinematic"', 'camera.source="analytic"', "duration=1.2"]
     simulation = Simulation(load_scenario("quick", settings), 1)
     model = weakref.ref(simulation.model)
-    log = LogLevel.STANDARD
-    record(
-        simulation, started_folder(path, simulation.scenario, ("test",), "analytic", log), log=log
-    )
+    record(simulation, started_folder(path, simulation.scenario, ("test",), "analytic"))
     return model
 
 

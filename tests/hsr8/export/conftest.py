@@ -10,7 +10,7 @@ from hsr8.recorder.run.run_reader import open_run
 def run(tmp_path_factory):
     """Two seconds of `quick` without images."""
     out = tmp_path_factory.mktemp("runs")
-    options = ["--duration", "2", "--camera", "analytic", "--no-log", "--quiet"]
+    options = ["--duration", "2", "--camera", "analytic", "--quiet"]
     entry(["run", "quick", "--out", str(out), *options])
     return open_run(out)
 

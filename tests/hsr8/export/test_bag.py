@@ -169,7 +169,7 @@ def test_a_run_writes_its_bag_at_the_end(robot, tmp_path):
         load_robot(robot)
     except ModelError as error:
         pytest.skip(str(error))
-    options = ["--duration", "0.1", "--camera", "analytic", "--no-log", "--quiet", "--bag"]
+    options = ["--duration", "0.1", "--camera", "analytic", "--quiet", "--bag"]
     entry(["run", "walk", "--robot", robot, "--out", str(tmp_path), *options])
     run = open_run(tmp_path)
     messages, _ = read(run.path / "bag")

@@ -8,16 +8,17 @@ from pathlib import Path
 import pytest
 
 from hsr8.cli.main import entry
-from hsr8.recorder.log import rerun_log
+from hsr8.errors import RecordingFailed
 from hsr8.recorder.recorder import Recorder
 from hsr8.recorder.run import run_folder
 from hsr8.recorder.run.run_folder import RunFolder
 from hsr8.recorder.run.run_reader import open_run
 from hsr8.recorder.stream import CHECKSUMS, SUFFIX
+from hsr8.rerun_log import run_log, stream
 
 FAST = ("--body", "kinematic", "--camera", "analytic", "--quiet")
 TABLES = ("ticks", "records", "frames", "seconds")
-RECORDS = (*(f"{name}{SUFFIX}" for name in TABLES), CHECKSUMS, run_folder.LOG)
+RECORDS = (*(f"{name}{SUFFIX}" for name in TABLES), CHECKSUMS)
 
 
 def _run(out, *more):
@@ -39,25 +40,20 @@ def full(monkeypatch):
 
         monkeypatch.setattr(RunFolder, "create", planted)
 
-    monkeypatch.setattr(rerun_log, "WRITE_TIMEOUT", 1.0)
     return plant
 
 
 @pytest.mark.parametrize("name", RECORDS)
 def test_a_full_disk_is_one_line_and_noted_in_the_manifest(tmp_path, capfd, full, name):
-    earlier = tmp_path / "quick" / "1-aaaaaa"
-    earlier.mkdir(parents=True)
-    (earlier / "log.rrd").write_bytes(b"as it was")
     full(name)
-    assert _run(tmp_path, *(() if name == run_folder.LOG else ("--no-log",))) == 3
+    assert _run(tmp_path) == 3
     (line,) = capfd.readouterr().err.splitlines()
     assert line.startswith("hsr8: cannot write the run folder")
-    folder = next(path for path in (tmp_path / "quick").iterdir() if path != earlier)
+    (folder,) = (tmp_path / "quick").iterdir()
     assert json.loads((folder / "manifest.json").read_text())["exit_reason"] == "failed"
     assert not (folder / run_folder.METRICS).exists()
     assert not (folder / run_folder.CRASH).exists()
     assert not list(folder.glob("*.tmp"))
-    assert (earlier / "log.rrd").read_bytes() == b"as it was"
 
 
 def test_a_run_whose_results_cannot_be_written_fails(tmp_path, capfd, monkeypatch):
@@ -65,7 +61,7 @@ def test_a_run_whose_results_cannot_be_written_fails(tmp_path, capfd, monkeypatc
         raise OSError(28, "No space left on device")
 
     monkeypatch.setattr("hsr8.files.atomic.write_json", refuse)
-    assert _run(tmp_path, "--no-log") == 3
+    assert _run(tmp_path) == 3
     assert "No space left" in capfd.readouterr().err
     assert open_run(tmp_path).manifest["exit_reason"] == "failed"
 
@@ -79,18 +75,18 @@ def test_a_removed_folder_ends_the_run(tmp_path, capfd, monkeypatch):
         append(recorder, tick)
 
     monkeypatch.setattr(Recorder, "append", removing)
-    assert _run(tmp_path, "--no-log") == 3
+    assert _run(tmp_path) == 3
     (line,) = capfd.readouterr().err.splitlines()
     assert line.startswith("hsr8: cannot write the run folder")
 
 
 def test_a_disk_that_is_full_after_a_second_leaves_a_readable_run(tmp_path, capfd):
-    assert _run(tmp_path / "whole", "--no-log") == 1
+    assert _run(tmp_path / "whole") == 1
     size = (open_run(tmp_path / "whole").path / f"ticks{SUFFIX}").stat().st_size
     limits = resource.getrlimit(resource.RLIMIT_FSIZE)
     resource.setrlimit(resource.RLIMIT_FSIZE, (size - 1000, limits[1]))
     try:
-        assert _run(tmp_path / "full", "--no-log") == 3
+        assert _run(tmp_path / "full") == 3
     finally:
         resource.setrlimit(resource.RLIMIT_FSIZE, limits)
     assert "cannot write the run folder" in capfd.readouterr().err
@@ -100,12 +96,28 @@ def test_a_disk_that_is_full_after_a_second_leaves_a_readable_run(tmp_path, capf
     assert run.records["time"][-1] == pytest.approx(0.98)
 
 
+def test_a_log_without_room_leaves_the_run_as_it_is(tmp_path, monkeypatch):
+    monkeypatch.setattr(run_log, "WRITE_TIMEOUT", 1.0)
+    monkeypatch.setattr(stream, "ABANDONED", [])
+    _run(tmp_path)
+    run = open_run(tmp_path)
+    files = {file.name: file.read_bytes() for file in run.path.iterdir()}
+    limits = resource.getrlimit(resource.RLIMIT_FSIZE)
+    resource.setrlimit(resource.RLIMIT_FSIZE, (150_000, limits[1]))
+    try:
+        with pytest.raises(RecordingFailed, match="cannot write the run folder"):
+            run_log.write_log(run)
+    finally:
+        resource.setrlimit(resource.RLIMIT_FSIZE, limits)
+    assert {file.name: file.read_bytes() for file in run.path.iterdir()} == files
+
+
 def test_a_read_only_disk_is_not_a_usage_error(tmp_path, capfd, monkeypatch):
     def refuse(*_, **__):
         raise OSError(30, "Read-only file system")
 
     monkeypatch.setattr(Path, "mkdir", refuse)
-    assert _run(tmp_path, "--no-log") == 3
+    assert _run(tmp_path) == 3
     (line,) = capfd.readouterr().err.splitlines()
     assert line.startswith(f"hsr8: cannot write the run folder {tmp_path / 'quick'}: Read-only")
     assert "--out" in line

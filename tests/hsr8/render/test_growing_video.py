@@ -16,7 +16,7 @@ from hsr8.recorder.stream import CHECKSUMS
 from hsr8.render.run_images import RunImages
 
 pytestmark = [pytest.mark.gl, pytest.mark.timeout(300)]
-FAST = ["--body", "kinematic", "--camera", "analytic", "--no-log"]
+FAST = ["--body", "kinematic", "--camera", "analytic"]
 SMALL = ["--size", "192x108", "--quiet"]
 
 
@@ -44,7 +44,7 @@ def test_a_video_of_a_run_equals_one_of_its_records(tmp_path, scenario, duration
 
 
 def test_an_interrupted_run_leaves_the_video_of_its_records(tmp_path):
-    words = ["--body", "full", "--camera", "analytic", "--no-log", "--video", "--quiet"]
+    words = ["--body", "full", "--camera", "analytic", "--video", "--quiet"]
     command = [sys.executable, "-m", "hsr8", "run", "paper", *words, "--out", str(tmp_path)]
     process = subprocess.Popen(command)
     while not any(f.stat().st_size > 50_000 for f in tmp_path.rglob("records.arrows")):

@@ -45,8 +45,3 @@ def test_without_a_display_nothing_runs(words, tmp_path, monkeypatch, capsys):
     assert entry(["run", "quick", *words, "--out", str(tmp_path / "runs")]) == 2
     assert "no display" in capsys.readouterr().err
     assert not (tmp_path / "runs").exists()
-
-
-def test_a_view_without_a_log_is_refused(tmp_path, capsys):
-    assert entry(["run", "quick", "--view", "web", "--no-log", "--out", str(tmp_path)]) == 2
-    assert "--no-log" in capsys.readouterr().err

@@ -56,7 +56,7 @@ def test_a_run_without_records_is_a_usage_error():
 @pytest.fixture(scope="module")
 def run(tmp_path_factory):
     out = tmp_path_factory.mktemp("runs")
-    options = ["--body", "kinematic", "--camera", "analytic", "--duration", "1", "--no-log"]
+    options = ["--body", "kinematic", "--camera", "analytic", "--duration", "1"]
     entry(["run", "quick", *options, "--quiet", "--out", str(out)])
     return open_run(out)
 

@@ -11,7 +11,7 @@ from hsr8.render.shown_frame import shown_frames
 @pytest.fixture(scope="module")
 def run(tmp_path_factory):
     out = tmp_path_factory.mktemp("runs")
-    options = ["--body", "kinematic", "--camera", "analytic", "--duration", "2", "--no-log"]
+    options = ["--body", "kinematic", "--camera", "analytic", "--duration", "2"]
     entry(
         [
             "run",

@@ -7,9 +7,9 @@ import pytest
 
 from hsr8.errors import UsageError
 from hsr8.recorder.derived import walk_of
-from hsr8.recorder.log.walk_layer import GAIT
 from hsr8.render import walk_panels
 from hsr8.render.walk_figure import TIME_PANELS, draw, save
+from hsr8.rerun_log.walking import GAIT
 from hsr8.robots.loaded import load_robot
 from hsr8.world.truth.truth import ActivePush
 from walking.command import VelocityCommand

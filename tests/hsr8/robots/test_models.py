@@ -6,7 +6,7 @@ import pytest
 from hsr8.cli.main import entry
 from hsr8.robots import models
 
-LIGHT = ["--camera", "analytic", "--quiet", "--no-log", "--duration", "0.1"]
+LIGHT = ["--camera", "analytic", "--quiet", "--duration", "0.1"]
 ROBOT = "hsr8/hsr8.xml"
 
 

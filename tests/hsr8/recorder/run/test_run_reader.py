@@ -22,7 +22,7 @@ COMMANDS = [
 def recorded(tmp_path_factory):
     out = tmp_path_factory.mktemp("runs")
     words = ["run", "quick", "--body", "kinematic", "--camera", "analytic", "--duration", "1"]
-    entry([*words, "--no-log", "--quiet", "--out", str(out)])
+    entry([*words, "--quiet", "--out", str(out)])
     return open_run(out).path
 
 

@@ -6,7 +6,7 @@ import rerun as rr
 import rerun.blueprint as rrb
 
 from hsr8.recorder import palette
-from hsr8.recorder.log.channel import TIMELINE
+from hsr8.rerun_log.stream import TIMELINE
 
 AROUND = rrb.VisibleTimeRange(
     TIMELINE,
@@ -31,8 +31,8 @@ class RobotView:
     """Robot in the views.
 
     Attributes:
-        name: of the robot.
-        entity: that views follow.
+        name: name of the robot.
+        entity: entity that views follow.
         size: height relative to that of HSR-VIII [1].
     """
 
@@ -44,21 +44,16 @@ class RobotView:
 DEFAULT = RobotView()
 
 
-def blueprint(
-    field_size: float, *, walking: bool, images: bool, robot: RobotView = DEFAULT
-) -> rrb.Blueprint:
+def blueprint(field_size: float, *, walking: bool, robot: RobotView = DEFAULT) -> rrb.Blueprint:
     """Return two tabs: the whole robot, and its walking in detail.
 
     Args:
         field_size: longer side of the field [m].
         walking: show walking first.
-        images: show images, beliefs and plans.
-        robot: in the views.
+        robot: robot in the views.
     """
     return rrb.Blueprint(
-        rrb.Tabs(
-            _overview(field_size, images, robot), _walking(robot), active_tab=1 if walking else 0
-        ),
+        rrb.Tabs(_overview(field_size, robot), _walking(robot), active_tab=1 if walking else 0),
         rrb.TimePanel(timeline=TIMELINE, state="collapsed"),
         rrb.BlueprintPanel(state="collapsed"),
         rrb.SelectionPanel(state="collapsed"),
@@ -115,7 +110,7 @@ def _walking(view: RobotView) -> rrb.Container:
     return rrb.Horizontal(left, curves, column_shares=[1, 1], name="Walking")
 
 
-def _overview(field_size: float, images: bool, view: RobotView) -> rrb.Container:
+def _overview(field_size: float, view: RobotView) -> rrb.Container:
     """Return robot and belief above, camera, gaze, states and curves below."""
     height, scale = ABOVE * field_size / 5.0, view.size
     robot = rrb.Spatial3DView(
@@ -141,7 +136,7 @@ def _overview(field_size: float, images: bool, view: RobotView) -> rrb.Container
         ),
     )
     belief = rrb.Spatial3DView(
-        name="Belief over truth",
+        name="Belief over truth; white: ground seen lately",
         origin="/",
         contents=[
             "+ /belief/**",
@@ -181,9 +176,6 @@ def _overview(field_size: float, images: bool, view: RobotView) -> rrb.Container
         active_tab=0,
     )
     name = "Robot and belief"
-    if not images:
-        below = rrb.Horizontal(states, curves, column_shares=[1, 1])
-        return rrb.Vertical(robot, below, row_shares=[3, 2], name=name)
     above = rrb.Horizontal(robot, belief, column_shares=[1.15, 1])
     sight = rrb.Vertical(states, curves, row_shares=[1.1, 1])
     below = rrb.Horizontal(camera, gaze, sight, column_shares=[1, 1.1, 2])

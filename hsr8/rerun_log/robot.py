@@ -1,14 +1,12 @@
 """Robot in the log: its primitive shapes in batches, its meshes per rigid part."""
 
-from collections.abc import Sequence
-
 import mujoco
 import numpy as np
 import rerun as rr
 from numpy.typing import NDArray
 
-from hsr8.recorder.log.channel import BlockStream, Channel
-from hsr8.recorder.log.geometry import batches_of, colors, poses, shapes
+from hsr8.rerun_log.shapes import ARCHETYPES, batches_of, colors, poses, shapes
+from hsr8.rerun_log.stream import LogStream
 from hsr8.robots.loaded import LoadedRobot
 from hsr8.robots.shown import VISUAL_GROUPS, visual_model
 
@@ -18,52 +16,50 @@ ROOT = "/world/robot"
 _MESH = int(mujoco.mjtGeom.mjGEOM_MESH)
 
 
-class RobotLayer:
-    """Layer of the robot's visual shapes.
+class RobotShapes:
+    """Visual shapes of the robot.
 
     Args:
-        stream: recording.
-        robot: to draw.
+        log: recording, which receives the shapes.
+        robot: robot to draw.
     """
 
-    def __init__(self, stream: BlockStream, robot: LoadedRobot) -> None:
+    def __init__(self, log: LogStream, robot: LoadedRobot) -> None:
         self._model = model = visual_model(robot)
         self._data = mujoco.MjData(model)
         visible = np.isin(model.geom_group, VISUAL_GROUPS) & (model.geom_bodyid > 0)
         self._batches = batches_of(model, visible)
-        self._batch_channels = []
         for batch in self._batches:
-            style = shapes(model, batch)
-            path = f"{ROOT}/{batch.kind}"
-            stream.log(path, style, static=True)
-            self._batch_channels.append(Channel(stream, path, type(style)))
+            log.log(f"{ROOT}/{batch.kind}", shapes(model, batch), static=True)
         parts = model.body_weldid[model.geom_bodyid]
         meshes = visible & (model.geom_type == _MESH)
         self._parts = np.unique(parts[meshes])
-        self._part_channels = []
         mujoco.mj_kinematics(model, self._data)
-        for part in self._parts:
-            path = part_path(model, int(part))
-            geoms = np.flatnonzero(meshes & (parts == part))
-            stream.log(path, mesh_of(model, self._data, int(part), geoms), static=True)
-            self._part_channels.append(Channel(stream, path, rr.Transform3D))
+        for part in self._parts.tolist():
+            mesh = mesh_of(model, self._data, part, np.flatnonzero(meshes & (parts == part)))
+            log.log(part_path(model, part), mesh, static=True)
 
-    def add(self, times: Sequence[float], qpos: Array) -> None:
-        """Add n rows: times [s], configurations (nq,)."""
-        data, copies = self._data, []
-        for configuration in qpos:
+    def log(self, log: LogStream, times: Array, qpos: Array) -> None:
+        """Log n rows: times [s], configurations (n, nq)."""
+        data, n = self._data, len(times)
+        positions = np.empty((n, self._model.ngeom, 3))
+        part_positions = np.empty((n, len(self._parts), 3))
+        rotations = np.empty((n, self._model.nbody, 4))
+        for row, configuration in enumerate(qpos):
             data.qpos[:] = configuration
             mujoco.mj_kinematics(self._model, data)
-            copies.append((data.geom_xpos.copy(), data.xpos[self._parts], data.xquat.copy()))
-        positions, part_positions, rotations = map(np.array, zip(*copies, strict=True))
-        for batch, channel in zip(self._batches, self._batch_channels, strict=True):
-            rows = poses(self._model, batch, positions, rotations)
-            channel.add_rows(times, [len(batch.geoms)] * len(times), **rows)
+            positions[row], rotations[row] = data.geom_xpos, data.xquat
+            part_positions[row] = data.xpos[self._parts]
+        for batch in self._batches:
+            counts = np.full(n, len(batch.geoms))
+            columns = poses(self._model, batch, positions, rotations)
+            log.rows(f"{ROOT}/{batch.kind}", ARCHETYPES[batch.kind], times, counts, **columns)
         part_rotations = rotations[:, self._parts][..., [1, 2, 3, 0]]
-        for k, channel in enumerate(self._part_channels):
-            channel.add_rows(
+        for k, part in enumerate(self._parts.tolist()):
+            log.rows(
+                part_path(self._model, part),
+                rr.Transform3D,
                 times,
-                [1] * len(times),
                 translation=part_positions[:, k],
                 quaternion=part_rotations[:, k],
             )
@@ -91,10 +87,10 @@ def mesh_of(
     """Return the meshes of a rigid part as one mesh in the frame of its body.
 
     Args:
-        model: of the robot.
-        data: its state, with all places computed.
-        part: body id.
-        geoms: ids of its mesh geoms (n,).
+        model: model of the robot.
+        data: state of the robot with positions of all bodies and geoms.
+        part: body id of the rigid part.
+        geoms: ids of the mesh geoms of the part (n,).
     """
     frame, origin = data.xmat[part].reshape(3, 3), data.xpos[part]
     corners, normals, triangles, count = [], [], [], 0

@@ -1,20 +1,20 @@
 """Batches of tables, as the recorder passes them to a log."""
 
 from hsr8.record import Event
-from hsr8.recorder.log_level import IMAGES, RATES, LogLevel
 from hsr8.recorder.recorded import FrameSampler, image_row
+from hsr8.recorder.recorder import IMAGES
 from hsr8.recorder.rows import TABLES
 from hsr8.recorder.table import Table
 from hsr8.recorder.throttle import Throttle
 
 
-def batch_of(records, events=(), level=LogLevel.STANDARD):
+def batch_of(records, events=(), *, full=False):
     """Return the tables of records and of events: time, kind and text."""
     records, sampler = list(records), FrameSampler()
-    rates = IMAGES["full" if level == LogLevel.FULL else "standard"]
+    rates = IMAGES["full" if full else "standard"]
     due = Throttle(rates.period)
     frames = [record.frame for record in records if record.frame is not None]
-    images = [f for f in frames if f.image is not None and RATES[level].belief and due.due(f.time)]
+    images = [f for f in frames if f.image is not None and due.due(f.time)]
     objects = {
         "records": records,
         "frames": [*map(sampler.sample, frames)],

@@ -11,15 +11,13 @@ import rerun as rr
 from rerun.chunk import RrdReader
 
 from hsr8.errors import RecordingFailed
-from hsr8.recorder.log.channel import BlockStream
-from hsr8.recorder.log.rerun_log import MAX_INDEXED, WRITE_TIMEOUT, RerunLog
-from hsr8.recorder.log_level import LogLevel
+from hsr8.rerun_log.run_log import MAX_INDEXED, WRITE_TIMEOUT, RunLog
+from hsr8.rerun_log.stream import LogStream
 from hsr8.robots.loaded import load_robot
 from hsr8.scenario.loader import load_scenario
 from hsr8.world.truth.truth import ActivePush
 from navigation.belief.belief import Particles
-from tests.hsr8.recorder.log.batches import batch_of
-from tests.hsr8.recorder.log.reading import Log
+from tests.hsr8.rerun_log.batches import batch_of
 from walking.command import VelocityCommand
 from walking.command_limits import CommandLimits, Limit
 
@@ -51,20 +49,19 @@ def _logged(folder, model, layout, records, **options):
     """Log of `records`."""
     path = folder / "log.rrd"
     log = _opened(path, model, layout, **options)
-    log.add(batch_of(records, level=options.get("level", LogLevel.STANDARD)))
+    log.add(batch_of(records, full=options.get("full", False)))
     log.close("goal")
     return path
 
 
 def _opened(path, model, layout, duration=10.0, **options):
     scenario = load_scenario("quick", [f"duration={duration}"])
-    return RerunLog(path, (model, load_robot("hsr8"), layout), scenario, **options)
+    return RunLog(path, (model, load_robot("hsr8"), layout), scenario, name="7-abc", **options)
 
 
 @pytest.fixture
 def log(tmp_path, model, layout):
-    (tmp_path / "7-abc").mkdir()
-    path = tmp_path / "7-abc" / "log.rrd"
+    path = tmp_path / "log.rrd"
     return path, _opened(path, model, layout)
 
 
@@ -89,16 +86,8 @@ def test_a_run_is_logged_at_its_rates(log, walk):
     assert 9 <= rows["/world/walking/support"] <= 11
 
 
-def test_a_minimal_log_has_only_poses_curves_and_events(folder, model, layout, walk):
-    rows = _rows(_logged(folder, model, layout, walk(1.0), level=LogLevel.MINIMAL))
-    assert rows["/world/robot/ellipsoids"] == rows["/plots/tilt"] == 17 + 1
-    assert rows["/state/planner"] == 1 + 1
-    assert not [path for path in rows if path.startswith(("/belief", "/plan", "/gaze"))]
-    assert "/world/camera/image" not in rows
-
-
 def test_a_full_log_leaves_nothing_out(folder, model, layout, walk):
-    rows = _rows(_logged(folder, model, layout, walk(1.0), level=LogLevel.FULL))
+    rows = _rows(_logged(folder, model, layout, walk(1.0), full=True))
     assert rows["/world/robot/ellipsoids"] == 51 + 1
     assert rows["/world/camera/image"] == rows["/belief/tracks"] == 17 + 1
     assert rows["/belief/local_map"] == 1 + 1  # recorded once per second
@@ -141,12 +130,11 @@ def test_particles_show_where_a_lost_mover_may_be(folder, model, layout, fake):
     assert radii[0] < radii[1]
 
 
-@pytest.mark.parametrize("level", LogLevel)
-def test_a_finished_log_is_verified_by_rerun(folder, model, layout, walk, level):
+def test_a_finished_log_is_verified_by_rerun(folder, model, layout, walk):
     program = Path(sys.executable).with_name("rerun")
     if not program.exists():
         pytest.skip("there is no rerun executable")
-    path = _logged(folder, model, layout, walk(0.5), level=level)
+    path = _logged(folder, model, layout, walk(0.5))
     done = subprocess.run(
         [program, "rrd", "verify", path], check=False, capture_output=True, text=True, timeout=60
     )
@@ -154,16 +142,16 @@ def test_a_finished_log_is_verified_by_rerun(folder, model, layout, walk, level)
 
 
 def test_a_viewer_receives_the_rows_of_the_file(folder, model, layout, walk, monkeypatch):
-    asked = []
-
-    def viewer(address):
-        asked.append(address)
-        return rr.FileSink(str(folder / "live.rrd"))
-
-    monkeypatch.setattr(rr, "GrpcSink", viewer)
+    """Batch by batch, as the recorder passes them."""
     address = "rerun+http://127.0.0.1:1/proxy"
-    path = _logged(folder, model, layout, walk(0.5), live=address)
-    assert asked == [address]
+    monkeypatch.setattr(rr, "GrpcSink", {address: rr.FileSink(str(folder / "live.rrd"))}.get)
+    records = [*walk(0.5)]
+    path, log = _logged(folder, model, layout, records), _opened(address, model, layout)
+    tables = batch_of(records)
+    for begin, end in ((0.0, 0.02), (0.04, 0.14), (0.16, 9.0)):
+        windows = {name: table.window(begin, end) for name, table in tables.items()}
+        log.add({name: table for name, table in windows.items() if len(table)})
+    log.close("goal")
     assert _rows(folder / "live.rrd") == _rows(path)
 
 
@@ -188,25 +176,21 @@ def test_logs_one_after_the_other_leave_no_threads(folder, model, layout, walk):
     assert counts[-1] == counts[1]
 
 
-def test_a_log_that_cannot_be_written_is_abandoned(log, walk, monkeypatch):
+def test_a_log_that_cannot_be_written_is_abandoned(folder, log, monkeypatch):
     _, log = log
-    left, asked = [], []
+    left = []
 
     def stalled(stream, *, timeout_sec):
-        asked.append(timeout_sec)
-        if timeout_sec > 0.0:
-            raise RuntimeError("timed out")
+        assert timeout_sec == WRITE_TIMEOUT
+        raise RuntimeError("timed out")
 
-    monkeypatch.setattr(BlockStream, "flush", stalled)
-    monkeypatch.setattr(BlockStream, "disconnect", lambda stream: pytest.fail("waits for ever"))
-    monkeypatch.setattr("hsr8.recorder.log.channel.ABANDONED", left)
+    monkeypatch.setattr(LogStream, "flush", stalled)
+    monkeypatch.setattr(LogStream, "disconnect", lambda stream: pytest.fail("waits for ever"))
+    monkeypatch.setattr("hsr8.rerun_log.stream.ABANDONED", left)
     monkeypatch.setattr(rr, "unregister_shutdown", lambda: left.append("at the end of the process"))
-    log.add(batch_of(walk(0.1)))
     with pytest.raises(RecordingFailed, match="timed out"):
-        log.close("goal")
-    log.close("goal")  # at once, without another wait
-    assert [type(entry) for entry in left] == 2 * [BlockStream, str]
-    assert [timeout for timeout in asked if timeout > 0.0] == [WRITE_TIMEOUT]
+        log.require_written(folder)
+    assert [type(entry) for entry in left] == [LogStream, str]
 
 
 def test_an_empty_belief_is_logged(log, fake):
@@ -216,28 +200,6 @@ def test_an_empty_belief_is_logged(log, fake):
     log.add(batch_of([record]))
     log.close("completed")
     assert _rows(path)["/belief/tracks"] == 2
-
-
-@pytest.mark.filterwarnings("ignore:RRD file has no footer")  # a kill leaves none
-def test_a_killed_run_leaves_a_log_that_opens(tmp_path):
-    """The process is ended by the system, without a chance to finish the file."""
-    script = """
-import os, sys, rerun as rr
-from hsr8.recorder.log.channel import BlockStream, Channel
-stream = BlockStream("killed")
-stream.save(sys.argv[1])
-channel = Channel(stream, "/plots/x", rr.Scalars)
-for k in range(100):
-    channel.add(0.02 * k, scalars=[float(k)])
-stream.send()
-stream.flush()
-os.kill(os.getpid(), 9)
-"""
-    file = tmp_path / "log.rrd"
-    done = subprocess.run([sys.executable, "-c", script, str(file)], check=False, timeout=60)
-    assert done.returncode == -9
-    assert _rows(file)["/plots/x"] == 100
-    assert [x for (x,) in Log(file).table("/plots/x", "Scalars:scalars").rows] == list(range(100))
 
 
 def _values(path, entity, component="Scalars:scalars"):

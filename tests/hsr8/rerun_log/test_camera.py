@@ -3,7 +3,7 @@ from math import atan, radians
 import numpy as np
 import pytest
 
-from hsr8.recorder.log.camera_layer import image_points, map_points
+from hsr8.rerun_log.camera import image_points, map_points
 from navigation.gaze.gaze_map import GazeGrid
 from navigation.parameters.gaze import GazeParameters
 

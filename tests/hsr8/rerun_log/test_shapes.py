@@ -2,17 +2,13 @@ import mujoco
 import numpy as np
 import pytest
 
-from hsr8.recorder.log.channel import BlockStream
-from hsr8.recorder.log.geometry import (
-    Scene,
-    batches_of,
-    colors,
-    sole_outline,
-)
-from hsr8.recorder.log.robot_layer import RobotLayer
+from hsr8.rerun_log.robot import RobotShapes
+from hsr8.rerun_log.shapes import batches_of, colors, sole_outline
+from hsr8.rerun_log.stream import LogStream
+from hsr8.rerun_log.world import WorldShapes
 from hsr8.robots.loaded import load_robot
 from hsr8.robots.normal_form import FEET, HEAD_CAMERA, SOLES
-from tests.hsr8.recorder.log.reading import Log
+from tests.hsr8.rerun_log.reading import Log
 
 
 @pytest.fixture(scope="module")
@@ -26,19 +22,26 @@ def test_every_visible_geom_of_the_robot_is_in_one_batch(model, robot):
     assert sorted(geoms.tolist()) == np.flatnonzero(visible).tolist()
 
 
-def test_logged_shapes_are_where_the_geoms_are(model, tmp_path):
+class Records(dict):
+    """Table of records."""
+
+    def __len__(self):
+        return len(self["time"])
+
+
+def test_logged_shapes_are_where_the_geoms_are(model, layout, tmp_path):
     rng, data = np.random.default_rng(3), mujoco.MjData(model)
     qpos = rng.normal(size=(3, model.nq))
     qpos[:, 3:7] /= np.linalg.norm(qpos[:, 3:7], axis=1, keepdims=True)
-    stream = BlockStream("test")
+    stream = LogStream("test")
     stream.save(tmp_path / "log.rrd")
-    movers = [np.zeros((1, 2))] * 3
-    times = [0.0, 1.0, 2.0]
-    cameras, _ = Scene(stream, model, (4.0, 4.0)).add(times, list(qpos), movers)
-    RobotLayer(stream, load_robot("hsr8")).add(times, list(qpos))
-    stream.send()
+    times, n = np.arange(3.0), len(layout.obstacles)
+    records = {"time": times, "qpos": qpos, "obstacle_positions": np.zeros((3, n, 2))}
+    WorldShapes(stream, model, layout).log(stream, Records(records))
+    RobotShapes(stream, load_robot("hsr8")).log(stream, times, qpos)
     stream.disconnect()
     log = Log(tmp_path / "log.rrd")
+    cameras = log.table("/world/camera", "Transform3D:translation").rows
     visible = (model.body_rootid[model.geom_bodyid] == model.body("base_link").id) & (
         model.geom_group == 2
     )
@@ -46,7 +49,7 @@ def test_logged_shapes_are_where_the_geoms_are(model, tmp_path):
         data.qpos[:] = configuration
         mujoco.mj_kinematics(model, data)
         mujoco.mj_camlight(model, data)
-        assert cameras[k] == pytest.approx(data.camera(HEAD_CAMERA).xpos)
+        assert cameras[k][0] == pytest.approx(data.camera(HEAD_CAMERA).xpos)
         for batch in batches_of(model, visible):
             kind = f"{batch.kind.capitalize()}3D"
             name = "translations" if batch.kind == "capsules" else "centers"

@@ -4,11 +4,11 @@ import mujoco
 import numpy as np
 import pytest
 
-from hsr8.recorder.log.channel import BlockStream
-from hsr8.recorder.log.robot_layer import RobotLayer, followed_entity
+from hsr8.rerun_log.robot import RobotShapes, followed_entity
+from hsr8.rerun_log.stream import LogStream
 from hsr8.robots.loaded import load_robot
 from hsr8.robots.shown import VISUAL_GROUPS, visual_model
-from tests.hsr8.recorder.log.reading import Log
+from tests.hsr8.rerun_log.reading import Log
 from tests.hsr8.robots.mesh_humanoid import write_robot
 
 MESH = int(mujoco.mjtGeom.mjGEOM_MESH)
@@ -30,10 +30,9 @@ def qpos(robot):
 @pytest.fixture(scope="module")
 def log(robot, qpos, tmp_path_factory):
     file = tmp_path_factory.mktemp("log") / "log.rrd"
-    stream = BlockStream("test")
+    stream = LogStream("test")
     stream.save(file)
-    RobotLayer(stream, robot).add(TIMES, qpos)
-    stream.send()
+    RobotShapes(stream, robot).log(stream, np.array(TIMES), np.array(qpos))
     stream.disconnect()
     assert file.stat().st_size < 1e7
     return Log(file)
