@@ -1,25 +1,27 @@
-"""``hsr8 compare``: two sweeps or two runs on their common seeds."""
+"""``hsr8 compare`` and ``hsr8 bench compare``: two sides on their common seeds."""
 
 import shlex
 
-from hsr8.cli.options import Compare
+from hsr8.cli.options import BenchCompare, Compare
+from hsr8.evaluation.bench.comparison import compare_entries
+from hsr8.evaluation.bench.entry import read_entry
 from hsr8.evaluation.comparison import compare, open_side
 from hsr8.evaluation.comparison_page import page, to_json
 from hsr8.files import atomic
 
 
-def main(options: Compare) -> int:
-    """Print the comparison.
-
-    Raises:
-        UsageError: a folder is neither a sweep nor a run, or they cannot be compared.
-    """
-    comparison = compare(open_side(options.a), open_side(options.b), options.metric)
+def main(options: Compare | BenchCompare) -> int:
+    """Print the comparison."""
+    if isinstance(options, BenchCompare):
+        words = ["hsr8", "bench", "compare", str(options.a), str(options.b)]
+        comparison = compare_entries(read_entry(options.a), read_entry(options.b))
+    else:
+        words = ["hsr8", "compare", str(options.a), str(options.b)]
+        for metric in options.metric:
+            words += ["--metric", metric]
+        comparison = compare(open_side(options.a), open_side(options.b), options.metric)
     if options.json:
         print(atomic.dumps(to_json(comparison)))
-        return 0
-    words = ["hsr8", "compare", str(options.a), str(options.b)]
-    for metric in options.metric:
-        words += ["--metric", metric]
-    print(page(comparison, shlex.join(words)), end="")
+    else:
+        print(page(comparison, shlex.join(words)), end="")
     return 0

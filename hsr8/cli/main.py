@@ -90,7 +90,7 @@ def _run(words: list[str]) -> int:
             if command is None:
                 return 0
             # Not before: MuJoCo, Rerun and SciPy take seconds.
-            name = _words(type(command), "_")
+            name = "compare" if type(command) is BenchCompare else _words(type(command), "_")
             module = importlib.import_module(f"hsr8.cli.{name}")
             code: int = module.main(command)
     except Hsr8Error as error:

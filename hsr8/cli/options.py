@@ -237,7 +237,7 @@ class Replay:
 
     run: RunPath
     full: Flag = False
-    """Make the log anew with every record and frame; default: 17 poses, 6 frames per second."""
+    """Make the log again, with every record and frame; default: 17 poses, 6 frames per second."""
     view: View = None
     """native (default): a window; web: a page for a browser on this machine."""
     screenshot: File = None

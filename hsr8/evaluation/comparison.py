@@ -2,7 +2,7 @@
 
 import tomllib
 from collections.abc import Mapping, Sequence
-from dataclasses import asdict, dataclass
+from dataclasses import asdict, dataclass, field
 from math import isfinite
 from pathlib import Path
 from typing import Any
@@ -36,14 +36,16 @@ class Side:
     """One side of the comparison.
 
     Attributes:
-        path: folder of the sweep or the run.
-        definition: scenario and versions.
-        runs: results by seed, without refused runs.
+        name: folder of the sweep or the run, or name of the entry of a benchmark.
+        text: scenario and versions, or suite and command, for people.
+        runs: results by seed, or by family and seed, without refused runs.
+        definition: scenario and versions; None of an entry.
     """
 
-    path: Path
-    definition: Definition
-    runs: dict[int, RunResult]
+    name: str
+    text: str
+    runs: dict[Seed, RunResult]
+    definition: Definition | None = None
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -70,14 +72,16 @@ class Comparison:
         settings: keys of the scenario that differ, with both values as JSON.
         versions: versions and plugins that differ.
         metrics: one difference per metric that both sides have.
+        families: difference of the success rate by family of a benchmark.
     """
 
     a: Side
     b: Side
-    seeds: tuple[int, ...]
+    seeds: tuple[Seed, ...]
     settings: Differences
     versions: Differences
     metrics: tuple[MetricDifference, ...]
+    families: dict[str, MetricDifference] = field(default_factory=dict)
 
 
 def open_side(path: Path) -> Side:
@@ -89,7 +93,7 @@ def open_side(path: Path) -> Side:
     if _is_sweep(path):
         folder = SweepFolder.read(path)
         runs = {r["seed"]: flatten(r) for r in folder.results() if r["outcome"] != REFUSED}
-        return Side(path, folder.definition, runs)
+        return _side(path, folder.definition, runs)
     parts = sorted(file.parent.name for file in path.glob(f"*/{DEFINITION}"))
     if parts or not path.is_dir() or not run_folders(path):
         hint = f"; expected one of its parts: {', '.join(parts)}" if parts else ""
@@ -114,7 +118,11 @@ def open_side(path: Path) -> Side:
         )
     except (KeyError, TypeError, ValueError) as error:
         raise UsageError(f"{path}: cannot read the run folder: {error}") from error
-    return Side(run.path, definition, {run.seed: {"seed": run.seed, **flatten(metrics)}})
+    return _side(run.path, definition, {run.seed: {"seed": run.seed, **flatten(metrics)}})
+
+
+def _side(path: Path, definition: Definition, runs: dict[Seed, RunResult]) -> Side:
+    return Side(str(path), f"`{definition.name}`, {definition.made_with()}", runs, definition)
 
 
 def _is_sweep(path: Path) -> bool:
@@ -125,7 +133,7 @@ def _is_sweep(path: Path) -> bool:
 
 
 def compare(a: Side, b: Side, metrics: Sequence[str] = ()) -> Comparison:
-    """Compare B with A.
+    """Compare B with A, two sweeps or runs.
 
     Args:
         a: reference.
@@ -135,6 +143,8 @@ def compare(a: Side, b: Side, metrics: Sequence[str] = ()) -> Comparison:
     Raises:
         UsageError: no seed is common, the worlds of a seed differ, or a metric is unknown.
     """
+    assert a.definition is not None
+    assert b.definition is not None
     settings = scenario_differences(a.definition, b.definition)
     worlds = [
         f"\n  {key}: {x} in A, {y} in B"
@@ -143,7 +153,7 @@ def compare(a: Side, b: Side, metrics: Sequence[str] = ()) -> Comparison:
     ]
     if worlds:
         raise UsageError("A and B have different worlds for the same seed:" + "".join(worlds))
-    seeds = tuple(sorted(a.runs.keys() & b.runs.keys()))
+    seeds = tuple(sorted(a.runs.keys() & b.runs.keys(), key=int))
     if not seeds:
         raise UsageError(f"no common seed: A has {_range(a.runs)}, B has {_range(b.runs)}")
     for metric in metrics:
@@ -153,7 +163,7 @@ def compare(a: Side, b: Side, metrics: Sequence[str] = ()) -> Comparison:
     versions = version_differences(a.definition, b.definition)
     if not (a.definition.code and b.definition.code):  # unknown for a run folder
         versions.pop("code", None)
-    plugins = _plugin(a), _plugin(b)
+    plugins = _plugin(a.definition), _plugin(b.definition)
     if plugins[0] != plugins[1]:
         versions["decisions"] = plugins
     return Comparison(a, b, seeds, settings, versions, differences)
@@ -177,9 +187,9 @@ def paired_differences(
     return tuple(d for d in differences if d is not None)
 
 
-def _plugin(side: Side) -> str:
+def _plugin(definition: Definition) -> str:
     """Return the call that ran user-defined objects; ``-`` for those of the scenario."""
-    command = " ".join(side.definition.command_words)
+    command = " ".join(definition.command_words)
     return command if command.startswith(CALL) else "-"
 
 
@@ -223,5 +233,5 @@ def _require_metric(metric: str, runs: Sequence[RunResult]) -> None:
         )
 
 
-def _range(runs: dict[int, RunResult]) -> str:
-    return f"{min(runs)} to {max(runs)}" if runs else "no runs"
+def _range(runs: Mapping[Seed, RunResult]) -> str:
+    return f"{min(runs, key=int)} to {max(runs, key=int)}" if runs else "no runs"

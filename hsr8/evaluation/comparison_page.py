@@ -15,15 +15,20 @@ def page(comparison: Comparison, command: str) -> str:
     a, b, seeds = comparison.a, comparison.b, comparison.seeds
     more = [f"{len(side.runs) - len(seeds)} more in {name}" for name, side in (("A", a), ("B", b))]
     lines = ["# B against A", "", f"    {command}", ""]
-    lines += [f"- A: `{a.path}`, `{a.definition.name}`, {a.definition.made_with()}"]
-    lines += [f"- B: `{b.path}`, `{b.definition.name}`, {b.definition.made_with()}"]
+    lines += [f"- {label}: `{side.name}`, {side.text}" for label, side in (("A", a), ("B", b))]
     lines += [f"- {len(seeds)} common seeds, {seeds[0]} to {seeds[-1]} ({', '.join(more)})", ""]
     changed = {**comparison.settings, **comparison.versions}
     if changed:
-        rows = [(f"`{key}`", str(x), str(y)) for key, (x, y) in changed.items()]
-        lines += table(("differs", "A", "B"), rows)
+        pairs = [(f"`{key}`", str(x), str(y)) for key, (x, y) in changed.items()]
+        lines += table(("differs", "A", "B"), pairs)
     else:
-        lines += ["Scenario and versions are equal.", ""]
+        lines += ["Settings and versions are equal.", ""]
+    if comparison.families:
+        rows = [
+            (name, str(d.n), f"{100 * d.a:.1f} %", f"{100 * d.b:.1f} %", d.points())
+            for name, d in comparison.families.items()
+        ]
+        lines += table(("success in", "n", "A", "B", "B - A [points], p (McNemar)"), rows)
     return "\n".join([*lines, *difference_table(comparison.metrics)])
 
 
@@ -41,12 +46,13 @@ def difference_table(metrics: Sequence[MetricDifference]) -> list[str]:
 def to_json(comparison: Comparison) -> dict[str, Any]:
     """Return plain values by name."""
     return {
-        "a": str(comparison.a.path),
-        "b": str(comparison.b.path),
+        "a": comparison.a.name,
+        "b": comparison.b.name,
         "common_seeds": len(comparison.seeds),
         "seeds": list(comparison.seeds),
         "settings": {key: list(pair) for key, pair in comparison.settings.items()},
         "versions": {key: list(pair) for key, pair in comparison.versions.items()},
+        "families": {name: asdict(part) for name, part in comparison.families.items()},
         "results": {metric.metric: asdict(metric) for metric in comparison.metrics},
     }
 

@@ -68,7 +68,7 @@ def log_belief(log: LogStream, frames: Table, shown: Table, scale: float) -> Non
     vectors = HEADING_LENGTH * scale * ahead
     log.rows("/belief/pose", rr.Arrows3D, times, origins=centres, vectors=vectors)
     ellipses = _ellipses(centres, shown["pose_covariance"][:, :2, :2])
-    log.rows("/belief/uncertainty", rr.Ellipsoids3D, times, **ellipses)
+    log.rows("/belief/uncertainty", rr.Ellipsoids3D, times, None, **ellipses)
     log.rows("/belief/view", rr.LineStrips3D, times, strips=_wedges(shown, scale))
     _log_tracks(log, times, shown["tracks"], scale)
     targets = frames["target"]

@@ -9,10 +9,10 @@ from annotated_types import Interval
 from pydantic import TypeAdapter, ValidationError
 
 from hsr8.errors import UsageError
-from hsr8.evaluation.bench.score import Score, score
 from hsr8.evaluation.sweep.definition import Differences
 from hsr8.evaluation.sweep.folder import DEFINITION
 from hsr8.evaluation.sweep.job import RunResult
+from hsr8.evaluation.sweep.summary import Summary, summarize
 from hsr8.files import atomic
 from hsr8.files.regular import read_text
 from hsr8.mistakes import mistake_lines
@@ -76,10 +76,10 @@ class Entry:
     scenarios: dict[str, str]
     runs: dict[str, list[RunResult]]
 
-    def scores(self) -> dict[str, Score]:
-        """Return the score by family, and that of all families."""
+    def scores(self) -> dict[str, Summary]:
+        """Return the summary by family, and that of all families."""
         all_runs = [run for runs in self.runs.values() for run in runs]
-        return {name: score(runs) for name, runs in {**self.runs, ALL: all_runs}.items()}
+        return {name: summarize(runs) for name, runs in {**self.runs, ALL: all_runs}.items()}
 
     def to_json(self) -> dict[str, Any]:
         """Return plain values by name, with the scores."""

@@ -1,21 +1,15 @@
-"""Pages of Markdown: one entry, a table of several, and a comparison of two."""
+"""Pages of Markdown: one entry, and a table of several."""
 
 from collections.abc import Sequence
 
 from hsr8.errors import UsageError
-from hsr8.evaluation.bench.comparison import (
-    EntryComparison,
-    compare_entries,
-    differing,
-    require_same_suite,
-)
+from hsr8.evaluation.bench.comparison import compare_entries, require_same_suite
 from hsr8.evaluation.bench.entry import ALL, Entry
-from hsr8.evaluation.bench.score import Score
 from hsr8.evaluation.bench.suite import is_condition
-from hsr8.evaluation.comparison_page import difference_table
 from hsr8.evaluation.markdown import table
 from hsr8.evaluation.proportion import Proportion
 from hsr8.evaluation.registry import METRICS
+from hsr8.evaluation.sweep.summary import Summary
 
 MEDIANS = {"min_clearance_m": 3, "head_travel_radps": 2, "time_to_goal_s": 1}
 """Digits of the medians of a score."""
@@ -68,26 +62,6 @@ def entries_table(entries: Sequence[Entry]) -> list[str]:
     return lines + table(("entry", "command"), [(e.name, f"`{e.command}`") for e in entries])
 
 
-def comparison_page(comparison: EntryComparison, command: str) -> str:
-    """Return the page of a comparison; `command` repeats it."""
-    a, b = comparison.a, comparison.b
-    lines = [f"# {b.name} against {a.name}", "", f"    {command}", ""]
-    lines += [f"- {_suite(a)}, {len(comparison.worlds)} common worlds"]
-    lines += [f"- {side}: {entry.name}, `{entry.command}`" for side, entry in (("A", a), ("B", b))]
-    changed = [(f"`{key}`", *pair) for key, pair in differing(a, b).items()]
-    lines += ["", *(table(("differs", "A", "B"), changed) if changed else _equal())]
-    rows = [
-        (f, str(d.n), f"{100 * d.a:.1f} %", f"{100 * d.b:.1f} %", d.points())
-        for f, d in comparison.families.items()
-    ]
-    lines += table(("success in", "n", "A", "B", "B - A [points], p (McNemar)"), rows)
-    return "\n".join([*lines, *difference_table(comparison.metrics)])
-
-
-def _equal() -> list[str]:
-    return ["Settings and versions are equal.", ""]
-
-
 def _suite(entry: Entry) -> str:
     return f"suite {entry.suite} {entry.suite_version} ({entry.suite_hash})"
 
@@ -115,7 +89,7 @@ def _success(success: Proportion) -> tuple[str, str]:
     return f"{100 * success.fraction:.1f} %", interval
 
 
-def _cells(part: Score) -> list[str]:
+def _cells(part: Summary) -> list[str]:
     rates = [f"{100 * p.fraction:.1f}" for p in (part.collision, part.timeout, part.fall)]
     ratios = ["" if v is None else f"{v:.3f}" for v in (part.spl, part.optimal_time_ratio)]
     medians = [

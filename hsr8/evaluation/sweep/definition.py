@@ -22,7 +22,7 @@ from hsr8.version import VERSION
 PACKAGES = ("compilation", "hsr8", "navigation", "walking", "vision")
 MAX_TEXT = 1000  # of a value in a message [characters]
 # Folders and files of hsr8:
-NOT_IN_DIGEST = ("cli", "render", "evaluation/sweep", "evaluation/bench", "_models")
+NOT_IN_DIGEST = ("cli", "render", "rerun_log", "evaluation/sweep", "evaluation/bench", "_models")
 MAY_DIFFER = ("seed", "description")  # keys of a scenario, within a sweep
 
 Differences = dict[str, tuple[str, str]]
@@ -102,13 +102,19 @@ def scenario_differences(one: Definition, other: Definition) -> Differences:
 def table_differences(one: Table, other: Table) -> Differences:
     """Return `scenario_differences` of two scenarios as tables."""
     texts = ({key: _text(value) for key, value in flatten(t).items()} for t in (one, other))
-    differences = _differences(*texts)
-    return {key: differences[key] for key in sorted(differences.keys() - set(MAY_DIFFER))}
+    pairs = differences(*texts)
+    return {key: pairs[key] for key in sorted(pairs.keys() - set(MAY_DIFFER))}
 
 
 def version_differences(one: Definition, other: Definition) -> Differences:
     """Return the versions that differ, with both values."""
-    return _differences(one.versions(), other.versions())
+    return differences(one.versions(), other.versions())
+
+
+def differences(one: Mapping[str, str], other: Mapping[str, str]) -> Differences:
+    """Return the values that differ by key, with both values; absent is ``-``."""
+    pairs = {key: (one.get(key, "-"), other.get(key, "-")) for key in {**one, **other}}
+    return {key: pair for key, pair in pairs.items() if pair[0] != pair[1]}
 
 
 def code_digest() -> str:
@@ -142,11 +148,6 @@ def _text(value: object) -> str:
         return text
     digest = hashlib.sha256(text.encode()).hexdigest()[:12]
     return f"{len(text)} characters with the digest {digest}"
-
-
-def _differences(one: Mapping[str, str], other: Mapping[str, str]) -> Differences:
-    pairs = {key: (one.get(key, "-"), other.get(key, "-")) for key in {**one, **other}}
-    return {key: pair for key, pair in pairs.items() if pair[0] != pair[1]}
 
 
 def _resolved(text: str) -> Table:

@@ -16,7 +16,6 @@ from hsr8.evaluation.verdict import exit_code
 from hsr8.loop import Simulation
 from hsr8.recorder.run.run_folder import new_run_folder
 from hsr8.recorder.run.run_reader import open_run
-from hsr8.rerun_log.run_log import write_log
 from hsr8.scenario.schema import Scenario
 
 RunResult = dict[str, Any]
@@ -91,6 +90,8 @@ def _record(job: Job, path: Path) -> Result:
         folder = started_folder(path, job.scenario, (job.command,), renderer)
         result = record(simulation, folder)
         if job.log:
+            from hsr8.rerun_log.run_log import write_log  # noqa: PLC0415  not in the server
+
             write_log(open_run(path))
         return result
 

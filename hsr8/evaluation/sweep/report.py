@@ -49,7 +49,7 @@ def report_of_values(
         command: command line that repeats the sweep.
         made_with: versions.
     """
-    head = ("value", "runs", "success", "95 %", "without fall", "falls", "collisions per run")
+    head = ("value", "runs", "success", "95 %", "runs with a fall", "falls", "collisions per run")
     heads = (*head, "per metre", *(f"{metric.head}, median" for metric in MEDIANS))
     rows = [
         (
@@ -57,7 +57,7 @@ def report_of_values(
             str(s.runs),
             f"{s.success.fraction:.0%}",
             f"{s.success.low:.0%} to {s.success.high:.0%}",
-            f"{s.without_fall.fraction:.0%}",
+            f"{s.fall.fraction:.0%}",
             str(s.counts["falls"]),
             _number(s.collisions_per_run),
             _number(s.collisions_per_m),
@@ -75,11 +75,14 @@ def headline(summary: Summary) -> list[tuple[str, str]]:
     lines = [
         ("success", str(summary.success)),
         ("criteria met", str(summary.criteria_met)),
-        ("without collision", str(summary.without_collision)),
-        ("without fall", str(summary.without_fall)),
+        ("runs with a collision", str(summary.collision)),
+        ("runs with a fall", str(summary.fall)),
         *((m.label, str(summary.counts[m.name])) for m in COUNTS),
         ("collisions per run, per metre", ", ".join(rates)),
     ]
+    for name in ("spl", "optimal_time_ratio"):
+        if (ratio := getattr(summary, name)) is not None:
+            lines.append((METRICS[name].label, _number(ratio)))
     if summary.arrived.n:
         lines.append(("successes that arrive within 15 deg", str(summary.arrived)))
     reasons = ", ".join(f"{reason} {n}" for reason, n in summary.exit_reasons.items())

@@ -1,4 +1,4 @@
-"""Summary of the results of a sweep."""
+"""Summary of the results of a sweep, or of a family of a benchmark."""
 
 from collections import Counter
 from collections.abc import Callable, Sequence
@@ -8,14 +8,16 @@ from typing import Any
 
 import numpy as np
 
+from hsr8.evaluation.efficiency import optimal_time_ratio, spl
 from hsr8.evaluation.proportion import Proportion
-from hsr8.evaluation.registry import Metric, Shown, shown_in
+from hsr8.evaluation.registry import Shown, shown_in
+from hsr8.evaluation.sums import mean
 from hsr8.evaluation.sweep.job import CRASHED, REFUSED, RunResult
 
 MAX_ARRIVAL_ERROR = 15.0  # heading error of an arrival [deg]
 
 COUNTS = shown_in(Shown.COUNT)
-QUANTITIES = shown_in(Shown.SWEEP)
+QUANTITIES = shown_in(Shown.SWEEP | Shown.BENCH)
 
 
 @dataclass(frozen=True, slots=True)
@@ -40,7 +42,7 @@ class Distribution:
 
 @dataclass(frozen=True, slots=True)
 class Summary:
-    """Summary of a sweep.
+    """Summary of runs.
 
     Attributes:
         runs: number of runs; crashed and diverged ones count as failures.
@@ -48,12 +50,14 @@ class Summary:
         crashed, diverged, repeated: number of runs.
         success: no collision, no fall, all via points passed, goal reached.
         criteria_met: the scenario's criteria hold.
-        without_collision, without_fall: of the runs that did not crash.
+        collision, timeout, fall: runs with at least one, of the runs that did not crash.
         arrived: successes within 15 deg of the arrival heading, where there is one.
         counts: falls and collisions in all runs that did not crash.
         collisions_per_run, collisions_per_m: of these runs [1], [1/m].
+        spl: success weighted by path length, mean of all runs [1]; None without runs.
+        optimal_time_ratio: success times certified over actual time, mean of all runs [1].
         exit_reasons: number of runs by exit reason.
-        quantities: distribution by name.
+        quantities: distribution by name; times are those of the successes.
     """
 
     runs: int
@@ -63,12 +67,15 @@ class Summary:
     repeated: int
     success: Proportion
     criteria_met: Proportion
-    without_collision: Proportion
-    without_fall: Proportion
+    collision: Proportion
+    timeout: Proportion
+    fall: Proportion
     arrived: Proportion
     counts: dict[str, int]
     collisions_per_run: float
     collisions_per_m: float
+    spl: float | None
+    optimal_time_ratio: float | None
     exit_reasons: dict[str, int]
     quantities: dict[str, Distribution]
 
@@ -78,10 +85,10 @@ class Summary:
 
 
 def summarize(results: Sequence[RunResult]) -> Summary:
-    """Summarize the results of a sweep."""
-    counted = [r for r in results if r["outcome"] != REFUSED]
+    """Summarize the results of runs."""
+    counted = [scored(r) for r in results if r["outcome"] != REFUSED]
     complete = [r for r in counted if r["outcome"] != CRASHED]
-    successes = [r for r in complete if r.get("success")]
+    successes = [r for r in complete if r["success"]]
     arrival_errors = measured(successes, "arrival_error_deg")
     metres = fsum(measured(complete, "path_length_m"))
 
@@ -95,38 +102,61 @@ def summarize(results: Sequence[RunResult]) -> Summary:
         crashed=len(counted) - len(complete),
         diverged=sum(r["outcome"] == "diverged" for r in complete),
         repeated=sum(int(r.get("attempts", 1)) > 1 for r in counted),
-        success=proportion(counted, lambda r: bool(r.get("success"))),
+        success=proportion(counted, lambda r: r["success"]),
         criteria_met=proportion(counted, lambda r: r["outcome"] == "passed"),
-        without_collision=proportion(complete, lambda r: r.get("collisions") == 0),
-        without_fall=proportion(complete, lambda r: r.get("falls") == 0),
+        collision=proportion(complete, lambda r: r["collision"]),
+        timeout=proportion(complete, lambda r: r["timeout"]),
+        fall=proportion(complete, lambda r: r["fall"]),
         arrived=Proportion.counted(
             sum(error <= MAX_ARRIVAL_ERROR for error in arrival_errors), len(arrival_errors)
         ),
         counts=counts,
         collisions_per_run=counts["collisions"] / len(complete) if complete else 0.0,
         collisions_per_m=counts["collisions"] / metres if metres else 0.0,
+        spl=mean(measured(counted, "spl")),
+        optimal_time_ratio=mean(measured(counted, "optimal_time_ratio")),
         exit_reasons=dict(
-            Counter(str(r.get("exit_reason", r["outcome"])) for r in counted).most_common()
+            Counter(str(r.get("exit_reason") or r["outcome"]) for r in counted).most_common()
         ),
-        quantities=distributions(QUANTITIES, complete),
+        quantities={
+            metric.name: Distribution.of(values)
+            for metric in QUANTITIES
+            if (values := measured(successes if metric.successes else complete, metric.name))
+        },
     )
 
 
-def distributions(
-    metrics: Sequence[Metric], complete: Sequence[RunResult]
-) -> dict[str, Distribution]:
-    """Return the distribution of every metric by name, without those that no run has.
+def scored(result: RunResult) -> RunResult:
+    """Return the result of a run with success, rates and ratios.
 
-    Args:
-        metrics: metrics, some of them of the successes only.
-        complete: results of the runs that did not crash.
+    A crashed run is a failure without ``collision``, ``timeout`` and ``fall``. A success in a
+    world without a certified path has neither ``spl`` nor ``optimal_time_ratio``.
     """
-    successes = [r for r in complete if r.get("success")]
-    return {
-        metric.name: Distribution.of(values)
-        for metric in metrics
-        if (values := measured(successes if metric.successes else complete, metric.name))
+    crashed = result["outcome"] == CRASHED
+    success = not crashed and bool(result.get("success"))
+    ratios: dict[str, float | None] = {
+        "spl": _ratio(spl, result, "certified_length_m", "path_length_m"),
+        "optimal_time_ratio": _ratio(
+            optimal_time_ratio, result, "certified_time_s", "time_to_goal_s"
+        ),
     }
+    if not success:
+        ratios = dict.fromkeys(ratios, 0.0)
+    rates = {
+        "collision": bool(result.get("collisions")),
+        "timeout": result.get("exit_reason") == "timeout",
+        "fall": bool(result.get("falls")),
+    }
+    return {**result, "success": success, **ratios, **({} if crashed else rates)}
+
+
+def _ratio(
+    measure: Callable[[bool, float, float], float], result: RunResult, shortest: str, actual: str
+) -> float | None:
+    """Return a measure of a success; None if a metric is missing."""
+    if result.get(shortest) is None or result.get(actual) is None:
+        return None
+    return measure(True, result[shortest], result[actual])
 
 
 def worst_first(results: Sequence[RunResult]) -> list[RunResult]:

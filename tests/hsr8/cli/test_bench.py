@@ -55,10 +55,10 @@ def test_the_same_command_gives_the_same_file(bench, capsys):
     capsys.readouterr()
     assert entry(["bench", "compare", "a", "bench/tiny/mine", "--json"]) == 0
     comparison = json.loads(capsys.readouterr().out)
-    assert comparison["worlds"] == ["course 1000", "quick 1000"]
-    assert comparison["differs"]["plugin.planner"] == ['""', '"mine.py:Still"']
+    assert comparison["seeds"] == ["course 1000", "quick 1000"]
+    assert comparison["settings"]["plugin.planner"] == ['""', '"mine.py:Still"']
     assert entry(["bench", "compare", "a/bench.json", "bench/tiny/mine"]) == 0
-    assert "# mine against default" in capsys.readouterr().out
+    assert "- B: `mine`, suite tiny 1" in capsys.readouterr().out
 
 
 def test_full_keeps_the_runs_of_quick(bench, instant):

@@ -1,5 +1,4 @@
 from dataclasses import replace
-from pathlib import Path
 
 import numpy as np
 import pytest
@@ -41,7 +40,7 @@ def _run(seed, success=True, time=50.0, **more):
 
 def _side(runs, **change):
     definition = replace(DEFINITION, **change)
-    return Side(Path("somewhere"), definition, {run["seed"]: run for run in runs})
+    return Side("somewhere", "", {run["seed"]: run for run in runs}, definition)
 
 
 def test_success_is_compared_on_common_seeds():

@@ -6,7 +6,7 @@ from hypothesis import strategies as st
 
 from hsr8.errors import UsageError
 from hsr8.evaluation.bench.comparison import compare_entries
-from hsr8.evaluation.bench.page import comparison_page
+from hsr8.evaluation.comparison_page import page, to_json
 
 OUTCOMES = st.lists(
     st.sampled_from(["success", "timeout", "collision", "crashed"]), min_size=4, max_size=4
@@ -32,7 +32,7 @@ def test_worlds_pair_by_family_and_seed(make_entry):
     a = make_entry("a", course=("success", "timeout", "success"), crowd=("success",))
     b = make_entry("b", course=("success", "success", "refused"), crowd=("collision",) * 2)
     comparison = compare_entries(a, b)
-    assert comparison.worlds == ("course 1000", "course 1001", "crowd 1000")
+    assert comparison.seeds == ("course 1000", "course 1001", "crowd 1000")
     success = comparison.metrics[0]
     assert (success.metric, success.test, success.n) == ("success", "McNemar", 3)
     assert (success.only_a, success.only_b) == (("crowd 1000",), ("course 1001",))
@@ -70,8 +70,8 @@ def test_entries_of_different_worlds_are_refused(make_entry, make_run):
 def test_settings_and_versions_that_differ_are_listed(make_entry):
     settings = {"robot.body": ('"kinematic"', '"full"'), "navigation.planner.method": ("1", "2")}
     other = make_entry("mine", settings=settings, versions={"hsr8": "0.2.0", "mine.py:M": "77"})
-    differs = compare_entries(make_entry(), other).to_json()["differs"]
-    assert differs == {
+    value = to_json(compare_entries(make_entry(), other))
+    assert value["settings"] | value["versions"] == {
         "hsr8": ["0.1.0", "0.2.0"],
         "code": ["1", "-"],
         "mujoco": ["4.0.0", "-"],
@@ -83,10 +83,10 @@ def test_settings_and_versions_that_differ_are_listed(make_entry):
 
 def test_the_page_and_the_json_hold_the_same_numbers(make_entry):
     comparison = compare_entries(make_entry("a"), make_entry("b", course=("timeout",) * 4))
-    text = comparison_page(comparison, "hsr8 bench compare a b")
+    text = page(comparison, "hsr8 bench compare a b")
     assert "| course | 4 | 100.0 % | 0.0 % | -100.0 [" in text
     assert "| `success` | 8 | 100.0 % | 50.0 % | -50.0 points |" in text
     assert "Settings and versions are equal." in text
-    value = json.loads(json.dumps(comparison.to_json()))
-    assert value["all"]["success"]["difference"] == -0.5
+    value = json.loads(json.dumps(to_json(comparison)))
+    assert value["results"]["success"]["difference"] == -0.5
     assert value["families"]["course"]["b"] == 0.0

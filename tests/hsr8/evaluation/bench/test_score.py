@@ -2,7 +2,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from hsr8.evaluation.bench.score import score
+from hsr8.evaluation.sweep.summary import summarize as score
 
 OUTCOMES = ["success", "timeout", "collision", "fall", "crashed", "refused"]
 

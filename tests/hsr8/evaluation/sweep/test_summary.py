@@ -18,7 +18,7 @@ def test_counts(result):
     assert summary.runs == 5
     assert (summary.refused, summary.crashed, summary.diverged, summary.repeated) == (1, 1, 1, 2)
     assert (summary.success.count, summary.success.n) == (2, 5)
-    assert (summary.without_fall.count, summary.without_fall.n) == (3, 4)
+    assert (summary.fall.count, summary.fall.n) == (1, 4)
     assert (summary.arrived.count, summary.arrived.n) == (1, 2)
     assert summary.counts["collisions"] == 2
     assert summary.counts["collisions_moving"] == 1
