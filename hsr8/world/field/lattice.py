@@ -15,6 +15,7 @@ from math import ceil, pi
 import numpy as np
 from numpy.typing import NDArray
 
+from compilation import compiled
 from hsr8.scenario.robot import Robot
 from hsr8.world.field.layout import Layout
 
@@ -101,11 +102,9 @@ class Lattice:
     def connected(self) -> Bits:
         """Return the cells reachable among static obstacles alone (n, m), 0 or `ALL`."""
         reached = np.zeros_like(self._static)
-        reached[self.start] = self._static[self.start]
-        count = -1
-        while count != (count := int(np.count_nonzero(reached))):
-            for move in self.moves:
-                reached |= shifted(np.where(move.edge, reached, np.uint8(0)), move.direction)
+        if self._static[self.start]:
+            edges = np.bitwise_or.reduce([move.edge for move in self.moves])
+            flood(edges, *self.start, reached)
         return reached
 
     def near(self, point: tuple[float, float] | list[float], distance: float) -> Bits:
@@ -146,6 +145,32 @@ class Lattice:
             gap2 = (dx + fraction * move[0]) ** 2 + (dy + fraction * move[1]) ** 2
             clear[rows, columns] &= gap2 > (obstacle.radius + self._disc) ** 2
         return _bits(clear)
+
+
+@compiled
+def flood(edges: Bits, i: int, j: int, reached: Bits) -> None:
+    """Mark the cells that can be reached from a cell.
+
+    Args:
+        edges: possible moves from each cell, a bit per direction (n, m).
+        i: row of the first cell.
+        j: column of the first cell.
+        reached: set to `ALL` in the reached cells, 0 before (n, m).
+    """
+    n, m = edges.shape
+    waiting = np.empty(n * m, np.int64)
+    waiting[0], count = i * m + j, 1
+    reached[i, j] = ALL
+    while count > 0:
+        count -= 1
+        row, column = divmod(waiting[count], m)
+        for direction in range(len(DIRECTIONS)):
+            if edges[row, column] >> direction & 1:
+                dx, dy = DIRECTIONS[direction]
+                if reached[row + dx, column + dy] == 0:
+                    reached[row + dx, column + dy] = ALL
+                    waiting[count] = (row + dx) * m + column + dy
+                    count += 1
 
 
 def shifted(bits: Bits, direction: tuple[int, int]) -> Bits:

@@ -1,5 +1,6 @@
 from dataclasses import replace
 from math import pi
+from time import process_time
 
 import numpy as np
 import pytest
@@ -9,6 +10,7 @@ from hsr8.scenario.loader import load_scenario
 from hsr8.scenario.robot import Robot, SpeedEnvelope
 from hsr8.world.field.certificate import VIA_REACHED, certify, min_clearance, straight_length
 from hsr8.world.field.generator import draw_layout, draw_world
+from hsr8.world.field.lattice import Lattice
 from hsr8.world.field.layout import Layout, Obstacle
 from hsr8.world.field.motion import Circle, Passage, Shuttle
 from hsr8.world.field.wander import Wander
@@ -161,6 +163,21 @@ def test_points_before_a_wall_are_counted(x, points, reached):
     certificate = certify(layout(wall(x), points), ROBOT)
     assert (certificate.solvable, certificate.points_reached) == (False, reached)
     assert certificate.points == len(points)
+
+
+def test_the_cells_among_many_obstacles_of_a_large_field_are_found_in_one_pass():
+    places = np.random.default_rng(1).uniform(5.0, 45.0, (128, 2))
+    posts = [Obstacle((x, y), 2.0, 0.3, "red") for x, y in places.tolist()]
+    lattice = Lattice(layout(posts, size=(100.0, 100.0)), ROBOT, 0.05)
+    lattice.connected()
+
+    began = process_time()
+    connected = lattice.connected()
+
+    assert process_time() - began < 2.0
+    assert connected[lattice.start]
+    assert connected[lattice.near((-45.0, -45.0), 1.0) > 0].all()
+    assert not connected[lattice.near(posts[0].position, 2.0) > 0].any()
 
 
 def test_a_mover_that_sweeps_a_narrow_corridor_blocks_it():
