@@ -5,7 +5,6 @@ tables of contents that Sphinx needs.
 """
 
 import re
-from pathlib import Path
 
 import hsr8  # before NumPy: it selects the arithmetic
 
@@ -15,7 +14,7 @@ CONTENTS = {
     "How to": ("python", "sweeps", "bench", "robots", "gym", "faults", "crowds", "export"),
     "Paper": ("equations", "figures"),
     "Reference": ("commands", "scenarios", "files", "metrics", "data", "api"),
-    "Results": ("results/README",),
+    "Results": ("results/*",),
     "About": ("trust", "limitations", "architecture", "notes"),
 }
 """Pages by part of the manual, in their order."""
@@ -25,12 +24,6 @@ author = "hsr8 maintainers"
 version = release = hsr8.__version__
 root_doc = "README"
 extensions = ["myst_parser", "sphinx.ext.autodoc", "sphinx.ext.napoleon", "sphinx.ext.mathjax"]
-# Result pages of earlier versions are not part of the manual.
-exclude_patterns = [
-    str(page.relative_to(Path(__file__).parent))
-    for page in Path(__file__).parent.glob("results/**/*.md")
-    if "made by `make benchmarks`" not in page.read_text(encoding="utf-8")
-]
 html_theme = "furo"
 html_title = f"hsr8 {release}"
 myst_enable_extensions = ["dollarmath", "html_image"]
@@ -44,7 +37,7 @@ autodoc_member_order = "bysource"
 def _with_contents(text: str) -> str:
     """Return the start page with the tables of contents of Sphinx."""
     trees = (
-        f"```{{toctree}}\n:hidden:\n:caption: {caption}\n\n{chr(10).join(pages)}\n```\n"
+        f"```{{toctree}}\n:hidden:\n:glob:\n:caption: {caption}\n\n{chr(10).join(pages)}\n```\n"
         for caption, pages in CONTENTS.items()
     )
     return "\n".join([text, *trees])

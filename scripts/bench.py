@@ -1,8 +1,7 @@
 """Where the time of the closed loop goes, and how far it is from the floor under it.
 
     python scripts/bench.py                       # `course`, 40 s
-    python scripts/bench.py --obstacles 8 16 32 64 128 --beacons 0 6 --seconds 30 100 300 --write
-    python scripts/bench.py --check               # against the ratios kept with the results
+    python scripts/bench.py --check               # against the kept ratios
     python scripts/bench.py --against ../main     # in turn with another checkout
 
 The floor is MuJoCo stepping the same model with constant controls and rendering as many
@@ -15,73 +14,24 @@ runs, the one with the median total is shown.
 
 import argparse
 import json
-from collections.abc import Iterable
+from importlib.metadata import version
 from pathlib import Path
 from statistics import median
 
 from hsr8.cli.yardstick import step_time
 from hsr8.files import atomic
-from hsr8.gl import require_gl
 from hsr8.loop import Simulation
 from hsr8.scenario.loader import load_scenario
-from hsr8.scenario.schema import Scenario
 
 from bench_pairs import comparison, pairs
 from loop_bench import Bench
-from study_page import RESULTS, command_line, environment
 
 ROOT = Path(__file__).resolve().parents[1]
-PAGE, BASELINE = RESULTS / "loop-time.md", RESULTS / "loop-ratios.json"
+BASELINE = Path(__file__).with_name("loop-ratios.json")
 PACKAGES = ("hsr8", "mujoco", "numba", "numpy", "rerun-sdk")
-EARLIER = "\n## Earlier states\n"  # the following part of the page is not measured again
-ENDLESS = "paper"  # a scenario that goes on for as long as is asked
-MOST_OF_A_KIND = 64  # obstacles of one kind that a world may have
-USUAL = (5.0, 16)  # side of the field [m] and obstacles in it
 CHECKED = ("course", 5, "duration=8")  # scenario, seed and length that the check runs
 SLOWER = 1.2  # ratio to the baseline from which a stage is reported [1]
 SMALL = 0.04  # stages of less than this are not looked at: chance moves them as far [floors]
-
-
-def world_of(obstacles: int) -> list[str]:
-    """Settings of a world with so many obstacles, as dense as usual, a quarter of them moving."""
-    moving = max(obstacles // 4, obstacles - MOST_OF_A_KIND)
-    side = round(USUAL[0] * (obstacles / USUAL[1]) ** 0.5, 2)
-    return [
-        f"world.n_static={obstacles - moving}",
-        f"world.n_moving={moving}",
-        f"world.size=[{side}, {side}]",
-    ]
-
-
-def grown(what: str, sizes: Iterable[int], scenarios: Iterable[Scenario]) -> list[str]:
-    """Table of loop and floor in growing runs."""
-    lines = ["", f"| {what} | loop [ms/s] | floor [ms/s] | ratio |", "|---|---|---|---|"]
-    for size, scenario in zip(sizes, scenarios, strict=True):
-        bench = Bench(scenario, scenario.seed)
-        loop, floor = (1e3 * time / bench.simulated for time in (bench.loop, bench.floor))
-        lines.append(f"| {size} | {loop:.0f} | {floor:.0f} | {bench.ratio:.2f} |")
-        print(lines[-1], flush=True)
-    return lines
-
-
-def growth(options: argparse.Namespace, settings: list[str]) -> list[str]:
-    """Tables of the growth that was asked for."""
-
-    def worlds(changes: Iterable[list[str]]) -> Iterable[Scenario]:
-        for change in changes:
-            yield load_scenario(options.scenario, [*settings, *change], options.seed)
-
-    lines: list[str] = []
-    if options.obstacles:
-        dense = worlds(world_of(n) for n in options.obstacles)
-        lines += grown("obstacles", options.obstacles, dense)
-    if options.beacons:
-        lit = worlds([f"world.beacons={str(n > 0).lower()}"] for n in options.beacons)
-        lines += grown("beacons", options.beacons, lit)
-    if options.seconds:
-        tours = (load_scenario(ENDLESS, [f"duration={s}"], options.seed) for s in options.seconds)
-        lines += grown(f"`{ENDLESS}` [s]", options.seconds, tours)
-    return lines
 
 
 def warm(scenario: str, seed: int) -> None:
@@ -133,11 +83,7 @@ def main() -> None:
     parser.add_argument("--duration", type=float, default=40.0, help="simulated [s]")
     parser.add_argument("--turns", type=int, default=3, help="runs, of which the median is shown")
     parser.add_argument("--against", type=Path, metavar="PATH", help="another checkout")
-    parser.add_argument("--obstacles", type=int, nargs="*", default=[], help="worlds to compare")
-    parser.add_argument("--beacons", type=int, choices=(0, 6), nargs="*", default=[])
-    parser.add_argument("--seconds", type=int, nargs="*", default=[], help="lengths to compare")
     parser.add_argument("--set", action="append", default=[], help="KEY=VALUE of the scenario")
-    parser.add_argument("--write", action="store_true", help=f"write {PAGE.name}")
     parser.add_argument("--check", action="store_true", help=f"compare with {BASELINE.name}")
     parser.add_argument("--keep", action="store_true", help=f"write {BASELINE.name}")
     options = parser.parse_args()
@@ -154,30 +100,20 @@ def main() -> None:
     if options.keep:
         runs = [ratios() for _ in range(options.turns)]
         measured = {stage: round(ratio, 3) for stage, ratio in medians(runs).items()}
-        atomic.write_json(
-            BASELINE, {"run": CHECKED, "of": environment(PACKAGES), "ratios": measured}
-        )
+        versions = {name: version(name) for name in PACKAGES}
+        atomic.write_json(BASELINE, {"run": CHECKED, "of": versions, "ratios": measured})
         return
     settings = [f"duration={options.duration:g}", *options.set]
     scenario = load_scenario(options.scenario, settings, options.seed)
     runs = sorted((Bench(scenario, options.seed) for _ in range(options.turns)), key=total)
     bench = runs[len(runs) // 2]
-    lines = [
+    print(
         f"`{options.scenario}`, seed {options.seed}, {bench.simulated:g} s: "
         f"{bench.simulated / bench.loop:.2f} times real time, the floor "
         f"{bench.simulated / bench.floor:.1f}; the loop takes {bench.ratio:.2f} floors. "
-        f"Speed times a physics step: {bench.simulated / bench.loop * step_time():.0f} us.",
-        "",
-        *bench.table(),
-    ]
-    print("\n".join(lines), flush=True)
-    lines += growth(options, settings)
-    if options.write:
-        measured = f"{environment(PACKAGES)}, {require_gl()}."
-        text = ["# Time of the closed loop", "", measured, "", f"    {command_line()}", ""]
-        intro = (__doc__ or "").split("\n\n")[2].split("\n")
-        _, earlier, kept = (PAGE.read_text() if PAGE.exists() else "").partition(EARLIER)
-        PAGE.write_text("\n".join([*text, *intro, "", *lines, ""]) + earlier + kept)
+        f"Speed times a physics step: {bench.simulated / bench.loop * step_time():.0f} us.\n"
+    )
+    print("\n".join(bench.table()))
 
 
 if __name__ == "__main__":

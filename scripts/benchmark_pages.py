@@ -27,8 +27,8 @@ class Page:
     """One page with its data.
 
     Args:
-        name: of the page.
-        definition: of all results.
+        name: name of the page.
+        definition: definition of all results.
         results: folder of the pages.
     """
 
@@ -42,9 +42,9 @@ class Page:
         """Write the data of the page from the finished runs of its cells.
 
         Args:
-            cells: of the page.
+            cells: cells of the page.
             root: folder of the runs.
-            made: version, date and machine.
+            made: version, date and machine of the runs.
         """
         rows = [row(cell, result) for cell in cells for result in cell.results(root)]
         table = pa.Table.from_pylist(rows).replace_schema_metadata({MADE: json.dumps(made)})
@@ -166,13 +166,12 @@ def _made(made: dict[str, str]) -> str:
     return f"Version {made['version']}, code {made['code']}, {made['date']}."
 
 
-def index(definition: Definition, pages: Sequence[Page], earlier: Sequence[str]) -> str:
+def index(definition: Definition, pages: Sequence[Page]) -> str:
     """Return the index of the results.
 
     Args:
-        definition: of all results.
+        definition: definition of all results.
         pages: all pages.
-        earlier: names of pages of earlier versions that are still there.
     """
     stored = {page.name: page.read() for page in pages}
     lines = [MARK, "", "# Results", ""]
@@ -186,10 +185,8 @@ def index(definition: Definition, pages: Sequence[Page], earlier: Sequence[str])
     if made:
         lines += ["", f"{_made(made[0])} {made[0]['machine']}."]
     lines += ["", "```bash", "make benchmarks", "```", ""]
-    if earlier:
-        names = ", ".join(f"`{name}`" for name in earlier)
-        text = definition.index["earlier"].strip().format(names=names)
-        lines += ["## Pages of earlier versions", "", text, ""]
+    if len(made) < len(pages):
+        lines += [definition.index["missing"].strip(), ""]
     return "\n".join(lines)
 
 
@@ -220,7 +217,7 @@ def write(definition: Definition, results: Path = RESULTS) -> None:
     for page in pages:
         if text := page.text():
             atomic.write_text(page.file, text)
-    atomic.write_text(results / "README.md", index(definition, pages, earlier(pages, results)))
+    atomic.write_text(results / "README.md", index(definition, pages))
     for name in INCLUDED if results == RESULTS else ():
         text = (ROOT / name).read_text(encoding="utf-8")
         if table := headline(definition, pages):
@@ -229,12 +226,6 @@ def write(definition: Definition, results: Path = RESULTS) -> None:
             if stored := page.read():
                 text = with_included(text, page.name, page.rows(stored[0]))
         atomic.write_text(ROOT / name, text)
-
-
-def earlier(pages: Sequence[Page], results: Path = RESULTS) -> list[str]:
-    """Return the names of the pages that the results do not define or have not replaced."""
-    current = {page.file.name for page in pages if page.read()} | {"README.md"}
-    return sorted(file.stem for file in results.glob("*.md") if file.name not in current)
 
 
 def versions(definition: Definition, results: Path = RESULTS) -> dict[str, dict[str, Any]]:

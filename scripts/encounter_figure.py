@@ -27,7 +27,7 @@ from matplotlib.lines import Line2D
 from matplotlib.patches import Patch, Polygon, Rectangle
 from numpy.typing import NDArray
 from recorded_run import RecordedRun, run
-from study_page import STAND_INS
+from study import STAND_INS
 
 Array = NDArray[np.float64]
 

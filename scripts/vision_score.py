@@ -36,10 +36,9 @@ class Study:
     reported_clean: int = 0
     false_clean: int = 0
     false_beacons: int = 0
-    times: list[float] = field(default_factory=list)
 
     def judge(self, detections: tuple[Detection, ...], truth: list[Sight]) -> list[str]:
-        """Count one frame; returns what went wrong, in words."""
+        """Count one frame; return its mistakes in words."""
         mistakes = []
         used: set[int] = set()
         for sight in truth:
@@ -99,22 +98,17 @@ class Study:
             print(f"{name}s: detected {detected} of {visible} = {100.0 * detected / visible:.2f} %")
         print(
             f"reported {self.reported}, false {self.false}: precision "
-            f"{_share(self.reported, self.false):.2f} %\n"
+            f"{_precision(self.reported, self.false):.2f} %\n"
             f"clean obstacles reported {self.reported_clean}, false {self.false_clean}: precision "
-            f"{_share(self.reported_clean, self.false_clean):.2f} %; "
+            f"{_precision(self.reported_clean, self.false_clean):.2f} %; "
             f"false beacons {self.false_beacons}"
         )
         for name, rows in sorted(self.errors.items()):
             print(f"{name}:")
             _table(np.array(rows))
-        if self.times:
-            print(
-                f"processor time of a frame [ms]: median {np.median(self.times):.2f}, "
-                f"p95 {np.percentile(self.times, 95):.2f}"
-            )
 
 
-def _share(reported: int, false: int) -> float:
+def _precision(reported: int, false: int) -> float:
     return 100.0 * (1.0 - false / max(reported, 1))
 
 

@@ -1,7 +1,7 @@
 """Ground truth of a camera image: visible targets, their visible fractions and the pose."""
 
 from dataclasses import dataclass
-from math import atan2, cos, hypot, sin
+from math import atan2, hypot
 
 from vision.camera import PinholeCamera
 
@@ -56,16 +56,6 @@ class Sight:
         if self.target.kind == "beacon":
             return self.clear and self.distance < 5.0
         return 0.3 <= self.distance <= 2.5
-
-
-def rotation_of(yaw: float, pitch: float, roll: float) -> Array:
-    """R_RC of a camera turned left by `yaw`, up by `pitch`, rolled by `roll` [rad]."""
-    cy, sy, cp, sp, cr, sr = cos(yaw), sin(yaw), cos(pitch), sin(pitch), cos(roll), sin(roll)
-    Rz = np.array([[cy, -sy, 0], [sy, cy, 0], [0, 0, 1]])
-    Ry = np.array([[cp, 0, -sp], [0, 1, 0], [sp, 0, cp]])
-    Rx = np.array([[1, 0, 0], [0, cr, -sr], [0, sr, cr]])
-    level: Array = np.array([[0.0, 0.0, 1.0], [-1.0, 0.0, 0.0], [0.0, -1.0, 0.0]])
-    return Rz @ Rx @ Ry @ level
 
 
 def silhouette(target: Target, camera: PinholeCamera, R: Array, p: Array) -> tuple[Array, bool]:

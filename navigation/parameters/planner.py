@@ -1,6 +1,6 @@
 """Parameters of the planners: the method, and the constants of the baselines.
 
-The constants of the baselines are the result of `scripts/tune_baselines.py`.
+The constants of the baselines were tuned with equal effort; `scripts/tune.py` tunes them again.
 """
 
 from dataclasses import dataclass, field

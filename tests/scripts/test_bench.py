@@ -13,14 +13,6 @@ def test_only_what_is_much_slower_is_told():
     assert "22% above 0.50" in told[0]
 
 
-def test_worlds_grow_at_the_same_density():
-    for n in (8, 16, 32, 64, 128):
-        static, moving, size = bench.world_of(n)
-        side = float(size.partition("[")[2].partition(",")[0])
-        assert int(static.partition("=")[2]) + int(moving.partition("=")[2]) == n
-        assert abs(side**2 / n - 25.0 / 16.0) < 0.01
-
-
 class Work:
     """Two stages, one inside the other, that collect garbage now and then."""
 

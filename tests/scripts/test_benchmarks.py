@@ -98,14 +98,13 @@ def test_an_arm_has_the_settings_of_the_arm_that_it_is_like(definition):
     assert len({cell.folder(RESULTS) for cell in levels}) == len(levels) == 4
 
 
-def test_the_index_lists_pages_without_data_and_pages_of_earlier_versions(definition, page_of):
+def test_the_index_lists_pages_without_data(definition, page_of):
     measured = page_of("walking")
     pages = [Page("gaze", definition, measured.file.parent), measured]
-    text = index(definition, pages, ["course"])
+    text = index(definition, pages)
     assert "| Gaze |" in text
     assert "not measured with this version" in text
     assert "[Walking](walking.md)" in text
-    assert "`course`" in text
 
 
 def test_numbers_on_other_pages_are_replaced_between_their_markers():

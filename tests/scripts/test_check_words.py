@@ -5,17 +5,7 @@ from pathlib import Path
 import pytest
 from check_words import PACKAGES, ROOT, check_file, check_python, check_text, files
 
-MARK = "<!-- made by `make benchmarks` -->"
-
-
-def _earlier(page: Path) -> bool:
-    """Whether a page has results of an earlier version, which will be replaced."""
-    return page.is_relative_to(ROOT / "docs" / "results") and MARK not in page.read_text()
-
-
-def _pages() -> list[Path]:
-    pages = files([ROOT / "docs", ROOT / "models", *ROOT.glob("*.md")])
-    return [page for page in pages if not _earlier(page)]
+PAGES = files([ROOT / "docs", ROOT / "models", *ROOT.glob("*.md")])
 
 
 @pytest.mark.parametrize("package", PACKAGES)
@@ -25,7 +15,7 @@ def test_docstrings_comments_and_messages_have_no_banned_words(package: str) -> 
     assert not findings, "\n".join(findings)
 
 
-@pytest.mark.parametrize("page", _pages(), ids=lambda page: str(page.relative_to(ROOT)))
+@pytest.mark.parametrize("page", PAGES, ids=lambda page: str(page.relative_to(ROOT)))
 def test_pages_have_no_banned_words(page: Path) -> None:
     assert not check_file(page), "\n".join(check_file(page))
 

@@ -7,7 +7,7 @@ a squat. Only the push needs the full torque of the shoulders, 1.5 N·m.
 
 From the back. A leg swings across and turns the trunk over to the front.
 
-``scripts/getup_study.py`` measures their success rate.
+Their success rate is on the page on walking of the results.
 """
 
 from dataclasses import dataclass

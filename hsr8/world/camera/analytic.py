@@ -33,7 +33,7 @@ OBSTACLE_RANGE = 4.5  # farther obstacles are not reported [m]
 BEACON_RANGE = 5.5  # farther beacons are not reported [m]
 DETECTION_RATE = 0.999  # fraction of visible objects that are detected
 MAX_HIDDEN = 0.7  # hidden fraction of the width beyond which nothing is detected
-# Errors as those of vision in full physics, docs/results/vision.md.
+# Errors as those of vision in full physics, measured by scripts/vision_study.py.
 MIN_SIGMA = 0.002  # of the range [m]
 RANGE_SIGMA = 0.0027  # per squared distance [1/m]
 BEARING_SIGMA = 0.0009  # [rad]
