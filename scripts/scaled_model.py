@@ -121,6 +121,8 @@ def scaled_robot(size: float, folder: Path) -> LoadedRobot:
     (folder / f"size-{size}.xml").write_text(spec.to_xml(), encoding="utf-8")
     text = find_description("hsr8").read_text(encoding="utf-8")
     text = text.replace('"hsr8/hsr8.xml"', f'"size-{size}.xml"')
+    for line in ("radius = 0.12\n", "tuned = true\n"):  # of the original only
+        text = text.replace(line, "")
     file = folder / f"size-{size}.toml"
-    file.write_text(text.replace("radius = 0.12\n", ""), encoding="utf-8")
+    file.write_text(text, encoding="utf-8")
     return load_robot(str(file))
