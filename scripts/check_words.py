@@ -1,9 +1,11 @@
 """Banned wording in documentation, docstrings, comments, messages and names.
 
     python scripts/check_words.py [PATH ...]
+    python scripts/check_words.py --fragments [PATH ...]
 
 lists every match with the suggested words. The rules: one term per concept, the terms of the field,
-plain present-day English.
+plain present-day English. ``--fragments`` lists the lines of arguments and attributes that are not
+noun phrases ("pose: of the robot" for "pose: pose of the robot"), and their number by package.
 """
 
 import ast
@@ -96,6 +98,55 @@ def check_python(source: str) -> Iterator[tuple[int, str, str]]:
                 yield getattr(node, "lineno", 0), f"name `{name}`", "a name from the domain"
 
 
+ENTRIES = re.compile(r"^( *)(?:Args|Attributes|Returns):\n((?:\1 +.*\n|\n)+)", re.MULTILINE)
+FRAGMENT = re.compile(
+    r"(?:of|in|on|at|by|to|for|from|with|without|within|along|across|after|before|between|until|per"
+    r"|that|which|whose|where|when|also|as|if|is|are|was|has|have|may)\b",
+    re.IGNORECASE,
+)
+
+
+def entries(source: str) -> Iterator[tuple[int, str, str]]:
+    """Arguments and attributes that docstrings describe.
+
+    Args:
+        source: Python code.
+
+    Yields:
+        Line number, name and description.
+    """
+    for node in ast.walk(ast.parse(source)):
+        if not isinstance(node, ast.Module | ast.ClassDef | ast.FunctionDef):
+            continue
+        if ast.get_docstring(node, clean=False) is None:
+            continue
+        docstring = node.body[0]
+        assert isinstance(docstring, ast.Expr)
+        text = ast.get_docstring(node, clean=False) or ""
+        for section in ENTRIES.finditer(text + "\n"):
+            first = section[2]
+            indent = len(first) - len(first.lstrip())
+            for match in re.finditer(
+                rf"^ {{{indent}}}(\*{{0,2}}\w[\w, ]*): (.*)", first, re.MULTILINE
+            ):
+                offset = text.count("\n", 0, section.start(2) + match.start())
+                yield docstring.lineno + offset, match[1], match[2]
+
+
+def fragments(source: str) -> tuple[list[str], int]:
+    """Fragments among the lines of arguments and attributes.
+
+    Args:
+        source: Python code.
+
+    Returns:
+        The fragments with their line numbers, and the number of all lines.
+    """
+    every = list(entries(source))
+    bad = [f"{line}: {name}: {text}" for line, name, text in every if FRAGMENT.match(text)]
+    return bad, len(every)
+
+
 def check_file(path: Path) -> list[str]:
     """Findings in a file, one line each: place, phrase, suggestion."""
     text = path.read_text(encoding="utf-8")
@@ -127,11 +178,34 @@ def files(paths: list[Path]) -> list[Path]:
     ]
 
 
+def report_fragments(paths: list[Path]) -> None:
+    """Print all fragments, and their number by folder."""
+    summary = []
+    for path in paths:
+        total = count = 0
+        for file in files([path]):
+            if file.suffix == ".py":
+                lines, number = fragments(file.read_text(encoding="utf-8"))
+                for line in lines:
+                    print(f"{file.relative_to(ROOT)}:{line}")
+                total, count = total + number, count + len(lines)
+        summary.append(f"{path.relative_to(ROOT)}: {count} of {total} lines are fragments")
+    print("\n".join(summary))
+
+
+def main() -> int:
+    """Check the paths on the command line; return the exit code."""
+    words = sys.argv[1:]
+    paths = [Path(word).resolve() for word in words if word != "--fragments"]
+    if "--fragments" in words:
+        report_fragments(paths or [ROOT / package for package in PACKAGES])
+        return 0
+    pages = [ROOT / "docs", ROOT / "models", *ROOT.glob("*.md")]
+    every = files(paths or [*(ROOT / package for package in PACKAGES), *pages])
+    findings = [line for file in every for line in check_file(file)]
+    print("\n".join([*findings, f"{len(findings)} findings"]))
+    return bool(findings)
+
+
 if __name__ == "__main__":
-    given = [Path(word).resolve() for word in sys.argv[1:]]
-    findings = [
-        line for file in files(given or [ROOT / p for p in PACKAGES]) for line in check_file(file)
-    ]
-    print("\n".join(findings))
-    print(f"{len(findings)} findings")
-    sys.exit(bool(findings))
+    sys.exit(main())

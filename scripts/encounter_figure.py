@@ -50,10 +50,10 @@ class Case:
     """One column of the figure.
 
     Attributes:
-        letter: of the case.
-        title: of the column.
+        letter: letter of the case.
+        title: title of the column.
         frame: the decision shown on top.
-        direction: of the line of motion in W [rad].
+        direction: direction of the line of motion in W [rad].
         encounter: mover and robot in axes of that line.
         ran: the run with the scheme, and without.
     """

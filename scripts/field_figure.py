@@ -32,10 +32,10 @@ class FieldPanel:
 
     Attributes:
         name: title of the panel.
-        parameters: that make it.
+        parameters: parameters that make it.
         arrows: unit vectors or zeros at the points of the grid (n, 2).
         paths: one from each start (m, steps, 2) [m].
-        arrived: which of them end at the goal (m,).
+        arrived: whether each path ends at the goal (m,).
         clearance: minimum distance of each path from the obstacle's surface for a robot (m,) [m].
     """
 

@@ -65,7 +65,7 @@ def window(pan: float, tilt: float, fov: tuple[float, float], height: float) -> 
         pan: left positive [rad].
         tilt: up positive [rad].
         fov: horizontal and vertical field of view [rad].
-        height: of the camera [m].
+        height: height of the camera [m].
     """
     h, v = tan(0.5 * fov[0]), tan(0.5 * fov[1])
     side = np.linspace(-1.0, 1.0, 25)

@@ -44,10 +44,10 @@ class Look:
     """One decision of the gaze.
 
     Attributes:
-        frame: in which it was taken.
+        frame: frame in which it was taken.
         scene: its partial evaluations.
         after: the frame after the saccade.
-        parameters: of the decisions.
+        parameters: parameters of the decisions.
     """
 
     frame: FrameRecord

@@ -19,7 +19,7 @@ class RecordedRun:
     """Motion and camera frames of a run, as the figures need them.
 
     Attributes:
-        time: of every record [s].
+        time: time of every record [s].
         robot: true x, y, heading of every record [m, m, rad].
         movers: true positions of every record (m, 2) [m].
         contact: whether anything touched, of every record.
@@ -54,9 +54,9 @@ def run(name: str, settings: tuple[str, ...], seed: int, duration: float) -> Rec
     """Run a scenario for at most `duration` [s].
 
     Args:
-        name: of the scenario.
+        name: name of the scenario.
         settings: like ``--set`` of `hsr8 run`.
-        seed: of world and noise.
+        seed: seed of world and noise.
         duration: simulated time [s].
     """
     scenario = load_scenario(name, [*settings, f"duration={duration}"])

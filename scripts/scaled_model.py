@@ -53,7 +53,7 @@ def scale_robot(spec: mujoco.MjSpec, size: float) -> None:
 
     Args:
         spec: robot with a free root, nothing else in its world.
-        size: of the robot made, that of the given one being 1.
+        size: factor on all lengths [1].
     """
     scale = _Scale(size)
     for body in spec.bodies:

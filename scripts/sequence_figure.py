@@ -60,14 +60,14 @@ class Tour:
     """A run as the figure needs it.
 
     Attributes:
-        name: of the row.
-        scenario: that was run.
+        name: name of the row.
+        scenario: scenario of the run.
         layout: its world.
         frames: belief and decisions.
-        motion: of robot and movers.
+        motion: motion of robot and movers.
         walked: records of the run.
         model: model of the robot.
-        height: of the camera [m].
+        height: height of the camera [m].
         collisions: times of all collisions (n,) [s].
     """
 

@@ -24,7 +24,7 @@ class Study:
     Attributes:
         visible, detected: objects that are visible and those detected, by kind;
             obstacles also by whether they are clear.
-        errors: by group: true distance, errors of distance, bearing and radius, and their
+        errors: errors by group: true distance, errors of distance, bearing and radius, and their
             claimed standard deviations; NEES of distance and bearing together.
     """
 

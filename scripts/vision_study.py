@@ -33,7 +33,7 @@ class Referee:
 
     Args:
         simulation: the run.
-        study: where frames are counted.
+        study: counts of all frames.
         verbose: print every mistake.
     """
 

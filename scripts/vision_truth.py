@@ -33,7 +33,7 @@ class Sight:
 
     Attributes:
         target: the object.
-        distance: from the robot [m].
+        distance: distance from the robot [m].
         bearing: [rad].
         hidden: fraction of its outline that other targets hide.
         cut: the border of the image cuts it.

@@ -3,7 +3,7 @@
 from pathlib import Path
 
 import pytest
-from check_words import PACKAGES, ROOT, check_file, check_python, check_text, files
+from check_words import PACKAGES, ROOT, check_file, check_python, check_text, files, fragments
 
 PAGES = files([ROOT / "docs", ROOT / "models", *ROOT.glob("*.md")])
 
@@ -59,3 +59,29 @@ def test_python_is_checked_in_docstrings_comments_messages_and_names() -> None:
     phrases = {phrase for _, phrase, _ in check_python(source)}
 
     assert phrases == {"Mend", "name `found`", "nobody", "picture"}
+
+
+def test_lines_of_arguments_that_are_not_noun_phrases_are_fragments():
+    source = '''class Robot:
+    """Robot.
+
+    Attributes:
+        pose: of the robot in the world (3,)
+            [m, m, rad].
+        radius: radius of the robot [m].
+    """
+
+    def walk(self, speed, *legs):
+        """Walk.
+
+        Args:
+            speed: mean speed, along the path:
+                of the trunk [m/s].
+            *legs: that walk.
+        """
+'''
+
+    lines, number = fragments(source)
+
+    assert lines == ["5: pose: of the robot in the world (3,)", "16: *legs: that walk."]
+    assert number == 4
