@@ -4,7 +4,6 @@ from collections import deque
 from collections.abc import Callable
 from dataclasses import replace
 from functools import partial
-from operator import attrgetter
 from typing import Protocol
 
 import numpy as np
@@ -14,7 +13,7 @@ from hsr8.frame_record import FrameRecord, Image
 from navigation.angles import wrap
 from navigation.belief.belief import Belief
 from navigation.decision import GazeDecision, MotionDecision
-from navigation.observation import CameraView, Frame, Observation, Sight
+from navigation.observation import CameraView, Frame, Sight
 from vision.camera import CameraPose
 from vision.detection import Detection
 from vision.parameters import PoseParameters
@@ -26,7 +25,6 @@ from walking.targets import JointTargets
 from walking.value import value
 from walking.walker import Walker
 
-_fields = attrgetter(*Observation.__dataclass_fields__)  # of a detection, in this order
 MAX_PENDING = 128  # images captured but not yet delivered
 
 
@@ -242,7 +240,7 @@ class Robot:
             odometry=_odometry(state),
             motion_covariance=motion.covariance,
             view=self._view(state),
-            observations=tuple(Observation(*_fields(d)) for d in detections),
+            observations=detections,
         )
 
 

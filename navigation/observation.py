@@ -1,9 +1,10 @@
 """Inputs of navigation: odometry and the detections of one camera frame."""
 
+from collections.abc import Sequence
 from dataclasses import field
 from functools import partial
 from math import pi
-from typing import Literal
+from typing import Literal, Protocol
 
 import numpy as np
 from numpy.typing import NDArray
@@ -14,40 +15,54 @@ from navigation.value import value
 Array = NDArray[np.float64]
 
 
-@value
-class Observation:
-    """Detection of one cylinder in the robot frame R at the capture of a frame.
-
-    Attributes:
-        kind: obstacle or beacon.
-        label: colour class of an obstacle; name of a beacon, ``top/bottom`` colours.
-        distance: from the origin of R to the axis [m].
-        bearing: counter-clockwise from x of R [rad].
-        covariance: of (distance, bearing) (2, 2).
-        radius: [m].
-        radius_sigma: standard deviation of `radius` [m].
-        cut: the blob touches the border of the image or the robot's self mask.
-        occluded: the cylinder is partly occluded.
-        by_radius: partial derivatives of (distance, bearing) with respect to the radius (2,)
-            [1, rad/m].
-    """
-
-    kind: Literal["obstacle", "beacon"]
-    label: str
-    distance: float
-    bearing: float
-    covariance: Array
-    radius: float
-    radius_sigma: float
-    cut: bool = False
-    occluded: bool = False
-    by_radius: Array = field(default_factory=partial(np.zeros, 2))
+class Observation(Protocol):
+    """Detection of one cylinder in the robot frame R at the capture of a frame."""
 
     @property
-    def bearing_variance(self) -> float:
-        """Variance of the bearing for a known distance [rad²]."""
-        (range_variance, covariance), (_, variance) = self.covariance.tolist()
-        return float(variance - covariance * covariance / range_variance)
+    def kind(self) -> Literal["obstacle", "beacon"]:
+        """Kind: obstacle or beacon."""
+
+    @property
+    def label(self) -> str:
+        """Colour class of an obstacle; name of a beacon, ``top/bottom`` colours."""
+
+    @property
+    def distance(self) -> float:
+        """Distance of the axis from the origin of R [m]."""
+
+    @property
+    def bearing(self) -> float:
+        """Bearing of the axis, counter-clockwise from x of R [rad]."""
+
+    @property
+    def covariance(self) -> Array:
+        """Covariance of (distance, bearing) (2, 2) [m², m rad, rad²]."""
+
+    @property
+    def radius(self) -> float:
+        """Radius of the cylinder [m]."""
+
+    @property
+    def radius_sigma(self) -> float:
+        """Standard deviation of `radius` [m]."""
+
+    @property
+    def cut(self) -> bool:
+        """Whether the blob touches the border of the image or the self mask."""
+
+    @property
+    def occluded(self) -> bool:
+        """Whether the cylinder is partly occluded."""
+
+    @property
+    def by_radius(self) -> Array:
+        """Partial derivatives of (distance, bearing) by the radius (2,) [1, rad/m]."""
+
+
+def bearing_variance(observation: Observation) -> float:
+    """Return the variance of the bearing for a known distance [rad²]."""
+    (range_variance, covariance), (_, variance) = observation.covariance.tolist()
+    return float(variance - covariance * covariance / range_variance)
 
 
 @compiled
@@ -123,7 +138,7 @@ class Frame:
     odometry: Array
     motion_covariance: Array
     view: CameraView
-    observations: tuple[Observation, ...]
+    observations: Sequence[Observation]
 
     def check_after(self, time: float) -> None:
         """Check that the frame was captured after `time` [s].

@@ -2,9 +2,8 @@
 
 import hashlib
 from collections.abc import Iterator
-from dataclasses import dataclass, fields, replace
+from dataclasses import dataclass, replace
 from itertools import islice
-from operator import attrgetter
 
 import numpy as np
 
@@ -23,12 +22,11 @@ from hsr8.recorder.table_difference import first_cell
 from hsr8.robot_builder import build_decisions, build_estimator, build_schedule, camera_sight
 from hsr8.seeds import named_rng
 from hsr8.world.field.generator import draw_layout
-from navigation.observation import CameraView, Frame, Observation, Sight
+from navigation.observation import CameraView, Frame, Sight
 from vision.detection import Detection
 from walking.parameters import CONTROL_PERIOD
 from walking.targets import JointTargets
 
-_observed = attrgetter(*(field.name for field in fields(Observation)))
 BELIEF = (
     *("pose", "pose_covariance", "lost", "filter_faults", "seen_beacons", "tracks"),
     *("local_map", "map_hash", "map_origin", "map_cell", "particles"),
@@ -178,6 +176,6 @@ def _inputs(
         frame = Frame(
             **measured,
             view=replace(view, **capture),
-            observations=tuple(Observation(*_observed(detection)) for detection in detected),
+            observations=detected,
         )
         yield detected, frame, DecisionContext(**context, view=view)

@@ -20,7 +20,7 @@ from navigation.belief.detections import in_world, variance_inflation
 from navigation.belief.localization import MAX_SHARED
 from navigation.belief.map_relocalization import MapRelocalization
 from navigation.belief.visibility import Viewpoint
-from navigation.observation import Frame, Observation
+from navigation.observation import Frame, Observation, bearing_variance
 from navigation.parameters.belief import BeliefParameters
 from navigation.transform import propagate, yaw_rotation
 
@@ -150,7 +150,7 @@ class EkfSlam:
         H = np.zeros((2 * len(matched), n))
         R = np.zeros((2 * len(matched), 2 * len(matched)))
         y = np.zeros(2 * len(matched))
-        smallest = min(o.bearing_variance for o in matched.values())
+        smallest = min(bearing_variance(o) for o in matched.values())
         R[1::2, 1::2] = min(frame.view.yaw_sigma**2, MAX_SHARED * smallest)
         for row, (i, o) in enumerate(matched.items()):
             a, b = 2 * row, 2 * row + 2

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from navigation.angles import wrap
 from navigation.belief import pose_filter
 from navigation.belief.beacon_relocalization import BeaconRelocalization
-from navigation.observation import Frame, Observation
+from navigation.observation import Frame, Observation, bearing_variance
 from navigation.parameters.belief import LocalizationParameters
 from navigation.transform import rotate, yaw_rotation
 
@@ -127,7 +127,7 @@ class Localizer:
     def _measurement(self, frame: Frame, beacons: list[Observation]) -> tuple[Array, Array, Array]:
         """Return measurement (2 k,), its covariance (2 k, 2 k) and the landmarks in W (k, 2)."""
         z = np.array([(o.distance, o.bearing) for o in beacons]).ravel()
-        shared = MAX_SHARED * min(o.bearing_variance for o in beacons)
+        shared = MAX_SHARED * min(bearing_variance(o) for o in beacons)
         R = np.zeros((len(z), len(z)))
         R[1::2, 1::2] = min(frame.view.yaw_sigma**2, shared)
         for i, o in enumerate(beacons):

@@ -74,19 +74,22 @@ def in_view(dx: float, dy: float, eye: np.record, shadow: Array) -> bool:
 
 
 @compiled
-def occluded(dx: float, dy: float, discs: Array) -> bool:
+def occluded(dx: float, dy: float, discs: Array, edge: float = 0.0) -> bool:
     """Return whether a nearer disc intersects the ray to a point.
 
     Args:
         dx: position from the camera along x of W [m].
         dy: position from the camera along y [m].
         discs: see `relative_discs`.
+        edge: distance from the centre of a disc within which the point is on the disc [m].
     """
     square = dx * dx + dy * dy
     for j in range(len(discs)):
         ax, ay = discs[j, 0], discs[j, 1]
         # The ray passes the disc's centre at a distance of |across| / |p|.
         if dx * ax + dy * ay > discs[j, 2]:
+            if (ax - dx) * (ax - dx) + (ay - dy) * (ay - dy) <= edge * edge:
+                continue
             across = dx * ay - dy * ax
             if across * across < discs[j, 3] * square:
                 return True

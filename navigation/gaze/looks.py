@@ -7,6 +7,7 @@ from numpy.typing import NDArray
 
 from compilation import compiled
 from navigation.belief.tracks import MOVING, STATIC, UNKNOWN, WEIGHT, X, Y
+from navigation.belief.visibility import occluded
 from navigation.gaze.views import LOOK
 from navigation.observation import shadow_at
 from navigation.transform import in_robot
@@ -164,36 +165,16 @@ def beacon_looks(looks: Rows, beacons: Array, pose: Array, value: float, p: np.r
 
 @compiled
 def known_discs(tracks: Rows, pose: Array, p: np.record) -> Array:
-    """Return the tracks that hide what is behind them: x, y in R, radius (m, 3) [m]."""
-    discs, count = np.empty((len(tracks), 3)), 0
+    """Return the tracks that hide the floor behind them, relative to R; see `relative_discs`."""
+    discs, count = np.empty((len(tracks), 4)), 0
     for i in range(len(tracks)):
         track = tracks[i]
         if track.cloud < 0 and (track.age < p.max_disc_age or track.motion == STATIC):
-            discs[count, 0], discs[count, 1] = in_robot(pose, track.position[0], track.position[1])
-            discs[count, 2] = track.radius
+            x, y = in_robot(pose, track.position[0], track.position[1])
+            discs[count, 0], discs[count, 1], discs[count, 2] = x, y, x * x + y * y
+            discs[count, 3] = track.radius * track.radius
             count += 1
     return discs[:count]
-
-
-@compiled
-def hidden(x: float, y: float, discs: Array, edge: float) -> bool:
-    """Return whether a nearer disc hides a point of the floor.
-
-    Args:
-        x: position of the point from the robot [m].
-        y: position of the point from the robot [m].
-        discs: x, y, radius (m, 3) [m].
-        edge: distance from a disc's centre within which the point is on the disc [m].
-    """
-    for j in range(len(discs)):
-        ax, ay, radius = discs[j, 0], discs[j, 1], discs[j, 2]
-        dx, dy = ax - x, ay - y
-        if x * ax + y * ay <= ax * ax + ay * ay or dx * dx + dy * dy <= edge * edge:
-            continue
-        across = x * ay - y * ax
-        if across * across < radius * radius * (x * x + y * y):
-            return True
-    return False
 
 
 @compiled
@@ -234,7 +215,7 @@ def looks_of(
     discs, shown = known_discs(tracks, pose, p), 0
     for i in range(count):
         look = looks[i]
-        if look.foot_value < 0.0 or not hidden(look.x, look.y, discs, p.disc_edge):
+        if look.foot_value < 0.0 or not occluded(look.x, look.y, discs, p.disc_edge):
             looks[shown] = look
             shown += 1
     return looks[:shown]

@@ -7,8 +7,9 @@ import pytest
 
 from navigation.belief.belief import Belief, Motion, Particles, Track
 from navigation.decision import SpeedLimits, Task
-from navigation.observation import CameraView, Frame, Observation
+from navigation.observation import CameraView, Frame
 from navigation.transform import range_bearing
+from vision.detection import Detection
 
 HEIGHT = 0.47
 
@@ -37,7 +38,7 @@ def _observe(
     by_radius=(0.0, 0.0),
 ):
     distance, bearing = range_bearing(pose, point)
-    return Observation(
+    return Detection(
         kind=kind,
         label=label,
         distance=distance + noise[0],
@@ -48,6 +49,7 @@ def _observe(
         cut=cut,
         occluded=occluded,
         by_radius=np.array(by_radius),
+        box=(0, 0, 0, 0),
     )
 
 
@@ -64,7 +66,7 @@ def view():
 
 @pytest.fixture(scope="session")
 def observe():
-    """Builds an `Observation` of a point in W from a pose."""
+    """Builds the detection of a point in W from a pose."""
     return _observe
 
 

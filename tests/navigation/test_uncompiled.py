@@ -14,9 +14,10 @@ from navigation.gaze.planner import GazePlanner
 from navigation.motion.planner import Planner
 from navigation.motion.safety_filter import RolloutStart, SafetyFilter
 from navigation.motion.velocity_mapping import Facing
-from navigation.observation import CameraView, Frame, Observation, Sight
+from navigation.observation import CameraView, Frame, Sight
 from navigation.parameters.belief import BeliefParameters
 from navigation.parameters.navigation import NavigationParameters
+from vision.detection import Detection
 
 BEACONS = {"cyan/yellow": (2.4, 0.6), "yellow/magenta": (1.8, -0.9)}
 MOVER_GONE = 0.5  # time from which the mover is out of view [s]
@@ -37,8 +38,19 @@ def observation(pose, point, noise, kind="obstacle", label="red"):
     dx, dy = point[0] - pose[0], point[1] - pose[1]
     distance = (dx * dx + dy * dy) ** 0.5 + 0.005 * noise[0]
     bearing = float(np.arctan2(dy, dx)) - pose[2] + 0.002 * noise[1]
-    covariance, slope = np.array([[3e-5, 1e-6], [1e-6, 4e-6]]), np.array([0.3, 0.01])
-    return Observation(kind, label, distance, bearing, covariance, 0.08, 0.01, by_radius=slope)
+    return Detection(
+        kind=kind,
+        label=label,
+        distance=distance,
+        bearing=bearing,
+        covariance=np.array([[3e-5, 1e-6], [1e-6, 4e-6]]),
+        radius=0.08,
+        radius_sigma=0.01,
+        by_radius=np.array([0.3, 0.01]),
+        cut=False,
+        occluded=False,
+        box=(0, 0, 0, 0),
+    )
 
 
 def journey():

@@ -4,7 +4,7 @@ Footsteps land where the joint targets put them, with a small seeded slip at eac
 support. The loop around the body is the same as with physics.
 """
 
-from math import asin, atan2, cos, sin, sqrt
+from math import asin, atan2, cos, pi, sin, sqrt
 
 import mujoco
 import numpy as np
@@ -19,7 +19,7 @@ from hsr8.world.body.surroundings import Surroundings
 from hsr8.world.field.layout import Layout
 from hsr8.world.rotation import Quaternion, heading, product, rotate
 from hsr8.world.truth.truth import Truth
-from walking.parameters import CONTROL_PERIOD
+from walking.parameters import CONTROL_PERIOD, GRAVITY
 from walking.sensing import BodySensors
 from walking.targets import JointTargets
 
@@ -39,8 +39,6 @@ ORIGIN = (0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0)
 CONTACT_TICKS = 4  # control ticks between checks for contacts [1]
 
 Ints = NDArray[np.intp]
-PI = 3.141592653589793
-GRAVITY = 9.81  # [m/s²]
 
 
 class KinematicBody:
@@ -291,8 +289,8 @@ def imu_motion(
     w, x, y, z = product((before[3], -before[4], -before[5], -before[6]), q)
     size = sqrt(x * x + y * y + z * z)
     angle = 2.0 * atan2(size, w)
-    if angle > PI:  # shorter rotation
-        angle -= 2.0 * PI
+    if angle > pi:  # shorter rotation
+        angle -= 2.0 * pi
     rate = angle / (size * period) if size > 0.0 else 0.0
     gyro[0], gyro[1], gyro[2] = rate * x, rate * y, rate * z
     force[0], force[1], force[2] = rotate((q[0], -q[1], -q[2], -q[3]), (0.0, 0.0, GRAVITY))

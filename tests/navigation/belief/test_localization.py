@@ -8,9 +8,10 @@ import pytest
 from navigation.angles import wrap
 from navigation.belief import pose_filter
 from navigation.belief.localization import Localizer
-from navigation.observation import CameraView, Frame, Observation
+from navigation.observation import CameraView, Frame
 from navigation.parameters.belief import LocalizationParameters
 from navigation.transform import range_bearing
+from vision.detection import Detection
 
 BEACONS = {f"b{i}": (3.0 * cos(i * pi / 4), 3.0 * sin(i * pi / 4)) for i in range(8)}
 P0 = np.eye(3) * 4e-4
@@ -30,9 +31,18 @@ def frame(time, odometry, observations, motion=(4e-6, 4e-6, 1e-6), yaw_sigma=0.0
 
 def beacon(pose, name, noise=(0.0, 0.0), position=None):
     distance, bearing = range_bearing(pose, position or BEACONS[name])
-    covariance = np.diag([0.05**2, 0.02**2])
-    return Observation(
-        "beacon", name, distance + noise[0], bearing + noise[1], covariance, 0.05, 0.01
+    return Detection(
+        kind="beacon",
+        label=name,
+        distance=distance + noise[0],
+        bearing=bearing + noise[1],
+        covariance=np.diag([0.05**2, 0.02**2]),
+        radius=0.05,
+        radius_sigma=0.01,
+        by_radius=np.zeros(2),
+        cut=False,
+        occluded=False,
+        box=(0, 0, 0, 0),
     )
 
 

@@ -3,7 +3,7 @@ from math import tan
 import numpy as np
 import pytest
 
-from navigation.gaze.looks import hidden
+from navigation.belief.visibility import occluded
 from navigation.gaze.views import LOOK, move_time, view_values
 
 RATE, ACCELERATION = 3.0, 40.0
@@ -97,11 +97,11 @@ def test_the_urgency_grows_during_the_saccade_up_to_its_limit():
 
 
 def test_a_disc_hides_the_floor_behind_it_but_not_itself():
-    disc = np.array([[0.8, 0.0, 0.08]])
-    assert hidden(1.5, 0.0, disc, 0.14)
-    assert not hidden(1.5, 0.4, disc, 0.14)
-    assert not hidden(0.5, 0.0, disc, 0.14)
-    assert not hidden(0.82, 0.0, disc, 0.14)
+    disc = np.array([[0.8, 0.0, 0.8 * 0.8, 0.08 * 0.08]])
+    assert occluded(1.5, 0.0, disc, 0.14)
+    assert not occluded(1.5, 0.4, disc, 0.14)
+    assert not occluded(0.5, 0.0, disc, 0.14)
+    assert not occluded(0.82, 0.0, disc, 0.14)
 
 
 @pytest.mark.parametrize("rate", [-0.8, 0.8])
