@@ -20,7 +20,7 @@ from vision.parameters import PoseParameters
 from walking.command import Command, HeadTarget, VelocityCommand
 from walking.odometry import Odometry, increment
 from walking.sensing import BodySensors
-from walking.state import HeadCameraPose, WalkingState
+from walking.state import WalkingState
 from walking.targets import JointTargets
 from walking.value import value
 from walking.walker import Walker
@@ -80,7 +80,6 @@ class Robot:
         sight: what an image must show of an obstacle.
         vision: detector; unused when the frames carry detections.
         pose: uncertainty of the camera pose.
-        shutter: exposure time [s].
         blind_above: rate of the camera above which its images show nothing [rad/s].
         belief: estimator.
         decisions: mission, motion planner and gaze planner.
@@ -95,7 +94,6 @@ class Robot:
         sight: Sight,
         vision: Detector,
         pose: PoseParameters,
-        shutter: float,
         blind_above: float,
         belief: Estimator,
         decisions: Decisions,
@@ -105,7 +103,6 @@ class Robot:
         self._fov, self._sight = fov, sight
         self._vision = vision
         self._pose = pose
-        self._shutter = shutter
         self._blind_above = blind_above
         self._belief = belief
         self._decisions = decisions
@@ -189,8 +186,7 @@ class Robot:
             detections = sensed.detections
         else:
             assert image is not None
-            pose = camera_pose(captured_state.camera, self._pose, self._shutter)
-            detections = self._vision.detect(image, pose)
+            detections = self._vision.detect(image, captured_state.camera)
         measured = self._frame(sensed.captured, captured_state, detections)
         estimate = self._belief.update(measured)
         state = self.walking_state() if sensed.time > sensed.captured else captured_state
@@ -248,17 +244,3 @@ def _odometry(state: WalkingState) -> np.ndarray:
     """Pose of R in the odometry frame (3,) [m, m, rad]."""
     odometry = state.odometry
     return np.array([odometry.x, odometry.y, odometry.yaw])
-
-
-def camera_pose(head: HeadCameraPose, sigma: PoseParameters, shutter: float) -> CameraPose:
-    """Return the pose of the head camera with its uncertainty; `shutter` in [s]."""
-    return CameraPose(
-        rotation=head.rotation,
-        position=head.position,
-        tilt_sigma=sigma.tilt_sigma,
-        roll_sigma=sigma.roll_sigma,
-        yaw_sigma=sigma.yaw_sigma,
-        height_sigma=sigma.height_sigma,
-        pan_smear=shutter * abs(head.pan_rate),
-        tilt_smear=shutter * abs(head.tilt_rate),
-    )

@@ -2,38 +2,32 @@
 
 from dataclasses import dataclass
 from math import tan
+from typing import Protocol
 
 import numpy as np
 from numpy.typing import NDArray
 
-from vision.value import value
-
 Array = NDArray[np.float64]
 
 
-@value
-class CameraPose:
-    """Pose of the camera in the robot frame R at capture.
+class CameraPose(Protocol):
+    """Pose of the camera in the robot frame R at capture, and the rates of the head."""
 
-    Attributes:
-        rotation: R_RC, columns are the camera's right, down and forward axes (3, 3).
-        position: p_RC (3,) [m]; z is the height above the floor.
-        tilt_sigma: standard deviation of the pitch of the camera [rad].
-        roll_sigma: standard deviation of the roll of the camera [rad].
-        yaw_sigma: standard deviation of the yaw of the camera [rad].
-        height_sigma: standard deviation of its height [m].
-        pan_smear: pan of the camera during the exposure (motion blur) [rad].
-        tilt_smear: tilt of the camera during the exposure [rad].
-    """
+    @property
+    def rotation(self) -> Array:
+        """R_RC, columns are the camera's right, down and forward axes (3, 3)."""
 
-    rotation: Array
-    position: Array
-    tilt_sigma: float = 0.0
-    roll_sigma: float = 0.0
-    yaw_sigma: float = 0.0
-    height_sigma: float = 0.0
-    pan_smear: float = 0.0
-    tilt_smear: float = 0.0
+    @property
+    def position(self) -> Array:
+        """Position p_RC (3,) [m]; z is the height above the floor."""
+
+    @property
+    def pan_rate(self) -> float:
+        """Measured pan rate [rad/s]."""
+
+    @property
+    def tilt_rate(self) -> float:
+        """Measured tilt rate [rad/s]."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -168,7 +168,8 @@ def locate(
             slopes.append(rim.slope)
             points.append(points[-1] + len(rim.slope))
         first_rims.append(len(slopes))
-    pose, height = view.pose, view.height / unit
+    height = view.height / unit
+    tilt, roll, yaw, lift, pan_smear, tilt_smear = view.errors
     edges = (
         np.array(sides).reshape(-1, 2, 6),
         np.array(known).reshape(-1, 3) / unit,
@@ -185,13 +186,13 @@ def locate(
         np.array(
             [
                 height,
-                pose.tilt_sigma**2,
-                pose.roll_sigma**2,
-                pose.yaw_sigma**2,
-                (pose.height_sigma / unit) ** 2,
+                tilt**2,
+                roll**2,
+                yaw**2,
+                (lift / unit) ** 2,
                 # Motion blur: the error of an edge is uniform over the smear.
-                pose.pan_smear**2 / 12.0,
-                pose.tilt_smear**2 / 12.0,
+                pan_smear**2 / 12.0,
+                tilt_smear**2 / 12.0,
             ]
         ),
         np.array([roundness_sigma, edge_correlation, outlier_threshold, *LIMITS]),

@@ -50,6 +50,7 @@ class Detector:
         camera: intrinsics.
         parameters: sizes, error models and thresholds.
         self_mask: parts of the robot that the camera may see.
+        shutter: exposure time, for the error of edges by motion blur [s].
 
     Raises:
         VisionError: min_radius is not below max_radius, or the file of the colour table is
@@ -61,6 +62,7 @@ class Detector:
         camera: PinholeCamera,
         parameters: VisionParameters,
         self_mask: Sequence[BodyPart] = (),
+        shutter: float = 0.0,
     ) -> None:
         if parameters.min_radius >= parameters.max_radius:
             raise VisionError(
@@ -70,6 +72,7 @@ class Detector:
         self._camera = camera
         self._parameters = parameters
         self._self_mask = tuple(self_mask)
+        self._shutter = shutter
         path = parameters.color_table
         self._table = load_table(Path(path)) if path else ColorTable()
         self._min_area = tuple(
@@ -100,7 +103,7 @@ class Detector:
         inner[:] = labels
         if apply_self_mask(self._self_mask, inner, camera=self._camera, pose=pose, label=OUTSIDE):
             blobs = [_cut_by_self_mask(blob, inner) for blob in blobs]
-        view = View(self._camera, pose)
+        view = View(self._camera, pose, self._parameters.pose, self._shutter)
         outlines = trace(blobs, self._padded, view, self._parameters.edge_sigma)
         hypotheses = self._obstacles(blobs, outlines, view) + self._beacons(blobs, outlines, view)
         detections: list[Detection | None] = []

@@ -15,23 +15,47 @@ from numpy.typing import NDArray
 
 from compilation import compiled
 from vision.camera import CameraPose, PinholeCamera
+from vision.parameters import PoseParameters
 
 Array = NDArray[np.float64]
 
 MIN_DEPTH = 1e-3  # of a direction in front of the camera
 MIN_RUN = 1e-6  # minimum horizontal part of a ray
+EXACT = PoseParameters(0.0, 0.0, 0.0, 0.0)
 
 
 class View:
     """Mapping from pixels of one image to directions in the robot frame R.
 
     Args:
-        camera: intrinsics.
-        pose: of the camera at capture.
+        camera: intrinsics of the camera.
+        pose: pose of the camera at capture.
+        sigma: uncertainty of the pose.
+        shutter: exposure time [s].
+
+    Attributes:
+        x, y, height: position of the camera in R [m].
+        heading: direction of the camera in R [rad].
+        errors: standard deviations of tilt, roll and yaw [rad] and of height [m], pan and tilt
+            during the exposure [rad].
+        packed: see the module.
     """
 
-    def __init__(self, camera: PinholeCamera, pose: CameraPose) -> None:
-        self.pose = pose
+    def __init__(
+        self,
+        camera: PinholeCamera,
+        pose: CameraPose,
+        sigma: PoseParameters = EXACT,
+        shutter: float = 0.0,
+    ) -> None:
+        self.errors = (
+            sigma.tilt_sigma,
+            sigma.roll_sigma,
+            sigma.yaw_sigma,
+            sigma.height_sigma,
+            shutter * abs(pose.pan_rate),
+            shutter * abs(pose.tilt_rate),
+        )
         x, y, z = pose.position.tolist()
         self.x: float = x
         self.y: float = y

@@ -8,15 +8,26 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from vision.blob import Blob, find_blobs
-from vision.camera import CameraPose, PinholeCamera
+from vision.camera import PinholeCamera
 from vision.color import COLOR_CLASSES, OUTSIDE, ColorTable
 from vision.outline import Outline, trace
+from vision.parameters import PoseParameters, VisionParameters
 from vision.view import View
 
 FLOOR = (0.62, 0.61, 0.58)
 SKY = (0.05, 0.05, 0.06)
 CAMERA = PinholeCamera.from_vertical_fov(320, 240, radians(70.0))
 HEIGHT = 0.47
+
+
+@dataclass(frozen=True)
+class Pose:
+    """A camera pose in R."""
+
+    rotation: NDArray[np.float64]
+    position: NDArray[np.float64]
+    pan_rate: float = 0.0
+    tilt_rate: float = 0.0
 
 
 @dataclass(frozen=True)
@@ -40,22 +51,19 @@ def pose(
     tilt: float = 0.0,
     roll: float = 0.0,
     position: tuple[float, float, float] = (0.0, 0.0, HEIGHT),
-    sigma: float = 0.0,
-) -> CameraPose:
+) -> Pose:
     """Pose of a camera that looks `pan` to the left and `tilt` upwards [rad]."""
     cy, sy, cp, sp, cr, sr = cos(pan), sin(pan), cos(tilt), sin(tilt), cos(roll), sin(roll)
     Rz = np.array([[cy, -sy, 0.0], [sy, cy, 0.0], [0.0, 0.0, 1.0]])
     Ry = np.array([[cp, 0.0, -sp], [0.0, 1.0, 0.0], [sp, 0.0, cp]])
     Rx = np.array([[1.0, 0.0, 0.0], [0.0, cr, -sr], [0.0, sr, cr]])
     level = np.array([[0.0, 0.0, 1.0], [-1.0, 0.0, 0.0], [0.0, -1.0, 0.0]])
-    return CameraPose(
-        rotation=Rz @ Rx @ Ry @ level,
-        position=np.array(position),
-        tilt_sigma=sigma,
-        roll_sigma=sigma,
-        yaw_sigma=0.2 * sigma,
-        height_sigma=0.003 if sigma else 0.0,
-    )
+    return Pose(Rz @ Rx @ Ry @ level, np.array(position))
+
+
+def uncertain(sigma: float) -> VisionParameters:
+    """Parameters for poses with a standard deviation of tilt and roll [rad]."""
+    return VisionParameters(pose=PoseParameters(sigma, sigma, 0.2 * sigma, 0.003))
 
 
 def rays(camera: PinholeCamera, u: ArrayLike, v: ArrayLike) -> NDArray[np.float64]:
@@ -67,7 +75,7 @@ def rays(camera: PinholeCamera, u: ArrayLike, v: ArrayLike) -> NDArray[np.float6
 
 def paint(
     cylinders: Sequence[Cylinder],
-    view: CameraPose,
+    view: Pose,
     brightness: float = 1.0,
     camera: PinholeCamera = CAMERA,
 ) -> NDArray[np.uint8]:
@@ -110,7 +118,7 @@ def at(distance: float, bearing_deg: float, color: str, radius: float = 0.08) ->
 
 
 def traced(
-    cylinders: Sequence[Cylinder], view: CameraPose, min_area: int = 20
+    cylinders: Sequence[Cylinder], view: Pose, min_area: int = 20
 ) -> tuple[list[Blob], NDArray[np.uint8], list[Outline]]:
     """Blobs, padded labels and outlines of an image of `things`."""
     labels = ColorTable().classify(paint(cylinders, view))

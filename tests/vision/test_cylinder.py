@@ -6,17 +6,16 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from tests.vision.scene import CAMERA, Cylinder, at, pose, traced, true_polar
-from vision.camera import CameraPose
+from tests.vision.scene import CAMERA, Cylinder, Pose, at, pose, traced, true_polar
 from vision.cylinder import Candidate, RimCue, interpenetrate, locate, polar_in_robot
 from vision.outline import Outline
-from vision.view import View
+from vision.view import EXACT, View
 
 TYPICAL_RADIUS = (0.085, 0.02)
 NOISE = (0.01, 0.1, 3.5)  # roundness, correlation along an edge, deviation of a stray point
 
 
-def outline_of(obstacle: Cylinder, gaze: CameraPose) -> Outline:
+def outline_of(obstacle: Cylinder, gaze: Pose) -> Outline:
     _, _, (outline,) = traced([obstacle], gaze)
     return outline
 
@@ -82,17 +81,25 @@ def test_one_side_is_enough_to_find_the_axis() -> None:
 
 
 @pytest.mark.parametrize(
-    "error",
-    ["tilt_sigma", "roll_sigma", "yaw_sigma", "height_sigma", "pan_smear", "tilt_smear"],
+    ("sigma", "rates"),
+    [
+        ({"tilt_sigma": 0.02}, {}),
+        ({"roll_sigma": 0.02}, {}),
+        ({"yaw_sigma": 0.02}, {}),
+        ({"height_sigma": 0.02}, {}),
+        ({}, {"pan_rate": -2.0}),
+        ({}, {"tilt_rate": 2.0}),
+    ],
 )
-def test_every_error_of_the_pose_makes_the_place_less_certain(error: str) -> None:
+def test_every_error_of_the_pose_makes_the_place_less_certain(sigma, rates) -> None:
     gaze = pose(pan=radians(30.0), tilt=-0.3)
     outline = outline_of(at(1.5, 15.0, "red"), gaze)
     candidate = Candidate(
         outline.left, outline.right, (foot_of(outline), head_of(outline)), 0.30, *TYPICAL_RADIUS
     )
     (exact,) = locate([candidate], View(CAMERA, gaze), *NOISE)
-    (vague,) = locate([candidate], View(CAMERA, replace(gaze, **{error: 0.02})), *NOISE)
+    blurred = View(CAMERA, replace(gaze, **rates), replace(EXACT, **sigma), shutter=0.01)
+    (vague,) = locate([candidate], blurred, *NOISE)
     slack = 0.05 * np.linalg.eigvalsh(exact.covariance).min()  # they are linearised apart
     assert np.linalg.eigvalsh(vague.covariance - exact.covariance).min() > -slack
     assert np.linalg.det(vague.covariance) > 1.05 * np.linalg.det(exact.covariance)
@@ -144,11 +151,11 @@ def test_no_candidates_give_no_cylinders() -> None:
 
 @pytest.mark.parametrize("unit", [0.3, 3.15])
 def test_a_scene_of_another_size_is_located_alike(unit: float) -> None:
-    gaze = replace(pose(tilt=-0.3), height_sigma=0.004)
+    gaze, sigma = pose(tilt=-0.3), replace(EXACT, height_sigma=0.004)
     outline = outline_of(at(1.5, 5.0, "red"), gaze)
     cues = (foot_of(outline), head_of(outline))
     candidate = Candidate(outline.left, outline.right, cues, 0.30, *TYPICAL_RADIUS)
-    (small,) = locate([candidate], View(CAMERA, gaze), *NOISE)
+    (small,) = locate([candidate], View(CAMERA, gaze, sigma), *NOISE)
     (large,) = locate(
         [
             replace(
@@ -159,7 +166,11 @@ def test_a_scene_of_another_size_is_located_alike(unit: float) -> None:
                 radius_sigma=unit * TYPICAL_RADIUS[1],
             )
         ],
-        View(CAMERA, replace(gaze, position=unit * gaze.position, height_sigma=unit * 0.004)),
+        View(
+            CAMERA,
+            replace(gaze, position=unit * gaze.position),
+            replace(EXACT, height_sigma=unit * 0.004),
+        ),
         *NOISE,
         unit=unit,
     )

@@ -1,4 +1,3 @@
-from dataclasses import replace
 from math import degrees, hypot, radians
 
 import numpy as np
@@ -6,13 +5,13 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from tests.vision.scene import CAMERA, Cylinder, at, beacon, paint, pose, true_polar
+from tests.vision.scene import CAMERA, Cylinder, at, beacon, paint, pose, true_polar, uncertain
 from vision.camera import PinholeCamera
 from vision.color import COLOR_CLASSES
 from vision.detection import Detection
 from vision.detector import Detector
 from vision.errors import VisionError
-from vision.parameters import VisionParameters
+from vision.parameters import PoseParameters, VisionParameters
 
 DETECTOR = Detector(CAMERA, VisionParameters())
 
@@ -199,8 +198,8 @@ def test_an_error_of_the_tilt_is_within_its_uncertainty() -> None:
     obstacle = at(2.0, 8.0, "red")
     image = paint([obstacle], pose(tilt=-0.25))
     for error in (-1.0, 1.0):
-        wrong = pose(tilt=-0.25 + radians(error), sigma=radians(0.7))
-        (detection,) = DETECTOR.detect(image, wrong)
+        wrong = pose(tilt=-0.25 + radians(error))
+        (detection,) = Detector(CAMERA, uncertain(radians(0.7))).detect(image, wrong)
         assert_located(detection, obstacle, sigmas=3.0)
 
 
@@ -208,7 +207,7 @@ def test_an_error_of_the_tilt_is_within_its_uncertainty() -> None:
 def test_noise_yields_nothing_but_finite_detections(tilt: float) -> None:
     rng = np.random.default_rng(7)
     image = rng.integers(0, 256, (240, 320, 3), dtype=np.uint8)
-    detections = DETECTOR.detect(image, pose(tilt=tilt, sigma=0.01))
+    detections = Detector(CAMERA, uncertain(0.01)).detect(image, pose(tilt=tilt))
     assert detections
     for detection in detections:
         assert np.isfinite([detection.distance, detection.bearing, detection.radius]).all()
@@ -220,7 +219,8 @@ def test_an_infinite_uncertainty_gives_no_detection(unknown) -> None:
     view = pose(tilt=-0.1)
     image = paint([at(1.0, 5.0, "green"), at(2.0, -20.0, "red"), at(1.6, 20.0, "blue")], view)
     assert len(DETECTOR.detect(image, view)) == 3
-    assert DETECTOR.detect(image, replace(view, **unknown)) == ()
+    parameters = VisionParameters(pose=PoseParameters(**unknown))
+    assert Detector(CAMERA, parameters).detect(image, view) == ()
 
 
 def test_pixel_noise_moves_a_detection_by_no_more_than_its_uncertainty() -> None:

@@ -6,9 +6,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from tests.vision.scene import CAMERA, Cylinder, at, paint, pose, traced
+from tests.vision.scene import CAMERA, Cylinder, Pose, at, paint, pose, traced
 from vision.blob import find_blobs
-from vision.camera import CameraPose
 from vision.color import COLOR_CLASSES, OUTSIDE, ColorTable
 from vision.cylinder_fit import independent
 from vision.outline import Outline, envelopes, silhouettes, trace
@@ -18,11 +17,11 @@ NAMES = ("", *COLOR_CLASSES)
 PIXEL = 1.0 / CAMERA.focal
 
 
-def outlines(obstacles: list[Cylinder], gaze: CameraPose) -> dict[str, Outline]:
+def outlines(obstacles: list[Cylinder], gaze: Pose) -> dict[str, Outline]:
     return outlines_in(paint(obstacles, gaze), gaze)
 
 
-def outlines_in(image: np.ndarray, gaze: CameraPose) -> dict[str, Outline]:
+def outlines_in(image: np.ndarray, gaze: Pose) -> dict[str, Outline]:
     labels = ColorTable().classify(image)
     blobs = find_blobs(labels, (20,) * 7)
     padded = np.pad(labels, 1, constant_values=OUTSIDE)

@@ -53,7 +53,7 @@ def test_of_two_of_a_color_the_hidden_one_is_placed_as_well_as_it_says() -> None
             at(near, position, "red", radii[0]),
             at(far, position + apart, "red", radii[1]),
         ]
-        view = pose(pan=rng.uniform(-0.3, 0.3), tilt=rng.uniform(-0.45, -0.1), sigma=0.0009)
+        view = pose(pan=rng.uniform(-0.3, 0.3), tilt=rng.uniform(-0.45, -0.1))
         distance, bearing = far, np.radians(position + apart)
         for d in detector.detect(paint(obstacles, view), view):
             if abs(d.distance - far) < abs(d.distance - near):
@@ -66,7 +66,7 @@ def test_of_two_of_a_color_the_hidden_one_is_placed_as_well_as_it_says() -> None
 
 def test_a_blob_wider_than_any_obstacle_has_an_inflated_covariance() -> None:
     """Two side by side at one distance leave no step in their outline."""
-    view = pose(tilt=-0.3, sigma=0.0009)
+    view = pose(tilt=-0.3)
     pair = [at(1.6, -2.7, "red", 0.08), at(1.6, 2.7, "red", 0.08)]
     (blob,) = Detector(CAMERA, VisionParameters()).detect(paint(pair, view), view)
     assert blob.radius > 0.13

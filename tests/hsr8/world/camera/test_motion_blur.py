@@ -80,15 +80,15 @@ def test_an_image_twice_as_long_exposed_is_smeared_twice_as_far():
 @pytest.mark.parametrize("rate", [3.0, 6.0])
 def test_vision_is_as_far_off_in_smeared_images_as_it_says(rate):
     rng = np.random.default_rng(4)
-    detector, known, unknown = Detector(CAMERA, VisionParameters()), [], []
+    detector, known, unknown = Detector(CAMERA, VisionParameters(), (), SHUTTER), [], []
     for _ in range(40):
         cylinder = at(
             rng.uniform(0.7, 2.5), rng.uniform(-20.0, 20.0), "red", rng.uniform(0.06, 0.11)
         )
         gaze = pose(tilt=-0.35)
         image = blur(paint([cylinder], gaze), *(gaze.rotation.T @ (0.0, 0.0, rate)))
-        for errors, smear in ((known, rate * SHUTTER), (unknown, 0.0)):
-            (detection,) = detector.detect(image, replace(gaze, pan_smear=smear))
+        for errors, measured in ((known, rate), (unknown, 0.0)):
+            (detection,) = detector.detect(image, replace(gaze, pan_rate=measured))
             error = np.array([detection.distance, detection.bearing]) - true_polar(cylinder)
             errors.append(error @ np.linalg.solve(detection.covariance, error) / 2.0)
     assert 0.1 < np.mean(known) < 1.5 < np.mean(unknown)
@@ -98,7 +98,6 @@ def test_vision_is_as_far_off_in_smeared_images_as_it_says(rate):
 def test_an_obstacle_is_found_if_it_looks_about_as_wide_as_the_smear(ratio, detected):
     """And whatever makes it so: its size, its distance, the head's speed or the exposure."""
     rng = np.random.default_rng(6)
-    detector = Detector(CAMERA, VisionParameters())
     for _ in range(12):
         distance, rate = rng.uniform(0.7, 1.4), rng.uniform(4.0, 6.0)
         radius = rng.uniform(0.06, 0.11)
@@ -106,5 +105,6 @@ def test_an_obstacle_is_found_if_it_looks_about_as_wide_as_the_smear(ratio, dete
         cylinder, gaze = at(distance, rng.uniform(-15.0, 15.0), "red", radius), pose(tilt=-0.35)
         rotation = gaze.rotation.T @ (0.0, 0.0, rate)
         image = MotionBlur(CAMERA, shutter).blur(paint([cylinder], gaze), rotation)
-        detections = detector.detect(image, replace(gaze, pan_smear=rate * shutter))
+        detector = Detector(CAMERA, VisionParameters(), (), shutter)
+        detections = detector.detect(image, replace(gaze, pan_rate=rate))
         assert (len(detections) == 1) is detected

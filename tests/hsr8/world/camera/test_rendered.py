@@ -10,11 +10,12 @@ from hsr8.scenario.camera import Camera, CameraNoise
 from hsr8.world.body.kinematic import KinematicBody
 from hsr8.world.body.physics import PhysicsBody
 from hsr8.world.camera.rendered import RenderedCamera, angular_velocity
-from vision.camera import CameraPose, PinholeCamera
+from vision.camera import PinholeCamera
 from vision.detector import Detector
 from vision.parameters import VisionParameters
 from walking.body.joints import JOINT_NAMES
 from walking.parameters import CONTROL_PERIOD
+from walking.state import HeadCameraPose
 from walking.targets import JointTargets
 
 CLEAN = Camera(noise=CameraNoise(pixel=0.0, exposure=0.0))
@@ -39,9 +40,8 @@ def test_vision_locates_the_obstacle(body):
     fixed = body.data.camera("egocentric")
     rotation = fixed.xmat.reshape(3, 3) * (1.0, -1.0, -1.0)
     pinhole = PinholeCamera.from_vertical_fov(320, 240, np.radians(70.0))
-    detections = Detector(pinhole, VisionParameters()).detect(
-        image, CameraPose(rotation=rotation, position=fixed.xpos.copy(), tilt_sigma=0.005)
-    )
+    pose = HeadCameraPose(rotation, fixed.xpos.copy(), 0.0, -0.3)
+    detections = Detector(pinhole, VisionParameters()).detect(image, pose)
     red = [d for d in detections if d.label == "red"]
     assert len(red) == 1
     assert np.isclose(red[0].distance, np.hypot(1.0, 0.2), atol=0.02)

@@ -1,5 +1,6 @@
 """Where the belief expects a detection, the detector finds the obstacle in the rendered image."""
 
+from dataclasses import replace
 from math import atan2
 
 import numpy as np
@@ -14,12 +15,13 @@ from hsr8.world.body.kinematic import KinematicBody
 from hsr8.world.camera.rendered import RenderedCamera
 from hsr8.world.field.layout import Obstacle
 from navigation.belief.visibility import Viewpoint
-from vision.camera import CameraPose
 from vision.detector import Detector
+from vision.parameters import PoseParameters
 from vision.self_mask import BodyPart
+from walking.state import HeadCameraPose
 
 NOTHING = np.zeros((0, 2)), np.zeros(0)
-POSE = {"tilt_sigma": 0.005, "roll_sigma": 0.005, "yaw_sigma": 0.005, "height_sigma": 0.005}
+SIGMA = PoseParameters(0.005, 0.005, 0.005, 0.005)
 
 
 @pytest.mark.gl
@@ -30,7 +32,8 @@ def test_near_obstacles_are_found_where_they_are_expected(world, silent):
     layout, _ = world(Obstacle((1.0, 0.0), 0.065, 0.3, "red"), beacons=())
     model = build_model(scenario, layout)
     body = KinematicBody(model, robot, layout, silent, np.random.default_rng(0))
-    detector = Detector(camera, scenario.vision, tuple(BodyPart(*arm) for arm in robot.arms))
+    parameters = replace(scenario.vision, pose=SIGMA)
+    detector = Detector(camera, parameters, tuple(BodyPart(*arm) for arm in robot.arms))
     eyes = RenderedCamera(model, scenario.camera, np.random.default_rng(0))
     obstacle = next(
         b for b in range(model.nbody) if model.body(b).name.startswith("field/obstacle_")
@@ -53,7 +56,7 @@ def test_near_obstacles_are_found_where_they_are_expected(world, silent):
         )[0]:
             continue  # the foot is outside the image
         clear = looked.in_clear_view(point[None], *NOTHING, margin=0.07, occlusion_margin=0.0)[0]
-        detections = detector.detect(image, CameraPose(rotation, position, **POSE))
+        detections = detector.detect(image, HeadCameraPose(rotation, position, pan, tilt))
         x, y = point.tolist()
         off = [np.hypot(d.distance - distance, d.bearing - atan2(y, x)) for d in detections]
         found[bool(clear)].append(min(off, default=9.0) < 0.2)
