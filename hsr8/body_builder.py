@@ -4,8 +4,8 @@ from dataclasses import replace
 
 import mujoco
 
+from hsr8.robots.files import reading_models
 from hsr8.robots.loaded import load_robot
-from hsr8.robots.models import reading_models
 from hsr8.scenario.schema import Scenario
 from hsr8.seeds import named_rng
 from hsr8.world.body.body import Body

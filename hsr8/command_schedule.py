@@ -7,8 +7,8 @@ from math import atan2, cos, hypot, inf, sin
 import numpy as np
 from numpy.typing import NDArray
 
-from hsr8.scenario.command import Command as CommandSection
-from hsr8.scenario.command import RandomCommands, Stretch
+from hsr8.scenario.mission import Command as CommandSection
+from hsr8.scenario.mission import RandomCommands, Stretch
 from navigation.belief.belief import Belief
 from navigation.decision import MotionDecision, Task
 from walking.command import Command, CommandState, VelocityCommand

@@ -28,8 +28,7 @@ from hsr8.robot_builder import (
 from hsr8.robots.loaded import load_robot
 from hsr8.scenario.schema import Scenario
 from hsr8.seeds import named_rng
-from hsr8.world.body.sensor_faults import SensorFaults
-from hsr8.world.body.servo_faults import ServoFaults
+from hsr8.world.body.faults import SensorFaults, ServoFaults
 from hsr8.world.camera.analytic import AnalyticCamera
 from hsr8.world.camera.faults import CameraFaults
 from hsr8.world.camera.feed import CameraFeed, CapturedFrame

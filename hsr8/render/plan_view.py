@@ -11,8 +11,7 @@ from hsr8.render.text import Color, Image, draw_text
 from hsr8.scenario.track import Track
 from hsr8.world.field.certificate import Certificate
 from hsr8.world.field.layout import Layout, Obstacle
-from hsr8.world.field.motion import Appearing, Circle, Line, MotionLaw, Passage, Shuttle
-from hsr8.world.field.wander import Wander
+from hsr8.world.field.motion import Appearing, Circle, Line, MotionLaw, Passage, Shuttle, Wander
 from vision.color import COLOR_CLASSES
 
 INK = (60, 58, 55)

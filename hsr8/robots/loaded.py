@@ -11,11 +11,10 @@ from numpy.typing import NDArray
 
 from hsr8.errors import ModelError
 from hsr8.robots.description import TRUNK, RobotDescription, read_description
-from hsr8.robots.files import package_folders, stamp_of
+from hsr8.robots.files import package_folders, reading_models, stamp_of
 from hsr8.robots.key_mistake import KeyMistake, at_least, joint_error, reading_keys
 from hsr8.robots.linkage import drive_serially
 from hsr8.robots.locate import find_description, find_model, model_files
-from hsr8.robots.models import reading_models
 from hsr8.robots.normal_form import normalise
 from hsr8.robots.posed_shapes import arm_spheres, exclude_neighbours, robot_radius
 from hsr8.robots.posture import check_joint_names, completed_posture, stated_posture
@@ -247,7 +246,7 @@ def _built(description: RobotDescription, file: Path, raw: RawRobot) -> LoadedRo
     base = parameters.pattern.pelvis_height - robot.legs[0].hip[2]
     angles = dict(zip(tree.names, robot.ready.tolist(), strict=True))
     standing = Posed.at(compiled, {**held, **angles}, base)
-    collision_notes = exclude_neighbours(normal.spec, standing, source)
+    collision_notes = exclude_neighbours(normal.spec, standing, roles, source)
     return LoadedRobot(
         name=file.stem,
         file=raw.source,

@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from hsr8.robots.description import CameraMount, RobotDescription
-from hsr8.robots.models import models_dir
+from hsr8.robots.files import models_dir
 from hsr8.robots.prepare import Prepared, rebase
 from hsr8.robots.roles import Roles, pose_of
 from hsr8.robots.servos import physics_step

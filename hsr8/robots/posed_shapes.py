@@ -135,16 +135,17 @@ class SelfCollision(ModelError):
     """Overlap of links in the ready posture."""
 
 
-def exclude_neighbours(spec: mujoco.MjSpec, ready: Posed, source: str) -> list[str]:
+def exclude_neighbours(spec: mujoco.MjSpec, ready: Posed, roles: Roles, source: str) -> list[str]:
     """Exclude overlapping links close to each other from contact, and refuse other overlaps.
 
     Shapes of links around one joint overlap in many files. Arms in the trunk, or legs in each
     other, mean another posture.
 
     Args:
-        spec: of the robot, changed in place.
+        spec: specification of the robot, changed in place.
         ready: robot in its ready posture, above the floor.
-        source: named in errors.
+        roles: roles of its parts.
+        source: model file, which begins the message.
 
     Returns:
         Notes, a line each.
@@ -160,27 +161,32 @@ def exclude_neighbours(spec: mujoco.MjSpec, ready: Posed, source: str) -> list[s
             overlaps[one, other] = min(float(contact.dist), overlaps.get((one, other), 0.0))
     for (one, other), distance in overlaps.items():
         names = model.body(one).name, model.body(other).name
-        if _joints_between(model, one, other) > NEIGHBOURS:
+        joints = _joints_between(model, one, other)
+        if len(joints) > NEIGHBOURS:
             raise SelfCollision(
                 f"{source}: ready posture: {names[0]!r} and {names[1]!r} overlap by "
-                f"{-1e3 * distance:.1f} mm; expected a posture without self-collision: state "
-                "angles of the arms in posture, or add <exclude> for the two bodies to <contact>"
+                f"{-1e3 * distance:.1f} mm; expected a posture without self-collision: "
+                f"{_remedy(joints, roles)}add <exclude body1={names[0]!r} body2={names[1]!r}/> to "
+                "<contact>"
             )
         spec.add_exclude(bodyname1=names[0], bodyname2=names[1])
         notes.append(f"overlapping neighbours {names[0]!r} and {names[1]!r} do not collide")
     return notes
 
 
-def _joints_between(model: mujoco.MjModel, one: int, other: int) -> int:
-    """Return the number of joints between two bodies."""
-    above: dict[int, int] = {}
-    count, body = 0, one
-    while body > 0:
-        above[body] = count
-        count += int(model.body_jntnum[body])
-        body = int(model.body_parentid[body])
-    count, body = 0, other
-    while body not in above:
-        count += int(model.body_jntnum[body])
-        body = int(model.body_parentid[body])
-    return count + above[body]
+def _remedy(joints: list[str], roles: Roles) -> str:
+    """Return the advice to move some of the joints between two links, if a description can."""
+    moving = {*roles.legs[0], *roles.legs[1], *(roles.head or ())}
+    free = [joint for joint in joints if joint not in moving]
+    return f"state other angles of {', '.join(free)} in posture, or " if free else ""
+
+
+def _joints_between(model: mujoco.MjModel, one: int, other: int) -> list[str]:
+    """Return the joints between two bodies."""
+    paths = []
+    for body in (one, other):
+        paths.append([body])
+        while paths[-1][-1] > 0:
+            paths[-1].append(int(model.body_parentid[paths[-1][-1]]))
+    apart = {*paths[0]} ^ {*paths[1]}
+    return [model.joint(j).name for j in range(model.njnt) if model.jnt_bodyid[j] in apart]

@@ -8,7 +8,7 @@ import mujoco
 import numpy as np
 
 from hsr8.errors import ModelError
-from hsr8.robots.models import reading_models
+from hsr8.robots.files import reading_models
 from hsr8.robots.skeleton import label
 from hsr8.robots.urdf import drop_invalid_meshes, read_urdf
 

@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from hsr8.scenario.schema import Scenario
-from hsr8.scenario.track import Track, rates_at_samples, speed_bounds
+from hsr8.scenario.track import Track
 from hsr8.scenario.track_file import RecordedTrack, recorded_tracks
 from hsr8.scenario.world import TrackMover
 
@@ -40,8 +40,8 @@ class Recording:
         self._half = 0.5 * np.asarray(scenario.world.size) + mover.radius
         self._scale = 1.0 if mover.scale is None else mover.scale
         self.time_scale = 1.0 if mover.time_scale is None else mover.time_scale
-        self.first = min(track.times[0] for track in self._recorded)
-        self.last = max(track.times[-1] for track in self._recorded)
+        self.first = min(float(track.times[0]) for track in self._recorded)
+        self.last = max(float(track.times[-1]) for track in self._recorded)
         self.start = self.first if mover.start is None else mover.start
         self.latest_start = self.start if mover.latest_start is None else mover.latest_start
         if mover.end == "repeat":
@@ -80,13 +80,10 @@ class Recording:
         return points.min(axis=0), points.max(axis=0)
 
     def _points(self, recorded: RecordedTrack) -> Array:
-        points: Array = np.asarray(self._mover.offset) + self._scale * np.array(recorded.points)
+        points: Array = np.asarray(self._mover.offset) + self._scale * recorded.points
         return points
 
     def _track(self, recorded: RecordedTrack, begin: float) -> Track:
-        times = self.time_scale * np.array(recorded.times)
-        points = self._points(recorded)
-        rates = rates_at_samples(times, points)
         linger = LINGER * self._scenario.time_scale
         first, period = 0.0, inf
         if self._mover.end == "repeat":
@@ -94,10 +91,8 @@ class Recording:
             period = self.time_scale * (self.last - self.first) + 2.0 * linger
         return Track(
             id=recorded.id,
-            times=tuple(times.tolist()),
-            points=tuple((x, y) for x, y in points.tolist()),
-            rates=tuple((x, y) for x, y in rates.tolist()),
-            speed=float(speed_bounds(times, points, rates).max()),
+            times=tuple((self.time_scale * recorded.times).tolist()),
+            points=tuple((x, y) for x, y in self._points(recorded).tolist()),
             begin=begin,
             stays=self._mover.end == "stay",
             linger=linger,

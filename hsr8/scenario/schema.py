@@ -9,10 +9,8 @@ from pydantic import Field
 
 from hsr8.errors import ScenarioError
 from hsr8.scenario.camera import Camera
-from hsr8.scenario.command import Command
-from hsr8.scenario.disturbance import Disturbance
-from hsr8.scenario.fault import Fault
-from hsr8.scenario.mission import Mission
+from hsr8.scenario.fault import Disturbance, Fault
+from hsr8.scenario.mission import Command, Mission
 from hsr8.scenario.plugin import Plugin
 from hsr8.scenario.robot import NOMINAL_SPEED, Robot
 from hsr8.scenario.section import PeriodMs, Section

@@ -14,13 +14,14 @@ Linear interpolation would not exceed the mean speed, but its velocity jumps at 
 spline without limits overshoots.
 """
 
-from bisect import bisect_right
+from collections.abc import Sequence
 from dataclasses import dataclass
-from math import ceil, inf, isfinite
+from functools import cached_property
+from math import ceil, inf
 
 import numpy as np
-from numpy.polynomial.polynomial import polyval
 from numpy.typing import NDArray
+from scipy.interpolate import CubicHermiteSpline
 
 from hsr8.scenario.section import Point
 
@@ -29,29 +30,25 @@ Array = NDArray[np.float64]
 SUBDIVISIONS = 8  # of an interval between samples, for the bound of its speed
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True)
 class Track:
     """Recorded track; its times are those of the recording in units of the world.
 
     Attributes:
-        id: in the recording.
-        times: of the samples, increasing [s].
+        id: name in the recording.
+        times: times of the samples, increasing [s].
         points: positions at the samples in W [m].
-        rates: velocities at the samples in W [m/s].
-        speed: upper bound of the speed [m/s].
         begin: time of the recording at time zero of the run [s].
         stays: whether the mover waits at its first and stays at its last sample.
         linger: time for which a mover that leaves stands at its first and last sample [s].
         away: distance of an absent mover from its first sample [m].
         first: time of the recording at which a repeated recording begins [s].
-        period: of a repeated recording [s].
+        period: period of a repeated recording [s].
     """
 
     id: str
     times: tuple[float, ...]
     points: tuple[Point, ...]
-    rates: tuple[Point, ...]
-    speed: float
     begin: float
     stays: bool
     linger: float
@@ -59,37 +56,43 @@ class Track:
     first: float = 0.0
     period: float = inf
 
+    @cached_property
+    def curve(self) -> CubicHermiteSpline:
+        """Position by time of the recording."""
+        rates = rates_at_samples(np.array(self.times), np.array(self.points))
+        return CubicHermiteSpline(self.times, self.points, rates)
+
+    @cached_property
+    def speed(self) -> float:
+        """Upper bound of the speed [m/s]."""
+        return float(speed_bounds(self.curve).max())
+
+    @cached_property
+    def _alone(self) -> "TrackTable":
+        return TrackTable([self])
+
     def present(self, time: float) -> bool:
         """Return whether the mover is in the world at `time` [s]."""
-        moment = self.recorded_time(time)
-        return self.stays or (self.times[0] - self.linger <= moment < self.times[-1] + self.linger)
+        return bool(self._alone.present(time)[0])
 
     def recorded_time(self, time: float) -> float:
         """Return the time of the recording at `time` [s]."""
-        moment = time + self.begin
-        if isfinite(self.period):
-            return self.first + (moment - self.first) % self.period
-        return moment
+        return float(self._alone.recorded(time)[0])
+
+    def positions(self, times: Array | float) -> Array:
+        """Return the positions at `times` (...) [s] (..., 2) [m]."""
+        positions: Array = self._alone.positions(times)[..., 0, :]
+        return positions
 
     def position(self, time: float) -> Point:
         """Return the position at `time` [s]."""
-        if not self.present(time):
-            return self.points[0][0] + self.away, self.points[0][1]
-        return self.at(self.recorded_time(time))
+        x, y = self.positions(time).tolist()
+        return x, y
 
     def velocity(self, time: float) -> Point:
         """Return the velocity at `time` [m/s]; zero while the mover stands or is away."""
-        moment = self.recorded_time(time)
-        if not self.times[0] <= moment < self.times[-1]:
-            return 0.0, 0.0
-        since, x, y = self._polynomials(moment)
-        return _slope(x, since), _slope(y, since)
-
-    def at(self, moment: float) -> Point:
-        """Return the position at a time of the recording [s], held before and after the track."""
-        moment = min(max(moment, self.times[0]), self.times[-1])
-        since, x, y = self._polynomials(moment)
-        return _value(x, since), _value(y, since)
+        x, y = self._alone.velocities(time)[0].tolist()
+        return x, y
 
     def sampled(self, low: float, high: float, spacing: float) -> tuple[Array, Array]:
         """Return times (n,) [s] and positions (n, 2) [m] between two times of the recording.
@@ -97,58 +100,87 @@ class Track:
         Times before or after the track are those of its ends.
 
         Args:
-            low: [s].
-            high: [s].
+            low: begin [s].
+            high: end [s].
             spacing: maximum distance between two positions [m].
         """
         low, high = (min(max(moment, self.times[0]), self.times[-1]) for moment in (low, high))
         n = ceil((high - low) * self.speed / spacing) + 1
         moments = np.linspace(low, high, max(2, n))
-        pieces = np.searchsorted(self.times[1:-1], moments, side="right")
-        since = (moments - np.array(self.times)[pieces])[:, None]
-        coefficients = np.moveaxis(self.polynomials()[pieces], -1, 0)
-        return moments, polyval(since, coefficients, tensor=False)
-
-    def polynomials(self) -> Array:
-        """Return the coefficients between the samples, constant first (n - 1, 2, 4)."""
-        pieces = [self._polynomials(moment) for moment in self.times[:-1]]
-        return np.array([(x, y) for _, x, y in pieces])
-
-    def _polynomials(self, moment: float) -> tuple[float, "Cubic", "Cubic"]:
-        """Return the time since the last sample [s], and the polynomials of it for x and y."""
-        k = min(bisect_right(self.times, moment), len(self.times) - 1) - 1
-        duration = self.times[k + 1] - self.times[k]
-        ends = zip(
-            self.points[k], self.points[k + 1], self.rates[k], self.rates[k + 1], strict=True
-        )
-        x, y = (_cubic(duration, *end) for end in ends)
-        return moment - self.times[k], x, y
+        return moments, self.curve(moments)
 
 
-Cubic = tuple[float, float, float, float]
-"""Coefficients, constant first."""
+class TrackTable:
+    """Recorded tracks as arrays, padded to the longest one, evaluated together.
 
+    Args:
+        tracks: at least one.
+    """
 
-def _cubic(duration: float, start: float, end: float, rate: float, end_rate: float) -> Cubic:
-    mean = (end - start) / duration
-    square = (3.0 * mean - 2.0 * rate - end_rate) / duration
-    return start, rate, square, (rate + end_rate - 2.0 * mean) / duration**2
+    def __init__(self, tracks: Sequence[Track]) -> None:
+        n, longest = len(tracks), max(len(track.times) for track in tracks)
+        self._times = np.full((n, longest), np.inf)
+        self._cubics = np.zeros((n, longest - 1, 2, 4))  # highest power first
+        for row, track in enumerate(tracks):
+            self._times[row, : len(track.times)] = track.times
+            self._cubics[row, : len(track.times) - 1] = np.moveaxis(track.curve.c, 0, -1)
+        self._rows = np.arange(n)
+        self._last = np.array([len(track.times) - 2 for track in tracks])
+        self._start = np.array([track.times[0] for track in tracks])
+        self._end = np.array([track.times[-1] for track in tracks])
+        linger = np.array([np.inf if track.stays else track.linger for track in tracks])
+        self._appears, self._leaves = self._start - linger, self._end + linger
+        self._begin = np.array([track.begin for track in tracks])
+        self._first = np.array([track.first for track in tracks])
+        self._period = np.array([track.period for track in tracks])
+        self._away = np.array([(t.points[0][0] + t.away, t.points[0][1]) for t in tracks])
 
+    def present(self, times: Array | float) -> NDArray[np.bool_]:
+        """Return whether the movers are in the world at `times` (...) [s], in order (..., n)."""
+        moment = self.recorded(times)
+        present: NDArray[np.bool_] = (self._appears <= moment) & (moment < self._leaves)
+        return present
 
-def _value(cubic: Cubic, since: float) -> float:
-    return cubic[0] + since * (cubic[1] + since * (cubic[2] + since * cubic[3]))
+    def recorded(self, times: Array | float) -> Array:
+        """Return the times of the recordings at `times` (...) [s], in order (..., n) [s]."""
+        moment: Array = np.asarray(times)[..., None] + self._begin
+        repeats = np.isfinite(self._period)
+        if repeats.any():
+            period = np.where(repeats, self._period, 1.0)
+            again = self._first + np.mod(moment - self._first, period)
+            moment = np.where(repeats, again, moment)
+        return moment
 
+    def positions(self, times: Array | float) -> Array:
+        """Return the positions at `times` (...) [s], in order (..., n, 2) [m]."""
+        moment = self.recorded(times)
+        cubics, u = self._pieces(np.clip(moment, self._start, self._end))
+        at = cubics[..., 3] + u * (cubics[..., 2] + u * (cubics[..., 1] + u * cubics[..., 0]))
+        positions: Array = np.where(self.present(times)[..., None], at, self._away)
+        return positions
 
-def _slope(cubic: Cubic, since: float) -> float:
-    return cubic[1] + since * (2.0 * cubic[2] + since * (3.0 * cubic[3]))
+    def velocities(self, times: Array | float) -> Array:
+        """Return the velocities at `times` (...) [s], in order (..., n, 2) [m/s]."""
+        moment = self.recorded(times)
+        cubics, u = self._pieces(np.clip(moment, self._start, self._end))
+        slope = cubics[..., 2] + u * (2.0 * cubics[..., 1] + u * (3.0 * cubics[..., 0]))
+        walks = (self._start <= moment) & (moment < self._end)
+        velocities: Array = np.where(walks[..., None], slope, 0.0)
+        return velocities
+
+    def _pieces(self, moment: Array) -> tuple[Array, Array]:
+        """Return coefficients (..., n, 2, 4) and times since the last sample (..., n, 1) [s]."""
+        passed = (self._times <= moment[..., None]).sum(axis=-1)
+        k = np.minimum(passed - 1, self._last)
+        return self._cubics[self._rows, k], (moment - self._times[self._rows, k])[..., None]
 
 
 def rates_at_samples(times: Array, points: Array) -> Array:
     """Return the velocities at the samples (n, 2) [m/s].
 
     Args:
-        times: increasing (n,) [s].
-        points: (n, 2) [m].
+        times: increasing times (n,) [s].
+        points: positions (n, 2) [m].
     """
     durations = np.diff(times)[:, None]
     means = np.diff(points, axis=0) / durations
@@ -164,22 +196,17 @@ def rates_at_samples(times: Array, points: Array) -> Array:
     return np.concatenate([means[:1], middle, means[-1:]])
 
 
-def speed_bounds(times: Array, points: Array, rates: Array) -> Array:
-    """Return upper bounds of the speed between the samples (n - 1,) [m/s].
+def speed_bounds(curve: CubicHermiteSpline) -> Array:
+    """Return upper bounds of the speed between the samples of a curve (n - 1,) [m/s].
 
     The velocity is a quadratic polynomial of time. In each of `SUBDIVISIONS` parts it is in the
     convex hull of its Bézier points.
     """
-    means = np.diff(points, axis=0) / np.diff(times)[:, None]
-    s = np.linspace(0.0, 1.0, 2 * SUBDIVISIONS + 1)[:, None, None]
-    velocity = (
-        6.0 * s * (1.0 - s) * means
-        + (1.0 - s) * (1.0 - 3.0 * s) * rates[:-1]
-        + s * (3.0 * s - 2.0) * rates[1:]
-    )
+    fractions = np.linspace(0.0, 1.0, 2 * SUBDIVISIONS + 1)[:, None]
+    u = (fractions * np.diff(curve.x))[..., None]
+    velocity = curve.c[2] + u * (2.0 * curve.c[1] + u * (3.0 * curve.c[0]))
     ends, middles = velocity[::2], velocity[1::2]
     controls = 2.0 * middles - 0.5 * (ends[:-1] + ends[1:])
-    bounds: Array = np.concatenate([np.hypot(v[..., 0], v[..., 1]) for v in (ends, controls)]).max(
-        axis=0
-    )
+    speeds = [np.hypot(v[..., 0], v[..., 1]) for v in (ends, controls)]
+    bounds: Array = np.concatenate(speeds).max(axis=0)
     return bounds

@@ -10,8 +10,7 @@ from hsr8.mistakes import Mistake
 from hsr8.scenario.crowd import Recording, recordings
 from hsr8.scenario.schema import Scenario
 from hsr8.scenario.section import Point
-from hsr8.scenario.track import Track
-from hsr8.scenario.track_table import TrackTable
+from hsr8.scenario.track import Track, TrackTable
 from hsr8.scenario.world import TrackMover
 
 Array = NDArray[np.float64]
@@ -98,8 +97,7 @@ class _Crowd:
     def _speed(self, track: Track) -> Iterator[Mistake]:
         limit = MAX_SPEED_RATIO * self._scenario.robot.speed.vx
         if track.speed > limit * (1.0 + 1e-9):
-            points = np.array(track.points)
-            speeds = np.hypot(*np.diff(points, axis=0).T) / np.diff(track.times)
+            speeds = np.hypot(*np.diff(track.points, axis=0).T) / np.diff(track.times)
             at = self.sample(track, track.times[int(speeds.argmax())])
             yield self.problem(
                 "file",

@@ -15,11 +15,12 @@ from itertools import pairwise
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 import tomlkit
+from numpy.typing import NDArray
 
 from hsr8.files.regular import read_text
 from hsr8.mistakes import Mistake
-from hsr8.scenario.section import Point
 from hsr8.scenario.world import TrackMover
 
 COLUMNS = ("t", "x", "y", "id")
@@ -31,6 +32,7 @@ MAX_GAP = 1.0  # between the samples of a track [s]
 MAX_TIME = 1e10  # [s]
 MAX_COORDINATE = 1e5  # [m]
 
+Array = NDArray[np.float64]
 Table = dict[str, Any]
 
 
@@ -38,19 +40,19 @@ class TrackFileError(Exception):
     """Invalid track file; the message has the line, the wrong value and the expected one."""
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, eq=False)
 class RecordedTrack:
     """Samples of one id.
 
     Attributes:
-        id: in the file.
-        times: [s].
-        points: [m].
+        id: name in the file.
+        times: times of the samples (n,) [s].
+        points: positions at the samples (n, 2) [m].
     """
 
     id: str
-    times: tuple[float, ...]
-    points: tuple[Point, ...]
+    times: Array
+    points: Array
 
 
 def located_tracks(table: Mapping[str, Any], folder: Path) -> Table:
@@ -147,10 +149,8 @@ def recorded_tracks(data: str) -> tuple[RecordedTrack, ...]:
     for line in data.splitlines()[1:]:
         t, x, y, name = line.split(",")
         samples.setdefault(name, []).append((float(t), float(x), float(y)))
-    return tuple(
-        RecordedTrack(name, tuple(t for t, _, _ in rows), tuple((x, y) for _, x, y in rows))
-        for name, rows in samples.items()
-    )
+    tables = ((name, np.array(rows)) for name, rows in samples.items())
+    return tuple(RecordedTrack(name, table[:, 0], table[:, 1:]) for name, table in tables)
 
 
 def track_digests(movers: Iterable[object]) -> dict[str, str]:

@@ -9,8 +9,8 @@ from hsr8.command_schedule import (
     ScheduledPlanner,
     command_schedule,
 )
-from hsr8.scenario.command import Command, RandomCommands
 from hsr8.scenario.loader import load_scenario
+from hsr8.scenario.mission import Command, RandomCommands
 from walking.command import CommandState, VelocityCommand
 
 

@@ -5,8 +5,7 @@ from annotated_types import doc
 
 from hsr8.keys import annotation_at, chosen, texts
 from hsr8.robots.description import Name, RobotDescription, SoleRectangle
-from hsr8.scenario.command import Stretch
-from hsr8.scenario.mission import Walk
+from hsr8.scenario.mission import Stretch, Walk
 from hsr8.scenario.schema import Navigation, Scenario
 from navigation.parameters.navigation import NavigationParameters
 

@@ -7,8 +7,8 @@ import numpy as np
 import pytest
 
 from hsr8.body_builder import build_body, build_model
+from hsr8.robots.files import models_dir
 from hsr8.robots.loaded import load_robot
-from hsr8.robots.models import models_dir
 from hsr8.scenario.loader import load_scenario
 from hsr8.world.field.generator import draw_layout
 from hsr8.world.model.index import ModelIndex

@@ -14,7 +14,7 @@ from typing import Any
 from hsr8.errors import ScenarioError
 from hsr8.evaluation.sweep.table import flatten
 from hsr8.recorder.run.manifest import versions
-from hsr8.robots.models import models_dir
+from hsr8.robots.files import models_dir
 from hsr8.scenario.layers import Table
 from hsr8.scenario.loader import loads, tables
 from hsr8.version import VERSION

@@ -1,4 +1,4 @@
-"""Protocol of the two robot bodies, physics and kinematic."""
+"""Common parts of the two robot bodies, physics and kinematic: protocol, obstacles around them."""
 
 from typing import Protocol
 
@@ -6,6 +6,10 @@ import mujoco
 import numpy as np
 from numpy.typing import NDArray
 
+from hsr8.robots.loaded import LoadedRobot
+from hsr8.world.field.layout import Layout
+from hsr8.world.model.index import ModelIndex
+from hsr8.world.truth.contacts import ContactWatch
 from hsr8.world.truth.saturation import Saturation
 from hsr8.world.truth.truth import Truth
 from walking.sensing import BodySensors
@@ -42,3 +46,65 @@ class Body(Protocol):
 
     def state_bytes(self) -> bytes:
         """Return the state that determines the future of the world, for hashing."""
+
+
+Array = NDArray[np.float64]
+
+BLOCK = 256  # physics steps per computation of mover positions
+
+
+class Surroundings:
+    """Obstacles of a layout in its compiled model.
+
+    Args:
+        model: compiled world.
+        robot: in it.
+        layout: obstacles and beacons.
+
+    Attributes:
+        index: addresses in the model.
+        watch: contacts of the robot.
+    """
+
+    def __init__(self, model: mujoco.MjModel, robot: LoadedRobot, layout: Layout) -> None:
+        static = layout.static
+        self._movers = layout.motion()
+        self._n_static = len(static)
+        self._positions = np.zeros((len(layout.obstacles), 2))  # static obstacles, then movers
+        self._positions[: len(static)] = np.reshape([o.position for o in static], (-1, 2))
+        self._zeros = np.zeros_like(self._positions)
+        self.index = ModelIndex.of(model, robot, len(static), len(self._movers))
+        self.watch = ContactWatch(model, self.index, layout)
+        self._timestep = float(model.opt.timestep)
+        self._first, self._block = -BLOCK, np.zeros((BLOCK, model.nmocap, 3))
+
+    def move(self, data: mujoco.MjData, time: float) -> None:
+        """Move every mover to its position at `time` [s]."""
+        if len(self._movers):
+            data.mocap_pos[self.index.mover_mocap, :2] = self._movers.positions(time)
+
+    def step(self, data: mujoco.MjData, number: int) -> None:
+        """Move every mover to its position at the end of physics step `number`, counted from 0."""
+        if len(self._movers) == 0:
+            return
+        if not 0 <= number - self._first < BLOCK:
+            self._first = number
+            ends = np.arange(number + 1.0, number + 1.0 + BLOCK) * self._timestep
+            self._block[:] = data.mocap_pos
+            self._block[:, self.index.mover_mocap, :2] = self._movers.positions(ends)
+        data.mocap_pos[:] = self._block[number - self._first]
+
+    def positions(self, data: mujoco.MjData) -> Array:
+        """Return the axes of all obstacles in `data`, layout order (n, 2) [m]."""
+        movers = data.mocap_pos.take(self.index.mover_mocap, axis=0)
+        return self._with(self._positions, movers[:, :2])
+
+    def velocities(self, time: float) -> Array:
+        """Return the velocities of all obstacles at `time` [s], layout order (n, 2) [m/s]."""
+        return self._with(self._zeros, self._movers.velocities(time))
+
+    def _with(self, static: Array, movers: Array) -> Array:
+        """Return rows of static obstacles, then those of the movers."""
+        rows = static.copy()
+        rows[self._n_static :] = movers
+        return rows

@@ -13,9 +13,9 @@ from numpy.typing import NDArray
 from compilation import compiled
 from hsr8.robots.loaded import LoadedRobot
 from hsr8.scenario.sensor_noise import SensorNoise
+from hsr8.world.body.body import Surroundings
 from hsr8.world.body.physics import has_fallen, place_robot
 from hsr8.world.body.sensors import SensorSuite
-from hsr8.world.body.surroundings import Surroundings
 from hsr8.world.field.layout import Layout
 from hsr8.world.rotation import Quaternion, heading, product, rotate
 from hsr8.world.truth.truth import Truth

@@ -11,10 +11,10 @@ from hsr8.errors import SimulationDiverged
 from hsr8.robots.loaded import LoadedRobot
 from hsr8.scenario.fault import Fault
 from hsr8.scenario.sensor_noise import SensorNoise
+from hsr8.world.body.body import Surroundings
+from hsr8.world.body.faults import WorldFaults
 from hsr8.world.body.pushes import Pusher, ScheduledPush
 from hsr8.world.body.sensors import SensorSuite
-from hsr8.world.body.surroundings import Surroundings
-from hsr8.world.body.world_faults import WorldFaults
 from hsr8.world.field.layout import Layout
 from hsr8.world.rotation import heading, quaternion_from_yaw, up_component
 from hsr8.world.truth.saturation import Saturation, SaturationWatch

@@ -8,8 +8,7 @@ import mujoco
 import numpy as np
 from numpy.typing import NDArray
 
-from hsr8.scenario.disturbance import Disturbance
-from hsr8.scenario.fault import Fault, Push
+from hsr8.scenario.fault import Disturbance, Fault, Push
 from hsr8.world.truth.truth import ActivePush
 
 Array = NDArray[np.float64]

@@ -113,9 +113,8 @@ def min_clearance(layout: Layout, path: Array, radius: float) -> float:
     times = np.arange(path[0, 0], path[-1, 0] + SAMPLE, SAMPLE)
     positions = np.stack([np.interp(times, path[:, 0], path[:, k]) for k in (1, 2)], axis=1)
     gaps = [np.hypot(*(positions - o.position).T).min() - o.radius - radius for o in layout.static]
-    for mover in layout.movers:
-        assert mover.motion is not None
-        at = np.array([mover.motion.position(time) for time in times.tolist()])
+    moving = np.moveaxis(layout.motion().positions(times), 1, 0)
+    for mover, at in zip(layout.movers, moving, strict=True):
         gaps.append(np.hypot(*(positions - at).T).min() - mover.radius - radius)
     return float(min(gaps, default=np.inf))
 

@@ -11,8 +11,16 @@ from hsr8.scenario.crowd import SPACING
 from hsr8.scenario.track import Track
 from hsr8.scenario.world import CircleMover, LineMover, ShuttleMover
 from hsr8.world.field.layout import OBSTACLE_HEIGHT, Obstacle
-from hsr8.world.field.motion import Circle, Line, MotionLaw, Passage, Point, Shuttle
-from hsr8.world.field.wander import Wander
+from hsr8.world.field.motion import (
+    Circle,
+    Line,
+    MotionLaw,
+    Movers,
+    Passage,
+    Point,
+    Shuttle,
+    Wander,
+)
 
 Array = NDArray[np.float64]
 
@@ -76,8 +84,7 @@ class Lane:
         if isinstance(motion, Track):
             _, path = motion.sampled(-inf, inf, SPACING * scale)
             return cls(obstacle, path, path[[0, -1]], crosses=True)
-        times = np.linspace(0.0, OPEN_TIME * time_scale, SAMPLES).tolist()
-        path = np.array([motion.position(time) for time in times])
+        path = motion.positions(np.linspace(0.0, OPEN_TIME * time_scale, SAMPLES))
         return cls(obstacle, path, path[:1])
 
 
@@ -96,19 +103,14 @@ def motion_law(mover: ShuttleMover | LineMover | CircleMover) -> MotionLaw:
 
 def apart_at_all_times(lane: Lane, other: Lane, room: float, time_scale: float = 1.0) -> bool:
     """Return whether the axes of two movers keep a distance of `room` [m] for `HORIZON`."""
-    motions = lane.obstacle.motion, other.obstacle.motion
-    assert motions[0] is not None
-    assert motions[1] is not None
-    times = (time_scale * np.arange(0.0, HORIZON, INTERVAL)).tolist()
-    first, second = (
-        np.array([motion.position(time) for time in times]) for motion in motions if motion
-    )
-    gaps = np.hypot(*(first - second).T)
+    motions = tuple(m for m in (lane.obstacle.motion, other.obstacle.motion) if m is not None)
+    both = Movers(motions).positions(time_scale * np.arange(0.0, HORIZON, INTERVAL))
+    gaps = np.hypot(*(both[:, 0] - both[:, 1]).T)
     # Between two checks each approaches by at most half of its motion. A recorded mover stands for
     # longer than that where it appears and leaves.
     speeds = 0.0
-    for motion, positions in zip(motions, (first, second), strict=True):
-        moved = float(np.hypot(*np.diff(positions, axis=0).T).max())
+    for motion, steps in zip(motions, np.moveaxis(np.diff(both, axis=0), 1, 0), strict=True):
+        moved = float(np.hypot(*steps.T).max())
         if isinstance(motion, Track):
             moved = min(moved, motion.speed * INTERVAL * time_scale)
         speeds += moved

@@ -1,15 +1,15 @@
 """Motion laws of moving obstacles: exact position and velocity at any time."""
 
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from math import cos, fmod, hypot, inf, sin
+from math import hypot, inf
+from typing import Any, Protocol
 
 import numpy as np
 from numpy.typing import NDArray
 
 from hsr8.scenario.crowd import AWAY
-from hsr8.scenario.track import Track
-from hsr8.scenario.track_table import TrackTable
-from hsr8.world.field.wander import Wander
+from hsr8.scenario.track import Track, TrackTable
 
 Array = NDArray[np.float64]
 Point = tuple[float, float]
@@ -17,8 +17,29 @@ Point = tuple[float, float]
 SAME_TIME = 1e-6  # times closer than this are equal [s]
 
 
+class _Law:
+    """Motion law, evaluated as the only one of `Movers`."""
+
+    __slots__ = ()
+
+    def positions(self, times: Array) -> Array:
+        """Return the positions at `times` (...) [s] (..., 2) [m]."""
+        positions: Array = Movers((self,)).positions(times)[..., 0, :]  # type: ignore[arg-type]
+        return positions
+
+    def position(self, time: float) -> Point:
+        """Return the position at `time` [s]."""
+        x, y = self.positions(np.asarray(time)).tolist()
+        return x, y
+
+    def velocity(self, time: float) -> Point:
+        """Return the velocity at `time` [m/s]; where it jumps, the velocity after it."""
+        x, y = Movers((self,)).velocities(time)[0].tolist()  # type: ignore[arg-type]
+        return x, y
+
+
 @dataclass(frozen=True, slots=True)
-class Line:
+class Line(_Law):
     """Straight line at constant velocity.
 
     Attributes:
@@ -29,23 +50,15 @@ class Line:
     start: Point
     rate: Point
 
-    def position(self, time: float) -> Point:
-        """Return the position at `time` [s]."""
-        return self.start[0] + self.rate[0] * time, self.start[1] + self.rate[1] * time
-
-    def velocity(self, time: float) -> Point:
-        """Return the velocity at `time` [m/s]."""
-        return self.rate
-
 
 @dataclass(frozen=True, slots=True)
-class _Segment:
+class _Segment(_Law):
     """Line between two points.
 
     Attributes:
-        start: [m].
-        end: [m].
-        speed: along the line [m/s].
+        start: first end [m].
+        end: second end [m].
+        speed: speed along the line [m/s].
     """
 
     start: Point
@@ -56,13 +69,6 @@ class _Segment:
     def length(self) -> float:
         """Distance between the points [m]."""
         return hypot(self.end[0] - self.start[0], self.end[1] - self.start[1])
-
-    def _at(self, fraction: float) -> Point:
-        (x, y), (end_x, end_y) = self.start, self.end
-        return x + fraction * (end_x - x), y + fraction * (end_y - y)
-
-    def _along(self, rate: float) -> Point:
-        return rate * (self.end[0] - self.start[0]), rate * (self.end[1] - self.start[1])
 
 
 @dataclass(frozen=True, slots=True)
@@ -75,18 +81,6 @@ class Shuttle(_Segment):
 
     offset: float = 0.0
 
-    def position(self, time: float) -> Point:
-        """Return the position at `time` [s]."""
-        length = self.length
-        travelled = fmod(self.offset + self.speed * time, 2.0 * length)
-        return self._at(min(travelled, 2.0 * length - travelled) / length)
-
-    def velocity(self, time: float) -> Point:
-        """Return the velocity at `time` [m/s]; at an end, the velocity after it."""
-        length = self.length
-        travelled = fmod(self.offset + self.speed * time, 2.0 * length)
-        return self._along((self.speed if travelled < length else -self.speed) / length)
-
 
 @dataclass(frozen=True, slots=True)
 class Passage(_Segment):
@@ -98,26 +92,16 @@ class Passage(_Segment):
 
     depart: float = 0.0
 
-    def position(self, time: float) -> Point:
-        """Return the position at `time` [s]."""
-        travelled = self.speed * (time - self.depart)
-        return self._at(min(max(travelled / self.length, 0.0), 1.0))
-
-    def velocity(self, time: float) -> Point:
-        """Return the velocity at `time` [m/s]; at an end, the velocity after it."""
-        travelled, length = self.speed * (time - self.depart), self.length
-        return self._along(self.speed / length) if 0.0 <= travelled < length else (0.0, 0.0)
-
 
 @dataclass(frozen=True, slots=True)
-class Circle:
+class Circle(_Law):
     """Circle at constant speed.
 
     Attributes:
-        centre: [m].
-        radius: of the path [m].
-        speed: counter-clockwise positive [m/s].
-        angle: on the circle at time zero [rad].
+        centre: centre of the path [m].
+        radius: radius of the path [m].
+        speed: speed, counter-clockwise positive [m/s].
+        angle: angle on the circle at time zero [rad].
     """
 
     centre: Point
@@ -125,28 +109,37 @@ class Circle:
     speed: float
     angle: float = 0.0
 
-    def position(self, time: float) -> Point:
-        """Return the position at `time` [s]."""
-        angle = self.angle + self.speed / self.radius * time
-        return (
-            self.centre[0] + self.radius * cos(angle),
-            self.centre[1] + self.radius * sin(angle),
-        )
 
-    def velocity(self, time: float) -> Point:
-        """Return the velocity at `time` [m/s]."""
-        angle = self.angle + self.speed / self.radius * time
-        return -self.speed * sin(angle), self.speed * cos(angle)
+@dataclass(frozen=True, slots=True)
+class Wander(_Law):
+    """Closed polygon with short sides of equal length, at constant speed.
+
+    Attributes:
+        track: corners of the polygon [m].
+        side: length of every side [m].
+        speed: speed along the polygon [m/s].
+        offset: distance travelled before time zero, from the first corner [m].
+    """
+
+    track: tuple[Point, ...]
+    side: float
+    speed: float
+    offset: float = 0.0
+
+    @property
+    def length(self) -> float:
+        """Length of the track [m]."""
+        return self.side * len(self.track)
 
 
 @dataclass(frozen=True, slots=True)
-class Appearing:
+class Appearing(_Law):
     """Another motion during an interval; outside it the mover is far away.
 
     Attributes:
-        motion: while the mover is present.
-        start: of the interval [s].
-        end: of the interval [s].
+        motion: motion while the mover is present.
+        start: begin of the interval [s].
+        end: end of the interval [s].
         away: distance from the lane outside the interval [m].
     """
 
@@ -155,20 +148,8 @@ class Appearing:
     end: float = inf
     away: float = AWAY
 
-    def position(self, time: float) -> Point:
-        """Return the position at `time` [s]."""
-        x, y = self.motion.position(time)
-        return (x, y) if self._present(time) else (x + self.away, y)
 
-    def velocity(self, time: float) -> Point:
-        """Return the velocity at `time` [m/s]; zero while the mover is away."""
-        return self.motion.velocity(time) if self._present(time) else (0.0, 0.0)
-
-    def _present(self, time: float) -> bool:
-        return self.start <= time + SAME_TIME < self.end
-
-
-MotionLaw = Line | Shuttle | Circle | Passage | Wander | Appearing | Track
+MotionLaw = Line | Shuttle | Circle | Passage | Wander | Track | Appearing
 
 
 def pace(motion: MotionLaw) -> float:
@@ -181,35 +162,35 @@ def pace(motion: MotionLaw) -> float:
     return abs(motion.speed)
 
 
-class Movers:
-    """All moving obstacles of a layout, evaluated together.
+class _Kind(Protocol):
+    """Movers of one kind, evaluated together."""
 
-    Lines, shuttles, circles and tracks are evaluated as arrays, other motions one by one.
+    def positions(self, times: Array) -> Array:
+        """Return the positions at `times` (...) [s] (..., n, 2) [m]."""
+
+    def velocities(self, times: Array) -> Array:
+        """Return the velocities at `times` (...) [s] (..., n, 2) [m/s]."""
+
+
+class Movers:
+    """All moving obstacles of a layout, those of each kind evaluated together.
 
     Args:
-        motions: in layout order.
+        motions: motion laws in layout order.
     """
 
     def __init__(self, motions: tuple[MotionLaw, ...]) -> None:
         self.motions = motions
-        straight = {k: _lane(w) for k, w in enumerate(motions) if isinstance(w, Line | Shuttle)}
-        circles = {k: c for k, c in enumerate(motions) if isinstance(c, Circle)}
-        tracks = {k: track for k, track in enumerate(motions) if isinstance(track, Track)}
-        self._tracks = list(tracks)
-        self._table = TrackTable(list(tracks.values())) if tracks else None
-        other = Passage | Wander | Appearing
-        self._others = [
-            (k, motion) for k, motion in enumerate(motions) if isinstance(motion, other)
-        ]
-        self._straight = np.array(list(straight), dtype=np.intp)
-        lanes = np.array(list(straight.values()), dtype=float).reshape(-1, 7)
-        self._origin, self._direction = lanes[:, :2], lanes[:, 2:4]
-        self._speed, self._period, self._offset = lanes[:, 4], 2.0 * lanes[:, 5], lanes[:, 6]
-        self._circles = np.array(list(circles), dtype=np.intp)
-        rows = [(*c.centre, c.radius, c.speed, c.angle) for c in circles.values()]
-        table = np.array(rows, dtype=float).reshape(-1, 5)
-        self._centre, self._radius, self._angle = table[:, :2], table[:, 2:3], table[:, 4]
-        self._circle_speed, self._rate = table[:, 3:4], table[:, 3] / table[:, 2]
+        laws = [motion.motion if isinstance(motion, Appearing) else motion for motion in motions]
+        self._kinds: list[tuple[NDArray[np.intp], _Kind]] = []
+        for classes, kind in _KINDS:
+            chosen = [k for k, law in enumerate(laws) if isinstance(law, classes)]
+            if chosen:
+                self._kinds.append((np.array(chosen), kind([laws[k] for k in chosen])))
+        appearing = [(k, m) for k, m in enumerate(motions) if isinstance(m, Appearing)]
+        self._appearing = np.array([k for k, _ in appearing], dtype=np.intp)
+        rows = [(law.start, law.end, law.away) for _, law in appearing]
+        self._start, self._end, self._away = np.reshape(rows, (-1, 3)).T
 
     def __len__(self) -> int:
         return len(self.motions)
@@ -218,41 +199,140 @@ class Movers:
         """Return the positions at `time` [s] (...), in layout order (..., n, 2) [m]."""
         times = np.asarray(time, dtype=float)
         positions = np.empty((*times.shape, len(self.motions), 2))
-        if len(self._straight):
-            travelled = np.mod(self._offset + self._speed * times[..., None], self._period)
-            along = np.minimum(travelled, self._period - travelled)[..., None]
-            positions[..., self._straight, :] = self._origin + along * self._direction
-        if len(self._circles):
-            angle = self._angle + self._rate * times[..., None]
-            unit = np.stack([np.cos(angle), np.sin(angle)], axis=-1)
-            positions[..., self._circles, :] = self._centre + self._radius * unit
-        if self._table is not None:
-            positions[..., self._tracks, :] = self._table.positions(times)
-        for k, motion in self._others:
-            points = [motion.position(instant) for instant in times.ravel().tolist()]
-            positions[..., k, :] = np.reshape(points, (*times.shape, 2))
+        for chosen, kind in self._kinds:
+            positions[..., chosen, :] = kind.positions(times)
+        if len(self._appearing):
+            positions[..., self._appearing, 0] += np.where(self._present(times), 0.0, self._away)
         return positions
 
     def velocities(self, time: float) -> Array:
         """Return the velocities at `time` [s], in layout order (n, 2) [m/s]."""
+        times = np.asarray(time, dtype=float)
         velocities = np.empty((len(self.motions), 2))
-        if len(self._straight):
-            travelled = np.mod(self._offset + self._speed * time, self._period)
-            rate = np.where(travelled < 0.5 * self._period, self._speed, -self._speed)
-            velocities[self._straight] = rate[:, None] * self._direction
-        if len(self._circles):
-            angle = self._angle + self._rate * time
-            unit = np.stack([-np.sin(angle), np.cos(angle)], axis=1)
-            velocities[self._circles] = self._circle_speed * unit
-        if self._table is not None:
-            velocities[self._tracks] = self._table.velocities(time)
-        for k, motion in self._others:
-            velocities[k] = motion.velocity(time)
+        for chosen, kind in self._kinds:
+            velocities[chosen] = kind.velocities(times)
+        if len(self._appearing):
+            velocities[self._appearing] *= self._present(times)[..., None]
         return velocities
 
     def top_speeds(self) -> Array:
         """Return the maximum speed of each mover, in layout order (n,) [m/s]."""
         return np.array([pace(motion) for motion in self.motions], dtype=float)
+
+    def _present(self, times: Array) -> NDArray[np.bool_]:
+        """Return whether the appearing movers are in the world (..., m)."""
+        soon = times[..., None] + SAME_TIME
+        present: NDArray[np.bool_] = (self._start <= soon) & (soon < self._end)
+        return present
+
+
+class _Lanes:
+    """Lines and shuttles."""
+
+    def __init__(self, laws: Sequence[Line | Shuttle]) -> None:
+        lanes = np.array([_lane(law) for law in laws], dtype=float)
+        self._origin, self._direction = lanes[:, :2], lanes[:, 2:4]
+        self._speed, self._period, self._offset = lanes[:, 4], 2.0 * lanes[:, 5], lanes[:, 6]
+
+    def positions(self, times: Array) -> Array:
+        travelled = self._travelled(times)
+        along = np.minimum(travelled, self._period - travelled)[..., None]
+        positions: Array = self._origin + along * self._direction
+        return positions
+
+    def velocities(self, times: Array) -> Array:
+        there = self._travelled(times) < 0.5 * self._period
+        rates: Array = np.where(there, self._speed, -self._speed)[..., None] * self._direction
+        return rates
+
+    def _travelled(self, times: Array) -> Array:
+        travelled: Array = np.mod(self._offset + self._speed * times[..., None], self._period)
+        return travelled
+
+
+class _Circles:
+    """Circles."""
+
+    def __init__(self, laws: Sequence[Circle]) -> None:
+        table = np.array([(*c.centre, c.radius, c.speed, c.angle) for c in laws], dtype=float)
+        self._centre, self._radius, self._angle = table[:, :2], table[:, 2:3], table[:, 4]
+        self._speed, self._rate = table[:, 3:4], table[:, 3] / table[:, 2]
+
+    def positions(self, times: Array) -> Array:
+        angle = self._angle + self._rate * times[..., None]
+        positions: Array = self._centre + self._radius * np.stack(
+            [np.cos(angle), np.sin(angle)], axis=-1
+        )
+        return positions
+
+    def velocities(self, times: Array) -> Array:
+        angle = self._angle + self._rate * times[..., None]
+        velocities: Array = self._speed * np.stack([-np.sin(angle), np.cos(angle)], axis=-1)
+        return velocities
+
+
+class _Passages:
+    """Passages."""
+
+    def __init__(self, laws: Sequence[Passage]) -> None:
+        self._start = np.array([law.start for law in laws])
+        self._along = np.array([law.end for law in laws]) - self._start
+        table = np.array([(law.speed, law.depart, law.length) for law in laws])
+        self._speed, self._depart, self._length = table.T
+
+    def positions(self, times: Array) -> Array:
+        fraction = np.clip(self._travelled(times) / self._length, 0.0, 1.0)
+        positions: Array = self._start + fraction[..., None] * self._along
+        return positions
+
+    def velocities(self, times: Array) -> Array:
+        travelled = self._travelled(times)
+        moves = (travelled >= 0.0) & (travelled < self._length)
+        rate = np.where(moves, self._speed / self._length, 0.0)
+        velocities: Array = rate[..., None] * self._along
+        return velocities
+
+    def _travelled(self, times: Array) -> Array:
+        travelled: Array = self._speed * (times[..., None] - self._depart)
+        return travelled
+
+
+class _Wanders:
+    """Closed polygons, which have equally many corners."""
+
+    def __init__(self, laws: Sequence[Wander]) -> None:
+        self._corners = np.array([law.track for law in laws])
+        self._rows = np.arange(len(laws))
+        table = np.array([(law.side, law.speed, law.offset) for law in laws])
+        self._side, self._speed, self._offset = table.T
+
+    def positions(self, times: Array) -> Array:
+        corner, along, fraction = self._sides(times)
+        positions: Array = corner + fraction[..., None] * along
+        return positions
+
+    def velocities(self, times: Array) -> Array:
+        _, along, _ = self._sides(times)
+        velocities: Array = (self._speed / self._side)[:, None] * along
+        return velocities
+
+    def _sides(self, times: Array) -> tuple[Array, Array, Array]:
+        """Return the last corner, the vector to the next one, and the travelled fraction."""
+        sides = (self._offset + self._speed * times[..., None]) / self._side
+        whole = np.floor(sides)
+        n = self._corners.shape[1]
+        last = whole.astype(np.intp) % n
+        corner = self._corners[self._rows, last]
+        return corner, self._corners[self._rows, (last + 1) % n] - corner, sides - whole
+
+
+_KINDS: tuple[tuple[Any, Callable[[Sequence[Any]], _Kind]], ...] = (
+    ((Line, Shuttle), _Lanes),
+    (Circle, _Circles),
+    (Passage, _Passages),
+    (Wander, _Wanders),
+    (Track, TrackTable),
+)
 
 
 def _lane(motion: Line | Shuttle) -> tuple[float, ...]:

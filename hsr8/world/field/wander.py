@@ -1,13 +1,13 @@
 """Wandering movers: constant speed along a smooth closed track with left and right bends."""
 
-from dataclasses import dataclass
-from math import floor, pi
+from math import pi
 
 import numpy as np
 from numpy.typing import NDArray
 
+from hsr8.world.field.motion import Point, Wander
+
 Array = NDArray[np.float64]
-Point = tuple[float, float]
 
 CORNERS = 192  # of the polygon that approximates the track
 FINE = 1024  # samples of the curve from which the corners are chosen
@@ -22,46 +22,6 @@ AMPLITUDES = np.array(
         [[1.0, 0.2, 0.05], [0.2, 0.8, 0.05]],  # figures of eight
     ]
 )  # maximum amplitudes of the harmonics [1]
-
-
-@dataclass(frozen=True, slots=True)
-class Wander:
-    """Closed polygon with short sides of equal length, at constant speed.
-
-    Attributes:
-        track: corners of the polygon [m].
-        side: length of every side [m].
-        speed: [m/s].
-        offset: distance travelled before time zero, from the first corner [m].
-    """
-
-    track: tuple[Point, ...]
-    side: float
-    speed: float
-    offset: float = 0.0
-
-    @property
-    def length(self) -> float:
-        """Length of the track [m]."""
-        return self.side * len(self.track)
-
-    def position(self, time: float) -> Point:
-        """Return the position at `time` [s]."""
-        (x, y), (x_next, y_next), fraction = self._segment(time)
-        return x + fraction * (x_next - x), y + fraction * (y_next - y)
-
-    def velocity(self, time: float) -> Point:
-        """Return the velocity at `time` [m/s]; at a corner, the velocity after it."""
-        (x, y), (x_next, y_next), _ = self._segment(time)
-        rate = self.speed / self.side
-        return rate * (x_next - x), rate * (y_next - y)
-
-    def _segment(self, time: float) -> tuple[Point, Point, float]:
-        """Return the corners before and after, and the travelled fraction of the side."""
-        sides = (self.offset + self.speed * time) / self.side
-        whole = floor(sides)
-        n = len(self.track)
-        return self.track[whole % n], self.track[(whole + 1) % n], sides - whole
 
 
 def draw_wander(

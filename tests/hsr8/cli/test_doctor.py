@@ -7,7 +7,7 @@ import pytest
 from hsr8.cli import doctor, yardstick
 from hsr8.cli.main import entry
 from hsr8.gl import APT_LINE, VULKAN_LINE
-from hsr8.robots import models
+from hsr8.robots import files
 
 
 @pytest.fixture(autouse=True)
@@ -44,7 +44,7 @@ def test_json_has_all_findings(monkeypatch, capsys):
 
 def test_missing_models_are_reported(monkeypatch, capsys, tmp_path):
     monkeypatch.setattr(doctor, "probe", lambda backend: "llvmpipe")
-    monkeypatch.setattr(models, "PACKAGE", tmp_path / "hsr8")
+    monkeypatch.setattr(files, "PACKAGE", tmp_path / "hsr8")
     assert entry(["doctor", "--json"]) == 2
     findings = {f["name"]: f for f in json.loads(capsys.readouterr().out)["findings"]}
     assert findings["models"]["state"] == "missing"

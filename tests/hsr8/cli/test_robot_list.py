@@ -2,8 +2,8 @@ import json
 
 from hsr8.cli.main import entry
 from hsr8.robots import locate
+from hsr8.robots.files import models_dir
 from hsr8.robots.locate import robot_names
-from hsr8.robots.models import models_dir
 
 
 def listed(capsys):

@@ -55,7 +55,8 @@ def test_arms_that_touch_the_body_are_spread(loaded, flip):
 
 
 def test_arms_inside_the_body_are_refused(loaded):
-    with pytest.raises(ModelError, match=r"overlap by .* mm; expected a posture without"):
+    message = "overlap by .* mm; .*: state other angles of l_shoulder_pitch, .* in posture, or add "
+    with pytest.raises(ModelError, match=message):
         loaded(lambda root: wide(root, "0.4"))
 
 

@@ -6,7 +6,7 @@ import pytest
 from hsr8.errors import ModelError
 from hsr8.robots import locate
 from hsr8.robots.description import RobotDescription, read_description
-from hsr8.robots.models import models_dir
+from hsr8.robots.files import models_dir
 
 NAMES = ["alexander", "apollo", "berkeley", "g1", "hsr8", "icub", "jvrc1", "op3", "t1"]
 MODEL = "some_robot/robot.xml"

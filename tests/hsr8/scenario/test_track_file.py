@@ -28,7 +28,10 @@ def test_samples_are_those_of_the_rows(rows):
         lines.append(f"{time!r},{x!r},{y!r},{name}")
         expected.setdefault(name, []).append((time, (x, y)))
     data = content("\n".join(lines))
-    samples = {t.id: list(zip(t.times, t.points, strict=True)) for t in recorded_tracks(data)}
+    samples = {
+        track.id: list(zip(track.times.tolist(), map(tuple, track.points.tolist()), strict=True))
+        for track in recorded_tracks(data)
+    }
     assert samples == expected
     assert content(data) == data
 

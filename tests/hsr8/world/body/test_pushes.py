@@ -3,8 +3,7 @@ import numpy as np
 import pytest
 
 from hsr8.robots.loaded import load_robot
-from hsr8.scenario.disturbance import Disturbance, RandomPushes
-from hsr8.scenario.fault import Push
+from hsr8.scenario.fault import Disturbance, Push, RandomPushes
 from hsr8.world.body.pushes import Pusher, ScheduledPush, schedule
 from hsr8.world.field.layout import Layout
 from hsr8.world.model.assembly import Optics, assemble

@@ -12,8 +12,7 @@ from hsr8.world.field.certificate import VIA_REACHED, certify, min_clearance, st
 from hsr8.world.field.generator import draw_layout, draw_world
 from hsr8.world.field.lattice import Lattice
 from hsr8.world.field.layout import Layout, Obstacle
-from hsr8.world.field.motion import Circle, Passage, Shuttle
-from hsr8.world.field.wander import Wander
+from hsr8.world.field.motion import Circle, Passage, Shuttle, Wander
 
 ROBOT = Robot()
 DIAGONAL = 0.075  # maximum distance to the nearest cell of a lattice of 0.1 m [m]

@@ -7,12 +7,10 @@ import pytest
 
 from hsr8.errors import ScenarioError
 from hsr8.scenario.loader import load_scenario
-from hsr8.world.field.attempt import Attempt, CrowdedError
+from hsr8.world.field.attempt import Attempt, CrowdedError, FairDistances
 from hsr8.world.field.encounter import NominalWalk
-from hsr8.world.field.fairness import FairDistances
 from hsr8.world.field.generator import MAX_WORLDS, draw_layout
-from hsr8.world.field.motion import Circle, Passage, Shuttle
-from hsr8.world.field.wander import Wander
+from hsr8.world.field.motion import Circle, Passage, Shuttle, Wander
 
 PLAIN = ("course", "paper", "quick")  # shuttles alone, drawn without walls
 FAMILIES = ("crowd", "dense", "fast", "conflict", "behind", "corridor", "crossing", "blind-corner")

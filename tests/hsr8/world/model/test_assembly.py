@@ -4,8 +4,8 @@ import mujoco
 import numpy as np
 import pytest
 
+from hsr8.robots.files import models_dir
 from hsr8.robots.loaded import load_robot
-from hsr8.robots.models import models_dir
 from hsr8.robots.normal_form import SOLES
 from hsr8.scenario.loader import load_scenario
 from hsr8.world.body.physics import place_robot
