@@ -5,10 +5,10 @@ from rich.console import Console
 from hsr8.cli import tables
 from hsr8.cli.options import List
 from hsr8.files import atomic
-from hsr8.scenario.crowd import n_placed
 from hsr8.scenario.layers import built_in_names
 from hsr8.scenario.loader import load_scenario
 from hsr8.scenario.schema import Scenario
+from hsr8.scenario.track import n_placed
 
 
 def main(options: List) -> int:

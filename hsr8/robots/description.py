@@ -314,7 +314,7 @@ def checked(data: dict[str, Any], source: str, text: str = "") -> RobotDescripti
     Args:
         data: keys and values.
         source: file, for messages.
-        text: of the file, for the lines of the keys.
+        text: text of the file, for the lines of the keys.
 
     Raises:
         ModelError: a key is wrong; the message begins with `source` and lists every mistake.

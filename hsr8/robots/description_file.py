@@ -16,7 +16,7 @@ def with_calibration(text: str, calibration: Calibration) -> str:
     """Return the text of a description with a table ``[calibration]``.
 
     Args:
-        text: of the description, valid.
+        text: text of the description, valid.
         calibration: replaces the present one, if any.
     """
     values = calibration.model_dump()
@@ -40,7 +40,7 @@ def moved(text: str, source: Path, target: Path) -> str:
     """Return the text of a description for another folder: paths next to it become absolute.
 
     Args:
-        text: of the description, valid.
+        text: text of the description, valid.
         source: folder of the description.
         target: folder of the copy.
     """
@@ -63,9 +63,9 @@ def description_text(inspection: Inspection, file: Path, command: str) -> str:
     """Return the text of a guessed description; comments have the reason of each guess.
 
     Args:
-        inspection: of a model, with a description.
-        file: to be written, next to which the model may be.
-        command: that guessed.
+        inspection: inspection of a model, with a description.
+        file: file to be written, next to which the model may be.
+        command: command line that guessed the roles.
     """
     keys = inspection.require_description().model_dump(mode="json", exclude_defaults=True)
     model, folder = inspection.model.resolve(), file.resolve().parent

@@ -72,7 +72,7 @@ def find_mesh(uri: str, urdf: Path, packages: Mapping[str, Path]) -> Path | None
     without a scheme as they are.
 
     Args:
-        uri: of the mesh.
+        uri: address of the mesh.
         urdf: file that names it.
         packages: known folders.
 
@@ -98,7 +98,7 @@ def files_of(
     Args:
         model: MJCF or URDF file.
         packages: folders of the packages that a URDF file names.
-        options: of the compiler in the file that includes this one.
+        options: options of the compiler in the file that includes this one.
     """
     yield model
     try:

@@ -42,9 +42,9 @@ class CameraView:
     """Camera of a model.
 
     Attributes:
-        name: of the camera.
+        name: name of the camera.
         group: index of the joint that moves it, -1 for the base.
-        direction: of its optical axis in the root (3,).
+        direction: direction of its optical axis in the root (3,).
     """
 
     name: str
@@ -74,7 +74,7 @@ class Guess:
         shoulders: left and right pitch joint.
         camera: name.
         posture: angles that let sideways arms hang down [rad].
-        findings: for the user, one per role.
+        findings: findings for the user, one per role.
     """
 
     base: str
@@ -104,8 +104,8 @@ def guess_roles(skeleton: Skeleton, cameras: Sequence[CameraView] = ()) -> Guess
     """Guess the roles of a robot at zero angles.
 
     Args:
-        skeleton: in the frame of its root, whose directions are arbitrary.
-        cameras: of the model.
+        skeleton: skeleton in the frame of its root, whose directions are arbitrary.
+        cameras: cameras of the model.
     """
     stance = find_stance(skeleton)
     if stance is None:

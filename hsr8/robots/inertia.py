@@ -32,8 +32,8 @@ def complete_inertias(
     moves without a mass receives a negligible one.
 
     Args:
-        spec: changed in place.
-        places: of the bodies without joints.
+        spec: specification, changed in place.
+        places: places of the bodies without joints.
         source: its file.
         repair: whether impossible inertias are replaced by that of a ball of equal mass.
 

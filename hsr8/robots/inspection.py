@@ -37,10 +37,10 @@ class Inspection:
 
     Attributes:
         model: MJCF or URDF file.
-        file: of the description, or the model without one.
+        file: file of the description, or the model without one.
         description: stated or guessed; None where no feet were found.
         findings: guesses, one per role.
-        notes: on the model file, a line each.
+        notes: notes on the model file, a line each.
         stated: whether the description exists.
     """
 

@@ -21,8 +21,8 @@ class RepairableError(ModelError):
     """Fault of a model that a key of the description repairs.
 
     Args:
-        message: with the remedy.
-        keys: of the description, that repair it.
+        message: message with the remedy.
+        keys: keys of the description, that repair it.
     """
 
     def __init__(self, message: str, **keys: Any) -> None:
@@ -35,7 +35,7 @@ def reading_keys(file: Path) -> Iterator[None]:
     """Context in which mistakes in keys receive the name of their file.
 
     Args:
-        file: of the description, or the model of a guessed one.
+        file: file of the description, or the model of a guessed one.
 
     Raises:
         ModelError: a key is wrong.
@@ -71,7 +71,7 @@ def joint_error(
     Args:
         joint: its name.
         key: `range` or `effort`.
-        description: of the robot.
+        description: description of the robot.
         source: model file.
         reason: value and expected value.
     """
@@ -86,11 +86,11 @@ def require_name(
     """Require that a key names a part of the model.
 
     Args:
-        key: of the description.
-        kind: of the part, such as ``body``.
+        key: key of the description.
+        kind: kind of the part, such as ``body``.
         name: value of the key.
-        names: of all parts of this kind.
-        owner: of these parts, for the message.
+        names: names of all parts of this kind.
+        owner: owner of these parts, for the message.
 
     Raises:
         KeyMistake: it has no such part.

@@ -44,8 +44,8 @@ class Stance:
     """Robot on its legs.
 
     Attributes:
-        skeleton: with y to the left and z up; x points forward or backward.
-        rotation: of the frame of the root to that of `skeleton` (3, 3).
+        skeleton: skeleton with y to the left and z up; x points forward or backward.
+        rotation: rotation of the frame of the root to that of `skeleton` (3, 3).
         legs: chains that end lowest.
         limbs: all of them, `legs` included.
     """
@@ -129,7 +129,7 @@ def foot_joint(skeleton: Skeleton, leg: Sequence[int]) -> int:
     Three of the six joints up to it pitch: hip, knee and ankle, with thigh and shank between.
 
     Args:
-        skeleton: with y to the left.
+        skeleton: skeleton with y to the left.
         leg: joints.
     """
     best, longest = len(leg) - 1, 0.0
@@ -151,7 +151,7 @@ def bent(
     """Return the angles of bent legs by joint [rad].
 
     Args:
-        skeleton: with y to the left.
+        skeleton: skeleton with y to the left.
         legs: six joints of each leg, of which three pitch.
         zero: angles of straight legs, where not zero [rad].
     """

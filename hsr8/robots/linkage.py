@@ -56,7 +56,7 @@ def drive_serially(
 
     Args:
         prepared: its specification is changed.
-        description: of the robot.
+        description: description of the robot.
         speed: maximum speed by joint, also of cranks [rad/s].
 
     Returns:
@@ -181,9 +181,9 @@ class _Drive:
         """Return the drive of a leg joint.
 
         Args:
-            model: with rods.
-            closure: of its loops.
-            index: of the joint in the transmission.
+            model: model with its rods.
+            closure: closure of its loops.
+            index: index of the joint in the transmission.
             joint: its name.
             speed: maximum speed by joint [rad/s].
         """

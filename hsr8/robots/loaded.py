@@ -45,18 +45,18 @@ class LoadedRobot:
     """Robot that the simulator can place in a world.
 
     Attributes:
-        name: of its description.
+        name: name of its description.
         file: its model.
-        description: of its parts.
-        roles: of its parts.
+        description: description of its parts.
+        roles: roles of its parts.
         spec: MuJoCo model in normal form; copy it before a change.
         model: kinematics and dynamics, in the ready posture.
-        parameters: of walking, derived from the model.
+        parameters: parameters of walking, derived from the model.
         arms: centres (n, 3) [m] and radii (n,) [m] of spheres around each arm, in the robot frame.
         has_meshes: whether meshes show its shapes.
-        radius: of the walking robot seen from above [m].
+        radius: radius of the walking robot seen from above [m].
         held: angles of the joints that walking does not move [rad].
-        height: of the base above the floor in the ready posture [m].
+        height: height of the base above the floor in the ready posture [m].
         notes: derived facts, a line each.
     """
 
@@ -90,7 +90,7 @@ class RawRobot:
     Attributes:
         source: model file, which begins the messages about it.
         prepared: model; copy its specification before a change.
-        model: compiled.
+        model: compiled model.
         posture: angles of the description, its SRDF file or keyframe [rad].
         speed: maximum speed of the joints that state one [rad/s].
         notes: derived facts, a line each.
@@ -126,8 +126,8 @@ def build_robot(
     """Return the robot of a description.
 
     Args:
-        description: of the robot.
-        file: of the description, or the model of a guessed one; relative paths begin at its folder.
+        description: description of the robot.
+        file: description, or the model of a guessed one; relative paths begin at its folder.
         raw: its model, if it has been read.
 
     Raises:
@@ -142,8 +142,8 @@ def read_robot(description: RobotDescription, file: Path) -> RawRobot:
     """Read the model of a description.
 
     Args:
-        description: of the robot.
-        file: of the description; relative paths begin at its folder.
+        description: description of the robot.
+        file: file of the description; relative paths begin at its folder.
 
     Raises:
         ModelError: a key is wrong, or the model file is missing or wrong.

@@ -25,10 +25,10 @@ class _Wheel:
     """Wheel with models, found without an import.
 
     Attributes:
-        label: of the robots in it, for people.
-        requirement: for pip.
-        package: that it installs.
-        folders: with the models, relative to the package; the first that exists counts.
+        label: label of the robots in it, for people.
+        requirement: requirement for pip.
+        package: package that it installs.
+        folders: folders with the models, relative to the package; the first that exists counts.
         models: first folders of the models in it; those of the Menagerie are all others.
     """
 

@@ -88,11 +88,11 @@ def normalise(
     """Bring a robot into normal form.
 
     Args:
-        spec: changed in place.
+        spec: specification, changed in place.
         zero: the robot in the zero posture, compiled from `spec`.
-        roles: of the robot's parts.
-        soles: of both feet.
-        description: of the robot.
+        roles: roles of the robot's parts.
+        soles: soles of both feet.
+        description: description of the robot.
         prepared: its model.
     """
     notes = list(dropped_options(spec))

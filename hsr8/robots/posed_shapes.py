@@ -34,8 +34,8 @@ def arm_spheres(robot: Posed, roles: Roles, *, has_meshes: bool) -> list[tuple[A
     """Return centres (n, 3) [m] and radii (n,) [m] of spheres around each arm.
 
     Args:
-        robot: in the ready posture, on the floor.
-        roles: of the robot's parts.
+        robot: robot in the ready posture, on the floor.
+        roles: roles of the robot's parts.
         has_meshes: whether meshes show its shapes.
     """
     model, data = robot.model, robot.data
@@ -56,7 +56,7 @@ def ground_shadow(arms: Sequence[tuple[Array, Array]], height: float) -> Array:
 
     Args:
         arms: see `arm_spheres`; the camera is above their origin.
-        height: of the camera [m].
+        height: height of the camera [m].
     """
     shadow = np.zeros(BEARINGS)
     bearings = np.arange(BEARINGS) * 2.0 * pi / BEARINGS
@@ -106,7 +106,7 @@ def robot_radius(robot: Posed) -> float:
     """Return the radius of the upright cylinder around a standing robot's colliding shapes [m].
 
     Args:
-        robot: in the ready posture, the base above the origin.
+        robot: robot in the ready posture, the base above the origin.
     """
     model, data, radius = robot.model, robot.data, 0.0
     for geom in range(model.ngeom):
@@ -122,7 +122,7 @@ def robot_height(robot: Posed) -> float:
     """Return the height of a standing robot's highest shape above the floor [m].
 
     Args:
-        robot: in the ready posture, on the floor.
+        robot: robot in the ready posture, on the floor.
     """
     model, data = robot.model, robot.data
     up = data.geom_xmat[:, 6:]  # the vertical in the axes of each geom

@@ -24,8 +24,8 @@ def stated_posture(
     """Angles of the posture: those of the group state or keyframe, changed by `posture` [rad].
 
     Args:
-        description: of the robot.
-        folder: of the description file, to which the SRDF file is relative.
+        description: description of the robot.
+        folder: folder of the description file, to which the SRDF file is relative.
         spec: MuJoCo model as read from its file.
 
     Raises:
@@ -82,10 +82,10 @@ def completed_posture(
     """Return the posture of the joints that neither walk nor look, within their limits, and notes.
 
     Args:
-        model: compiled.
-        description: of the robot; the angles of its key `posture` remain.
-        angles: of `stated_posture` [rad].
-        roles: of the robot's parts.
+        model: compiled model.
+        description: description of the robot; the angles of its key `posture` remain.
+        angles: angles of `stated_posture` [rad].
+        roles: roles of the robot's parts.
     """
     names = {model.joint(j).name for j in np.flatnonzero(model.jnt_type == HINGE)}
     posture, notes = {name: angle for name, angle in angles.items() if name in names}, list[str]()
@@ -108,7 +108,7 @@ def check_joint_names(description: RobotDescription, names: Sequence[str]) -> No
     """Check that every joint of a description is one of the model.
 
     Args:
-        description: of the robot.
+        description: description of the robot.
         names: joints of the model.
 
     Raises:

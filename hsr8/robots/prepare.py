@@ -36,8 +36,8 @@ class Place:
     """Link of a file in a prepared model.
 
     Attributes:
-        body: that it is a part of.
-        pose: of its origin in that body (4, 4) [m].
+        body: body that it is a part of.
+        pose: pose of its origin in that body (4, 4) [m].
     """
 
     body: str
@@ -52,7 +52,7 @@ class Prepared:
         spec: MuJoCo model.
         root: body with the free joint.
         base: link of the base, a part of `root` or fixed to it.
-        places: of the links that are a part of another body, by name.
+        places: places of the links that are a part of another body, by name.
         held: reason of each joint that is held.
         held_above: those above each foot.
         notes: derived facts, a line each.
@@ -203,7 +203,7 @@ def rebase(spec: mujoco.MjSpec, root: str, base: BaseFrame) -> None:
     """Move the frame of the body with the free joint to that of the base.
 
     Args:
-        spec: changed in place; its inertias are explicit.
+        spec: specification, changed in place; its inertias are explicit.
         root: body with the free joint.
         base: frame of the base.
     """

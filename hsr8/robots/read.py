@@ -24,7 +24,7 @@ class ModelFile:
         file: MJCF or URDF file.
         spec: MuJoCo model.
         speed: maximum speed of the joints that state one [rad/s].
-        notes: on parts that are left out, a line each.
+        notes: notes on parts that are left out, a line each.
     """
 
     file: Path
@@ -66,7 +66,7 @@ def drop_drawn_meshes(spec: mujoco.MjSpec, kept: Collection[str]) -> None:
     """Remove meshes that are only drawn, which take most of the time of compilation.
 
     Args:
-        spec: changed in place.
+        spec: specification, changed in place.
         kept: bodies whose meshes remain, also on those fixed to them.
 
     Raises:

@@ -41,9 +41,9 @@ def check_roles(
     """Refuse a robot that cannot walk.
 
     Args:
-        model: compiled.
-        roles: of its parts.
-        description: of the robot.
+        model: compiled model.
+        roles: roles of its parts.
+        description: description of the robot.
         prepared: its model.
         source: model file, which begins the messages about its elements.
 

@@ -27,7 +27,7 @@ class Roles:
 
     Attributes:
         base: body with the free joint.
-        frame: of the base, in that body.
+        frame: frame of the base, in that body.
         feet: bodies of the left and the right foot.
         legs: six hinge joints of the left and the right leg, hip first.
         head: pan and tilt joint, if the robot has a movable head.
@@ -48,8 +48,8 @@ def find_roles(model: mujoco.MjModel, description: RobotDescription, prepared: P
     """Return the roles that a description states or that follow from the kinematic tree.
 
     Args:
-        model: compiled from `prepared`.
-        description: of the robot.
+        model: model compiled from `prepared`.
+        description: description of the robot.
         prepared: model, in which some links are parts of a body.
 
     Raises:

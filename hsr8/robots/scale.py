@@ -32,10 +32,10 @@ class RobotScale:
     """Ratios of a robot to HSR-VIII.
 
     Attributes:
-        length: of the legs [1].
-        speed: of the forward speed limit of navigation [1].
-        turn: of the turn rate limit of navigation [1].
-        weight: [1].
+        length: ratio of the lengths of the legs [1].
+        speed: ratio of the forward speed limits of navigation [1].
+        turn: ratio of the turn rate limits of navigation [1].
+        weight: ratio of the weights [1].
     """
 
     length: float = 1.0
@@ -70,7 +70,7 @@ class RobotDefaults:
     """Defaults of a scenario that depend on the robot.
 
     Attributes:
-        scale: of all other defaults and of the built-in scenarios.
+        scale: scale of all other defaults and of the built-in scenarios.
         table: keys of a scenario in nested tables, with their defaults.
     """
 

@@ -30,8 +30,8 @@ def leg_stiffness(mass: float, com_height: float, compliance: float) -> float:
     """Stiffness of a leg servo: weight times height of the CoM over the relative compliance.
 
     Args:
-        mass: of the robot [kg].
-        com_height: above the soles with straight legs [m].
+        mass: mass of the robot [kg].
+        com_height: height of the centre of mass above the soles with straight legs [m].
         compliance: lean of the robot per lean of its legs [rad/rad].
 
     Returns:
@@ -47,9 +47,9 @@ def armature_floor(stiffness: float, inertia: float, timestep: float) -> float:
     floor keeps a factor of sixteen.
 
     Args:
-        stiffness: of the servo [N m/rad].
-        inertia: that the joint moves, with the base held [kg m²].
-        timestep: of the physics [s].
+        stiffness: stiffness of the servo [N m/rad].
+        inertia: inertia that the joint moves, with the base held [kg m²].
+        timestep: time step of the physics [s].
 
     Returns:
         [kg m²].
@@ -61,8 +61,8 @@ def leg_damping(stiffness: float, inertia: float, lag: float) -> float:
     """Damping of a leg servo: critical, unless the servo then lags by more than `lag` [s].
 
     Args:
-        stiffness: of the servo [N m/rad].
-        inertia: that the joint moves, armature included [kg m²].
+        stiffness: stiffness of the servo [N m/rad].
+        inertia: inertia that the joint moves, armature included [kg m²].
         lag: maximum ratio of damping to stiffness [s].
 
     Returns:
@@ -113,10 +113,10 @@ def choose_servos(
     """Add servos by rule where the description asks for it or the legs have none; return notes.
 
     Args:
-        spec: changed in place.
+        spec: specification, changed in place.
         zero: the robot in the zero posture, compiled from `spec`.
-        roles: of the robot's parts.
-        description: of the robot.
+        roles: roles of the robot's parts.
+        description: description of the robot.
         posture: angles of all joints with straight legs [rad].
         speed: maximum speed by joint [rad/s].
         sole_height: height of the soles above the base, with straight legs; negative [m].
@@ -177,8 +177,8 @@ def _add_servos(
 
     Args:
         spec: model with a free base, changed in place.
-        straight: compiled from `spec`, with straight legs.
-        roles: of the robot's parts.
+        straight: model compiled from `spec`, with straight legs.
+        roles: roles of the robot's parts.
         sole_height: height of the soles above the base; negative [m].
         rule: its numbers.
         effort: maximum torque by joint, where one is known [N m].

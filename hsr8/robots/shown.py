@@ -104,7 +104,7 @@ def _simplify(spec: mujoco.MjSpec, cell: float) -> None:
     """Simplify the drawn meshes of a robot.
 
     Args:
-        spec: changed.
+        spec: specification, changed in place.
         cell: side of the cells, larger for a robot of many triangles [m].
     """
     model = spec.copy().compile()

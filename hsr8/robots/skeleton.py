@@ -64,8 +64,8 @@ class Posed:
 
         Args:
             model: compiled robot, its free joint first.
-            angles: of joints; zero by default [rad].
-            height: of the base [m].
+            angles: angles of joints; zero by default [rad].
+            height: height of the base [m].
             base: frame of the base.
         """
         data = mujoco.MjData(model)
@@ -94,9 +94,9 @@ class Skeleton:
         axes: unit vectors in the root (n, 3).
         anchors: points on the axes in the root (n, 3) [m].
         ranges: lower and upper limit, infinite without limits (n, 2) [rad].
-        masses: of each group (n,) [kg].
+        masses: masses of each group (n,) [kg].
         coms: centre of mass of each group in the root (n, 3) [m]; the anchor without mass.
-        total_mass: of all groups and of the root [kg].
+        total_mass: mass of all groups and of the root [kg].
         group: index of the group of each body, by name.
         others: names of joints that are neither hinges nor the free joint.
     """
@@ -168,7 +168,7 @@ def root_of(model: mujoco.MjModel) -> int:
     """Return the body of the world with most joints: the root of the robot in a model.
 
     Args:
-        model: compiled, with at least one body.
+        model: compiled model, with at least one body.
     """
     joints = np.bincount(model.body_rootid[model.jnt_bodyid], minlength=model.nbody)
     return int(joints[1:].argmax()) + 1 if model.nbody > 1 else 0
@@ -180,9 +180,9 @@ def skeleton_of(
     """Return the skeleton of the bodies at and below `root`.
 
     Args:
-        model: compiled.
+        model: compiled model.
         root: id of the body.
-        angles: of joints, by name; default 0 [rad].
+        angles: angles of joints, by name; default 0 [rad].
     """
     data = mujoco.MjData(model)
     for j in range(model.njnt):
@@ -252,8 +252,8 @@ class MirroredPair:
 
     Attributes:
         left, right: indices of the joints.
-        distance: of the axis of the right joint from the mirrored anchor of the left one [m].
-        angle: between the axes, without their direction [rad].
+        distance: distance of the right axis from the mirrored anchor of the left one [m].
+        angle: angle between the axes, without their direction [rad].
         range: maximum difference of the limits [rad].
         reversed: whether an equal angle of both turns them in opposite directions of the image.
     """
@@ -274,7 +274,7 @@ def mirrored_pairs(
     An anchor may be anywhere on its axis, and mirrored axes may point either way.
 
     Args:
-        skeleton: with x forward, y to the left and z up.
+        skeleton: skeleton with x forward, y to the left and z up.
         left: indices of joints.
         right: indices of their counterparts.
         plane: y of the plane of symmetry [m].

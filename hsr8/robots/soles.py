@@ -39,7 +39,7 @@ class Rectangle:
 
     Attributes:
         front, back, left, right: edges along x and y [m].
-        height: of the sole, z [m].
+        height: height of the sole, z [m].
     """
 
     front: float
@@ -70,8 +70,8 @@ def soles_of(
 
     Args:
         zero: the robot in the zero posture.
-        roles: of the robot's parts.
-        description: of the robot.
+        roles: roles of the robot's parts.
+        description: description of the robot.
         prepared: its model.
 
     Raises:
@@ -148,7 +148,7 @@ def sole_tilt(points: Array) -> float | None:
     The sole is the largest face of the convex hull that faces the floor.
 
     Args:
-        points: of the foot's shapes (n, 3) [m].
+        points: points of the foot's shapes (n, 3) [m].
 
     Returns:
         None where the foot has no such face.

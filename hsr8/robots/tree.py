@@ -58,8 +58,8 @@ def tree_of(
     """Return the tree of a robot.
 
     Args:
-        model: compiled, with the sites of `parts`.
-        roles: of its parts.
+        model: compiled model, with the sites of `parts`.
+        roles: roles of its parts.
         parts: added by the normal form.
         posture: joint angles with straight legs; zero by default [rad].
         effort: maximum torque by joint, instead of that of the model [N m].

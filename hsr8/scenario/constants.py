@@ -10,8 +10,8 @@ from typing import Any
 
 from hsr8.mistakes import Mistake
 from hsr8.robots.scale import DEFAULT_ROBOT
-from hsr8.scenario.presets import PROFILES, followers, under
 from hsr8.scenario.reference import LIBRARIES, parameters, public_keys
+from hsr8.scenario.scaling import PROFILES, followers, under
 from hsr8.scenario.schema import Scenario
 from hsr8.suggestion import suggestion
 

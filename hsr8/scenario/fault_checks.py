@@ -7,7 +7,6 @@ from hsr8.keys import Path
 from hsr8.mistakes import Mistake
 from hsr8.robots.description import TRUNK
 from hsr8.robots.scale import DEFAULT_ROBOT
-from hsr8.scenario.crowd import n_placed
 from hsr8.scenario.fault import (
     JOINT_GROUPS,
     Bump,
@@ -22,6 +21,7 @@ from hsr8.scenario.fault import (
 )
 from hsr8.scenario.schema import Scenario
 from hsr8.scenario.section import CONTROL_PERIOD_MS
+from hsr8.scenario.track import n_placed
 from hsr8.suggestion import suggestion
 from walking.body.joints import JOINT_NAMES
 

@@ -17,8 +17,8 @@ from hsr8.files.regular import read_text
 from hsr8.files.toml import MAX_SIZE, TomlError, parse_toml
 from hsr8.keys import Path
 from hsr8.scenario.plugin import located_plugins
-from hsr8.scenario.presets import merged
 from hsr8.scenario.robot import located
+from hsr8.scenario.scaling import merged
 from hsr8.scenario.track_file import located_tracks
 from hsr8.suggestion import suggestion
 

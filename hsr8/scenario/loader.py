@@ -27,9 +27,16 @@ from hsr8.scenario.layers import (
     read_layers,
 )
 from hsr8.scenario.plugin import KINDS
-from hsr8.scenario.presets import expand_presets, followers, merged, under
 from hsr8.scenario.reference import FILE_KEYS
-from hsr8.scenario.scaling import is_complete, scaled, with_scaled_defaults
+from hsr8.scenario.scaling import (
+    expand_presets,
+    followers,
+    is_complete,
+    merged,
+    scaled,
+    under,
+    with_scaled_defaults,
+)
 from hsr8.scenario.schema import Scenario
 from hsr8.scenario.track_file import legible, read_tracks
 
@@ -84,7 +91,7 @@ def _note_untrusted(scenario: Scenario, draft: "_Draft", trust: bool | None) -> 
     """Note in the scenario which of its plugins no user named or trusts, and where they are named.
 
     Args:
-        scenario: to note it in.
+        scenario: scenario that receives the note.
         draft: tables of the scenario.
         trust: see `load_scenario`.
     """

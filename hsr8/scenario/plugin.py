@@ -49,8 +49,8 @@ def located_plugins(table: Mapping[str, Any], folder: Path) -> dict[str, Any]:
     """Return a scenario's tables with the absolute paths of the plugins next to it.
 
     Args:
-        table: with `plugin` or without.
-        folder: in which a relative path begins; else it begins in the working folder.
+        table: table with `plugin` or without.
+        folder: folder in which a relative path begins; else it begins in the working folder.
     """
     plugin = table.get("plugin")
     if not isinstance(plugin, dict):

@@ -58,8 +58,8 @@ def located(table: Mapping[str, Any], folder: Path) -> dict[str, Any]:
     """Return a scenario's tables with the absolute path of the robot's file, if it exists.
 
     Args:
-        table: with `robot.model` or without.
-        folder: in which a relative path begins; else it begins in the working folder.
+        table: table with `robot.model` or without.
+        folder: folder in which a relative path begins; else it begins in the working folder.
     """
     robot = table.get("robot")
     if not isinstance(robot, dict) or not str(robot.get("model")).endswith(SUFFIX):

@@ -1,22 +1,92 @@
-"""Scaling of a scenario's tables to another robot, by the units of the keys.
+"""Defaults of a scenario's tables: presets, and quantities scaled to the robot by their units.
 
 The built-in scenarios and all defaults are those for HSR-VIII. A user's values are literal.
 """
 
 from collections.abc import Callable, Mapping
-from dataclasses import MISSING, fields, is_dataclass
+from dataclasses import MISSING, asdict, fields, is_dataclass
 from typing import Any, get_args
 
 from pydantic_core import PydanticUndefined
 
 from hsr8.keys import chosen, entries, hints
-from hsr8.scenario.presets import PROFILES
 from hsr8.scenario.schema import Navigation, Scenario
 from hsr8.scenario.section import Section
+from hsr8.scenario.sensors import IDEAL
+from navigation.parameters.navigation import NavigationParameters
+from vision.parameters import VisionParameters
 
+Table = dict[str, Any]
 Factor = Callable[[str], float]
 """Ratio of the quantities in some unit, see `hsr8.robots.scale.RobotScale.factor`."""
-Table = dict[str, Any]
+
+KINDS = ("kind", "motion")  # keys that determine the other keys of their table
+PROFILES = {"extended": NavigationParameters.extended, "paper": NavigationParameters.paper}
+
+
+def expand_presets(data: Mapping[str, Any]) -> Table:
+    """Return a scenario's tables with the values of its profile and camera.
+
+    Given values take precedence. Malformed tables remain, for validation to report them.
+    """
+    expanded = dict(data)
+    navigation, camera = data.get("navigation"), data.get("camera")
+    if isinstance(navigation, dict):
+        profile = navigation.get("profile")
+        if isinstance(profile, str) and profile in PROFILES:
+            expanded["navigation"] = under(navigation, asdict(PROFILES[profile]()))
+    if isinstance(camera, dict) and camera.get("preset") == "ideal":
+        return under(expanded, IDEAL)
+    return expanded
+
+
+def followers(data: Mapping[str, Any]) -> Table:
+    """Return the defaults that follow given keys of a scenario's tables.
+
+    Navigation takes the radius of the robot, vision the sizes of the obstacles and the beacons.
+    """
+    defaults: Table = {}
+    radius = _number(data, "robot", "radius")
+    if radius is not None:
+        defaults["navigation"] = {"univector": {"s_robot": radius}}
+    scale = _number(data, "world", "scale")
+    if scale is not None:
+        vision = VisionParameters()
+        sizes = ("obstacle_height", "beacon_height", "beacon_radius")
+        defaults["vision"] = {size: scale * getattr(vision, size) for size in sizes}
+    return defaults
+
+
+def _number(data: Mapping[str, Any], section: str, key: str) -> float | None:
+    """Value of a key; None without a number."""
+    table = data.get(section)
+    value = table.get(key) if isinstance(table, dict) else None
+    return None if isinstance(value, bool) or not isinstance(value, int | float) else value
+
+
+def under(given: Table, defaults: Table) -> Table:
+    """Return `given` with `defaults` for the keys that are missing, table by table."""
+    merged = {**defaults, **given}
+    for key, default in defaults.items():
+        if isinstance(default, dict) and isinstance(given.get(key), dict):
+            merged[key] = under(given[key], default)
+    return merged
+
+
+def merged(base: Table, over: Table) -> Table:
+    """Return `over` put over `base`, table by table."""
+    # Another kind of mission, fault or mover has other keys: the old ones are dropped.
+    changed = any(key in over and over[key] != base.get(key, over[key]) for key in KINDS)
+    result = {} if changed else dict(base)
+    if over.get("file") != base.get("file") and "file" in over:
+        result.pop("data", None)  # of another track file
+    for key, value in over.items():
+        old = result.get(key)
+        if isinstance(value, dict) and isinstance(old, dict):
+            result[key] = merged(old, value)
+        else:
+            result[key] = value
+    return result
 
 
 def scaled(tables: Mapping[str, Any], factor: Factor) -> Table:

@@ -8,13 +8,12 @@ from annotated_types import Interval, Len, doc
 from pydantic import Field
 
 from hsr8.errors import ScenarioError
-from hsr8.scenario.camera import Camera
 from hsr8.scenario.fault import Disturbance, Fault
 from hsr8.scenario.mission import Command, Mission
 from hsr8.scenario.plugin import Plugin
 from hsr8.scenario.robot import NOMINAL_SPEED, Robot
 from hsr8.scenario.section import PeriodMs, Section
-from hsr8.scenario.sensor_noise import SensorNoise
+from hsr8.scenario.sensors import Camera, SensorNoise
 from hsr8.scenario.world import World
 from navigation.decision import SpeedLimits
 from navigation.parameters.belief import BeliefParameters

@@ -7,10 +7,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from hsr8.mistakes import Mistake
-from hsr8.scenario.crowd import Recording, recordings
 from hsr8.scenario.schema import Scenario
 from hsr8.scenario.section import Point
-from hsr8.scenario.track import Track, TrackTable
+from hsr8.scenario.track import Recording, Track, TrackTable, recordings
 from hsr8.scenario.world import TrackMover
 
 Array = NDArray[np.float64]

@@ -59,8 +59,8 @@ def located_tracks(table: Mapping[str, Any], folder: Path) -> Table:
     """Return a scenario's tables with the absolute paths of the track files that exist.
 
     Args:
-        table: with `world.mover` or without.
-        folder: in which a relative path begins; else it begins in the working folder.
+        table: table with `world.mover` or without.
+        folder: folder in which a relative path begins; else it begins in the working folder.
     """
     world = table.get("world")
     if not isinstance(world, dict) or not isinstance(world.get("mover"), list):

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from hsr8.robots.loaded import LoadedRobot
 from hsr8.robots.normal_form import HEAD_CAMERA
-from hsr8.scenario.sensor_noise import SensorNoise
+from hsr8.scenario.sensors import SensorNoise
 from hsr8.world.body.physics import PhysicsBody
 from hsr8.world.body.pushes import ScheduledPush
 from hsr8.world.field.layout import Layout

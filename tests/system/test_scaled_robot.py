@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 from scaled_model import scaled_robot
 
-from hsr8.scenario.sensor_noise import SensorNoise
+from hsr8.scenario.sensors import SensorNoise
 from hsr8.world.body.physics import PhysicsBody
 from hsr8.world.field.layout import Layout
 from hsr8.world.model.assembly import Optics, assemble

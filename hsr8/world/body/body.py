@@ -58,7 +58,7 @@ class Surroundings:
 
     Args:
         model: compiled world.
-        robot: in it.
+        robot: robot in it.
         layout: obstacles and beacons.
 
     Attributes:

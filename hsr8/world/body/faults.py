@@ -36,8 +36,8 @@ class SensorFaults:
     """Applies sensor faults in the order of the scenario.
 
     Args:
-        faults: of the scenario; faults of other parts are ignored.
-        names: of the robot's joints.
+        faults: faults of the scenario; faults of other parts are ignored.
+        names: names of the robot's joints.
     """
 
     def __init__(self, faults: Sequence[Fault], names: Sequence[str]) -> None:
@@ -97,8 +97,8 @@ class ServoFaults:
     """Applies servo faults in the order of the scenario.
 
     Args:
-        faults: of the scenario; faults of other parts are ignored.
-        names: of the robot's joints.
+        faults: faults of the scenario; faults of other parts are ignored.
+        names: names of the robot's joints.
     """
 
     def __init__(self, faults: Sequence[Fault], names: Sequence[str]) -> None:
@@ -138,8 +138,8 @@ class WorldFaults:
     Args:
         model: compiled world.
         index: addresses in it.
-        faults: of the scenario; faults of other parts are ignored.
-        scale: of the world [1].
+        faults: faults of the scenario; faults of other parts are ignored.
+        scale: scale of the world [1].
     """
 
     def __init__(

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from compilation import compiled
 from hsr8.robots.loaded import LoadedRobot
-from hsr8.scenario.sensor_noise import SensorNoise
+from hsr8.scenario.sensors import SensorNoise
 from hsr8.world.body.body import Surroundings
 from hsr8.world.body.physics import has_fallen, place_robot
 from hsr8.world.body.sensors import SensorSuite
@@ -46,7 +46,7 @@ class KinematicBody:
 
     Args:
         model: compiled world.
-        robot: in it.
+        robot: robot in it.
         layout: obstacles, beacons and start pose.
         noise: sensor noise.
         rng: generator of sensors and slip.
@@ -188,8 +188,8 @@ class KinematicBody:
         foot is in contact, too, it carries the robot: the trunk does not tip over the tilted one.
 
         Args:
-            tilt: of the planted sole against that of the other one, see `base_pose` [rad].
-            height: of the other sole above the planted one, see `base_pose` [m].
+            tilt: tilt of the planted sole against that of the other one, see `base_pose` [rad].
+            height: height of the other sole above the planted one, see `base_pose` [m].
         """
         if tilt > TILTED:
             return height < self._lifted
@@ -225,8 +225,8 @@ def base_pose(
     """Set the base pose with which the planted foot lies flat on the floor at its anchor.
 
     Args:
-        positions: of all bodies in the base frame (n, 3) [m].
-        attitudes: of all bodies in the base frame, quaternions (n, 4).
+        positions: positions of all bodies in the base frame (n, 3) [m].
+        attitudes: attitudes of all bodies in the base frame, quaternions (n, 4).
         feet: body indices of the left and the right foot (2,).
         soles: pose of the sole frame in each foot (2, 7).
         stance: planted foot, 0 or 1.

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from hsr8.errors import SimulationDiverged
 from hsr8.robots.loaded import LoadedRobot
 from hsr8.scenario.fault import Fault
-from hsr8.scenario.sensor_noise import SensorNoise
+from hsr8.scenario.sensors import SensorNoise
 from hsr8.world.body.body import Surroundings
 from hsr8.world.body.faults import WorldFaults
 from hsr8.world.body.pushes import Pusher, ScheduledPush
@@ -61,12 +61,12 @@ class PhysicsBody:
 
     Args:
         model: compiled world.
-        robot: in it.
+        robot: robot in it.
         layout: obstacles, beacons and start pose.
         noise: sensor noise.
         rng: generator of the sensors.
         pushes: sorted by start.
-        faults: of the scenario.
+        faults: faults of the scenario.
 
     Raises:
         ValueError: the control period is not a multiple of the physics step.

@@ -21,10 +21,10 @@ class ScheduledPush:
     Attributes:
         first: first tick.
         ticks: duration [ticks].
-        force: [N].
-        direction: from the heading of the robot at the start, counter-clockwise [rad].
+        force: force on the body in W (3,) [N].
+        direction: direction from the heading of the robot at the start, counter-clockwise [rad].
         body: name of the pushed body.
-        point: from the centre of mass of the body, along its axes [m].
+        point: point from the centre of mass of the body, along its axes [m].
     """
 
     first: int
@@ -46,10 +46,10 @@ def schedule(
 
     Args:
         disturbance: section of the scenario with random pushes.
-        duration: of the run [s].
+        duration: duration of the run [s].
         period: control tick [s].
         rng: draws the random pushes.
-        faults: of the scenario, possibly with pushes.
+        faults: faults of the scenario, possibly with pushes.
     """
     pushes = [_from_fault(fault, period) for fault in faults if isinstance(fault, Push)]
     drawn = disturbance.random

@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from compilation import compiled
-from hsr8.scenario.sensor_noise import SensorNoise
+from hsr8.scenario.sensors import SensorNoise
 from hsr8.world.model.index import ModelIndex
 from hsr8.world.rotation import product
 from walking.sensing import BodySensors

@@ -7,8 +7,8 @@ from math import ceil
 import numpy as np
 from numpy.typing import NDArray
 
-from hsr8.scenario.camera import Camera
 from hsr8.scenario.section import CONTROL_PERIOD_MS
+from hsr8.scenario.sensors import Camera
 from hsr8.world.camera.faults import CameraFaults
 from vision.detection import Detection
 from walking.value import value

@@ -6,7 +6,7 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-from hsr8.scenario.camera import CameraNoise
+from hsr8.scenario.sensors import CameraNoise
 from vision.color import COLOR_CLASSES
 
 Image = NDArray[np.uint8]

@@ -8,9 +8,9 @@ from typing import Self
 import numpy as np
 from numpy.typing import NDArray
 
-from hsr8.scenario.crowd import Recording
 from hsr8.scenario.mission import Course, Points, Tour
 from hsr8.scenario.schema import Scenario
+from hsr8.scenario.track import Recording
 from hsr8.scenario.world import Mover, TrackMover
 from hsr8.world.field.encounter import NominalWalk, course_to, passage_through
 from hsr8.world.field.lane import Lane, apart_at_all_times, distance, motion_law
@@ -33,15 +33,15 @@ class FairDistances:
     """Minimum distances.
 
     Attributes:
-        static_gap: between static obstacles [m].
-        start_to_static: from the start, a point [m].
-        start_to_mover: from the start, a point [m].
-        point_to_static: from via points and goal [m].
-        lane_to_static: between a mover and a static obstacle [m].
-        lane_to_lane: between two movers [m].
-        lane_to_goal: between a reversing mover and the goal, a point [m].
-        point_to_border: from the border to points that the robot must reach [m].
-        obstacle_to_border: from the border to obstacles [m].
+        static_gap: distance between static obstacles [m].
+        start_to_static: distance from the start, a point [m].
+        start_to_mover: distance from the start, a point [m].
+        point_to_static: distance from via points and goal [m].
+        lane_to_static: distance between a mover and a static obstacle [m].
+        lane_to_lane: distance between two movers [m].
+        lane_to_goal: distance between a reversing mover and the goal, a point [m].
+        point_to_border: distance from the border to points that the robot must reach [m].
+        obstacle_to_border: distance from the border to obstacles [m].
     """
 
     static_gap: float
@@ -91,7 +91,7 @@ class Attempt:
     """Draws one world.
 
     Args:
-        scenario: with sections world, mission and robot.
+        scenario: scenario with sections world, mission and robot.
         rng: draws everything.
 
     Attributes:

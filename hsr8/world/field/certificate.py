@@ -36,7 +36,7 @@ class Certificate:
         solvable: every point was reached.
         points_reached: number of points reached, in order.
         points: number of points.
-        time: of the arrival at the last point, or of the end of the search [s].
+        time: time of the arrival at the last point, or of the end of the search [s].
         path: time, x, y, heading (n, 4) [s, m, m, rad], linear in between; empty if unsolvable.
         work: cost of the search, as `MAX_WORK` limits it [cell].
     """
@@ -107,8 +107,8 @@ def min_clearance(layout: Layout, path: Array, radius: float) -> float:
 
     Args:
         layout: the world.
-        path: of a certificate.
-        radius: of the robot [m].
+        path: path of a certificate.
+        radius: radius of the robot [m].
     """
     times = np.arange(path[0, 0], path[-1, 0] + SAMPLE, SAMPLE)
     positions = np.stack([np.interp(times, path[:, 0], path[:, k]) for k in (1, 2)], axis=1)

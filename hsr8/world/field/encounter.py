@@ -16,7 +16,7 @@ class NominalWalk:
 
     Args:
         points: the start and the waypoints (n, 2), n >= 2 [m].
-        speed: [m/s].
+        speed: speed of the mover [m/s].
     """
 
     def __init__(self, points: Sequence[Point], speed: float) -> None:
@@ -47,9 +47,9 @@ def course_to(velocity: Point, speed: float, bearing: float) -> Point | None:
     |v_mover| = speed.
 
     Args:
-        velocity: of the robot [m/s].
-        speed: of the mover [m/s].
-        bearing: of the mover, from the direction of travel, counter-clockwise [rad].
+        velocity: velocity of the robot [m/s].
+        speed: speed of the mover [m/s].
+        bearing: bearing of the mover, from the direction of travel, counter-clockwise [rad].
 
     Returns:
         The velocity [m/s]; None if a mover of that speed cannot approach from there.
@@ -73,8 +73,8 @@ def passage_through(point: Point, velocity: Point, time: float, reach: Point) ->
 
     Args:
         point: position at `time` [m].
-        velocity: [m/s].
-        time: [s].
+        velocity: velocity of the mover [m/s].
+        time: time at `point` [s].
         reach: half sides of the box for its axis [m].
 
     Returns:

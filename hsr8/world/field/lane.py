@@ -7,8 +7,7 @@ from math import cos, inf, pi, radians, sin
 import numpy as np
 from numpy.typing import NDArray
 
-from hsr8.scenario.crowd import SPACING
-from hsr8.scenario.track import Track
+from hsr8.scenario.track import SPACING, Track
 from hsr8.scenario.world import CircleMover, LineMover, ShuttleMover
 from hsr8.world.field.layout import OBSTACLE_HEIGHT, Obstacle
 from hsr8.world.field.motion import (
@@ -59,11 +58,11 @@ class Lane:
         """Return the lane of a mover.
 
         Args:
-            motion: of the mover.
-            radius: of the mover [m].
-            color: of the mover.
-            scale: of the world [1].
-            time_scale: of the world [1].
+            motion: motion of the mover.
+            radius: radius of the mover [m].
+            color: color of the mover.
+            scale: scale of the world [1].
+            time_scale: time scale of the world [1].
         """
         height = OBSTACLE_HEIGHT * scale
         obstacle = Obstacle(motion.position(0.0), radius, height, color, motion)

@@ -35,7 +35,7 @@ class Move:
     """Move forward to a neighbour.
 
     Attributes:
-        direction: to the neighbour [cells].
+        direction: direction to the neighbour [cells].
         layers: duration [layers].
         edge: states in which the move can start (n, m).
     """

@@ -7,8 +7,8 @@ from math import hypot, inf
 import numpy as np
 from numpy.typing import NDArray
 
-from hsr8.scenario.crowd import AWAY
 from hsr8.scenario.fault import Bump, Fault, MoverAppears
+from hsr8.scenario.track import AWAY
 from hsr8.world.field.motion import Appearing, MotionLaw, Movers, Point
 
 Array = NDArray[np.float64]
@@ -27,8 +27,8 @@ class Obstacle:
 
     Attributes:
         position: axis in W, of a mover at time zero [m].
-        radius: [m].
-        height: [m].
+        radius: radius of the cylinder [m].
+        height: height of the cylinder [m].
         color: name of the colour class.
         motion: motion laws of a mover; None of a static obstacle.
     """
@@ -49,8 +49,8 @@ class Beacon:
         position: axis in W [m].
         top: colour of the upper half.
         bottom: colour of the lower half.
-        radius: [m].
-        height: [m].
+        radius: radius of the cylinder [m].
+        height: height of the cylinder [m].
         known: position on the robot's map, if it differs [m].
     """
 

@@ -8,8 +8,7 @@ from typing import Any, Protocol
 import numpy as np
 from numpy.typing import NDArray
 
-from hsr8.scenario.crowd import AWAY
-from hsr8.scenario.track import Track, TrackTable
+from hsr8.scenario.track import AWAY, Track, TrackTable
 
 Array = NDArray[np.float64]
 Point = tuple[float, float]
@@ -184,12 +183,12 @@ class Movers:
         laws = [motion.motion if isinstance(motion, Appearing) else motion for motion in motions]
         self._kinds: list[tuple[NDArray[np.intp], _Kind]] = []
         for classes, kind in _KINDS:
-            chosen = [k for k, law in enumerate(laws) if isinstance(law, classes)]
+            chosen = [k for k, motion in enumerate(laws) if isinstance(motion, classes)]
             if chosen:
                 self._kinds.append((np.array(chosen), kind([laws[k] for k in chosen])))
         appearing = [(k, m) for k, m in enumerate(motions) if isinstance(m, Appearing)]
         self._appearing = np.array([k for k, _ in appearing], dtype=np.intp)
-        rows = [(law.start, law.end, law.away) for _, law in appearing]
+        rows = [(motion.start, motion.end, motion.away) for _, motion in appearing]
         self._start, self._end, self._away = np.reshape(rows, (-1, 3)).T
 
     def __len__(self) -> int:
@@ -230,7 +229,7 @@ class _Lanes:
     """Lines and shuttles."""
 
     def __init__(self, laws: Sequence[Line | Shuttle]) -> None:
-        lanes = np.array([_lane(law) for law in laws], dtype=float)
+        lanes = np.array([_lane(motion) for motion in laws], dtype=float)
         self._origin, self._direction = lanes[:, :2], lanes[:, 2:4]
         self._speed, self._period, self._offset = lanes[:, 4], 2.0 * lanes[:, 5], lanes[:, 6]
 
@@ -275,9 +274,9 @@ class _Passages:
     """Passages."""
 
     def __init__(self, laws: Sequence[Passage]) -> None:
-        self._start = np.array([law.start for law in laws])
-        self._along = np.array([law.end for law in laws]) - self._start
-        table = np.array([(law.speed, law.depart, law.length) for law in laws])
+        self._start = np.array([motion.start for motion in laws])
+        self._along = np.array([motion.end for motion in laws]) - self._start
+        table = np.array([(motion.speed, motion.depart, motion.length) for motion in laws])
         self._speed, self._depart, self._length = table.T
 
     def positions(self, times: Array) -> Array:
@@ -301,9 +300,9 @@ class _Wanders:
     """Closed polygons, which have equally many corners."""
 
     def __init__(self, laws: Sequence[Wander]) -> None:
-        self._corners = np.array([law.track for law in laws])
+        self._corners = np.array([motion.track for motion in laws])
         self._rows = np.arange(len(laws))
-        table = np.array([(law.side, law.speed, law.offset) for law in laws])
+        table = np.array([(motion.side, motion.speed, motion.offset) for motion in laws])
         self._side, self._speed, self._offset = table.T
 
     def positions(self, times: Array) -> Array:

@@ -56,7 +56,7 @@ class Reachable:
         """Propagate all states until the last point is reached, none is left, or time is over.
 
         Args:
-            heading: at the start [rad].
+            heading: heading at the start [rad].
             turn: duration of the turn to the nearest heading of the lattice [s].
             layers: maximum number.
         """

@@ -31,10 +31,10 @@ def draw_wander(
 
     Args:
         rng: draws track and offset.
-        centre: of the bounding box of the track [m].
+        centre: centre of the bounding box of the track [m].
         extent: longer side of that box [m].
-        speed: [m/s].
-        scale: of the world [1].
+        speed: speed of the mover [m/s].
+        scale: scale of the world [1].
 
     Returns:
         The law; None if no track of that extent has gentle bends.

@@ -84,8 +84,8 @@ class Optics:
     """Rendering options of a model.
 
     Attributes:
-        width, height: of the offscreen buffer [pixel].
-        vertical_fov: of the head camera [rad].
+        width, height: width and height of the offscreen buffer [pixel].
+        vertical_fov: vertical field of view of the head camera [rad].
         brightness: factor on all lights [1].
         shadows: whether the camera of the robot sees cast shadows.
     """

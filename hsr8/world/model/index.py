@@ -27,7 +27,7 @@ class ModelIndex:
     """Addresses of the parts that the simulator uses in a compiled model.
 
     Attributes:
-        names: of the joints (n,).
+        names: names of the joints (n,).
         root_qpos, root_dof: addresses of the free joint of the robot.
         joint_qpos, joint_dof: addresses of the joints in the order of walking (n,).
         actuators: addresses of the actuators in the same order (n,).

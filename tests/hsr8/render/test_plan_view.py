@@ -1,8 +1,8 @@
 import numpy as np
 
 from hsr8.render.plan_view import PlanView
-from hsr8.scenario.crowd import AWAY
 from hsr8.scenario.loader import load_scenario
+from hsr8.scenario.track import AWAY
 from hsr8.world.field.generator import draw_layout
 from vision.color import COLOR_CLASSES
 

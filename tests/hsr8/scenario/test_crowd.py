@@ -2,8 +2,8 @@ import numpy as np
 import pytest
 
 from hsr8.errors import ScenarioError
-from hsr8.scenario.crowd import n_placed, recordings
 from hsr8.scenario.loader import dump, load_scenario, loads
+from hsr8.scenario.track import n_placed, recordings
 from hsr8.world.field.generator import draw_layout
 
 # Three people cross a field of 5 m x 5 m in 8 s, from x = -4 to 4, one after the other.

@@ -2,7 +2,7 @@ from dataclasses import asdict
 
 import pytest
 
-from hsr8.scenario.presets import PROFILES, expand_presets
+from hsr8.scenario.scaling import PROFILES, expand_presets
 
 
 @pytest.mark.parametrize("profile", PROFILES)

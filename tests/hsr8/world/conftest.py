@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from hsr8.robots.loaded import load_robot
-from hsr8.scenario.sensor_noise import SensorNoise
+from hsr8.scenario.sensors import SensorNoise
 from hsr8.world.body.kinematic import KinematicBody
 from hsr8.world.field.layout import Layout, Obstacle, standard_beacons
 from hsr8.world.model.assembly import Optics, assemble

@@ -6,7 +6,6 @@ import pytest
 
 from hsr8.robots.loaded import load_robot
 from hsr8.robots.tree import max_torque
-from hsr8.scenario.crowd import AWAY
 from hsr8.scenario.fault import (
     AttitudeBias,
     Bump,
@@ -22,6 +21,7 @@ from hsr8.scenario.fault import (
     ServoStuck,
     ServoWeak,
 )
+from hsr8.scenario.track import AWAY
 from hsr8.world.body.faults import SensorFaults, ServoFaults, WorldFaults
 from hsr8.world.body.physics import place_robot
 from hsr8.world.field.layout import Layout, Obstacle, with_faults

@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 
 from hsr8.robots.loaded import load_robot
-from hsr8.scenario.sensor_noise import SensorNoise
+from hsr8.scenario.sensors import SensorNoise
 from hsr8.world.body.sensors import SensorSuite
 from hsr8.world.model.index import ModelIndex
 from hsr8.world.rotation import heading

@@ -6,7 +6,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from hsr8.robots.loaded import load_robot
-from hsr8.scenario.camera import Camera
+from hsr8.scenario.sensors import Camera
 from hsr8.world.body.kinematic import KinematicBody
 from hsr8.world.camera.analytic import (
     DISTANCE,

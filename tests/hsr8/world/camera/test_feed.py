@@ -3,8 +3,8 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from hsr8.scenario.camera import Camera
 from hsr8.scenario.fault import CameraDrops, CameraLatency
+from hsr8.scenario.sensors import Camera
 from hsr8.world.camera.faults import CameraFaults
 from hsr8.world.camera.feed import CameraFeed, CapturedFrame
 

@@ -1,7 +1,7 @@
 import numpy as np
 import pytest
 
-from hsr8.scenario.camera import CameraNoise
+from hsr8.scenario.sensors import CameraNoise
 from hsr8.world.camera.image_noise import ImageNoise
 
 SHAPE = (60, 80)

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from hsr8.robots.loaded import load_robot
-from hsr8.scenario.camera import Camera, CameraNoise
+from hsr8.scenario.sensors import Camera, CameraNoise
 from hsr8.world.body.kinematic import KinematicBody
 from hsr8.world.body.physics import PhysicsBody
 from hsr8.world.camera.rendered import RenderedCamera, angular_velocity

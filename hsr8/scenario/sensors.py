@@ -1,9 +1,10 @@
-"""Section ``[camera]``: optics, timing and noise of the head camera."""
+"""Sections ``[camera]`` and ``[sensors]``: head camera, noise of encoders, IMU and foot pads."""
 
+from dataclasses import dataclass
 from math import atan, degrees, radians, tan
 from typing import Annotated, Literal
 
-from annotated_types import Interval, MultipleOf, doc
+from annotated_types import Ge, Interval, Le, MultipleOf, doc
 from pydantic import model_validator
 
 from hsr8.scenario.section import CONTROL_PERIOD_MS, PeriodMs, Section
@@ -107,3 +108,50 @@ class Camera(Section):
                 "an image is exposed before the next one is taken"
             )
         return self
+
+
+@dataclass(frozen=True)
+class SensorNoise:
+    """Noise of the joint encoders, the IMU and the foot force sensors."""
+
+    encoder: Annotated[
+        float, Ge(0.0), Le(0.02), doc("Standard deviation of each joint encoder [rad].")
+    ] = 0.0005
+    encoder_rate: Annotated[
+        float, Ge(0.0), Le(10.0), doc("Standard deviation of each joint rate [rad/s].")
+    ] = 0.02
+    gyro: Annotated[
+        float, Ge(0.0), Le(1.0), doc("Standard deviation of the gyroscope, per axis [rad/s].")
+    ] = 0.01
+    accelerometer: Annotated[
+        float, Ge(0.0), Le(20.0), doc("Standard deviation of the accelerometer, per axis [m/s²].")
+    ] = 0.1
+    tilt: Annotated[
+        float, Ge(0.0), Le(0.2), doc("Standard deviation of roll and pitch of the IMU [rad].")
+    ] = 0.0025
+    pitch_bias: Annotated[
+        float, Ge(-0.5), Le(0.5), doc("Constant error of the pitch of the IMU [rad].")
+    ] = 0.0
+    roll_bias: Annotated[
+        float, Ge(-0.5), Le(0.5), doc("Constant error of the roll of the IMU [rad].")
+    ] = 0.0
+    gyro_bias: Annotated[
+        float,
+        Ge(-1.0),
+        Le(1.0),
+        doc(
+            "Constant error of the gyroscope, per axis; accumulates in the yaw of the IMU [rad/s]."
+        ),
+    ] = 0.0
+    yaw_drift: Annotated[
+        float, Ge(0.0), Le(1.0), doc("Random walk of the yaw of the IMU [rad/√s].")
+    ] = 0.001
+    foot_force: Annotated[
+        float, Ge(0.0), Le(50.0), doc("Standard deviation of each foot force sensor [N].")
+    ] = 0.2
+    foot_force_gain: Annotated[
+        float,
+        Ge(0.0),
+        Le(1.0),
+        doc("Standard deviation of the constant gain error of each foot force sensor [1]."),
+    ] = 0.05
