@@ -15,10 +15,10 @@ from numpy.typing import NDArray
 
 from hsr8.robots.description import CameraMount, RobotDescription
 from hsr8.robots.files import models_dir
-from hsr8.robots.prepare import Prepared, rebase
+from hsr8.robots.prepare import Prepared
 from hsr8.robots.roles import Roles, pose_of
 from hsr8.robots.servos import physics_step
-from hsr8.robots.skeleton import Posed
+from hsr8.robots.skeleton import BaseFrame, Posed
 from hsr8.robots.soles import Rectangle
 from hsr8.robots.tree import Parts
 from walking.body.sole import Sole
@@ -266,6 +266,28 @@ def _absorb_shapes(body: mujoco.MjsBody) -> tuple[int, int]:
             # Only the box meets the floor and the other foot.
             geom.contype = geom.conaffinity = 0
     return contype, conaffinity
+
+
+def rebase(spec: mujoco.MjSpec, root: str, base: BaseFrame) -> None:
+    """Move the frame of the body with the free joint to that of the base.
+
+    Args:
+        spec: specification, changed in place; its inertias are explicit.
+        root: body with the free joint.
+        base: frame of the base.
+    """
+    body = spec.body(root)
+    turn = _quaternion(base.rotation)
+    parts = [*body.bodies, *body.geoms, *body.sites, *body.cameras, *body.lights, *body.frames]
+    frame = body.add_frame(pos=-base.rotation @ base.origin, quat=turn)
+    for part in parts:
+        if part.frame is None:
+            part.set_frame(frame)
+    turned = np.empty(4)
+    mujoco.mju_mulQuat(turned, turn, np.asarray(body.iquat, float))
+    body.ipos = base.rotation @ (np.asarray(body.ipos, float) - base.origin)
+    body.iquat = turned
+    body.quat, body.alt.type = (1.0, 0.0, 0.0, 0.0), mujoco.mjtOrientation.mjORIENTATION_QUAT
 
 
 def _camera_pose(

@@ -17,7 +17,6 @@ from hsr8.errors import ModelError
 from hsr8.robots.inertia import complete_inertias
 from hsr8.robots.key_mistake import KeyMistake, require_name
 from hsr8.robots.read import ModelFile
-from hsr8.robots.skeleton import BaseFrame
 
 Array = NDArray[np.float64]
 
@@ -197,29 +196,6 @@ def orientation(spec: mujoco.MjSpec, body: mujoco.MjsBody) -> Array:
             orientation=body.alt,
         )
     )
-
-
-def rebase(spec: mujoco.MjSpec, root: str, base: BaseFrame) -> None:
-    """Move the frame of the body with the free joint to that of the base.
-
-    Args:
-        spec: specification, changed in place; its inertias are explicit.
-        root: body with the free joint.
-        base: frame of the base.
-    """
-    body = spec.body(root)
-    turn = np.empty(4)
-    mujoco.mju_mat2Quat(turn, base.rotation.ravel())
-    parts = [*body.bodies, *body.geoms, *body.sites, *body.cameras, *body.lights, *body.frames]
-    frame = body.add_frame(pos=-base.rotation @ base.origin, quat=turn)
-    for part in parts:
-        if part.frame is None:
-            part.set_frame(frame)
-    turned = np.empty(4)
-    mujoco.mju_mulQuat(turned, turn, np.asarray(body.iquat, float))
-    body.ipos = base.rotation @ (np.asarray(body.ipos, float) - base.origin)
-    body.iquat = turned
-    body.quat, body.alt.type = (1.0, 0.0, 0.0, 0.0), mujoco.mjtOrientation.mjORIENTATION_QUAT
 
 
 def _referring(spec: mujoco.MjSpec, joint: str) -> list[Any]:

@@ -127,10 +127,14 @@ def _check_numbers(model: mujoco.MjModel) -> None:
     bodies = [f"body {label(model.body(b).name, b)!r}" for b in range(model.nbody)]
     joints = [f"joint {label(model.joint(j).name, j)!r}" for j in range(model.njnt)]
     dofs = [joints[j] for j in model.dof_jntid]
+    geoms = [f"geom {label(model.geom(g).name, g)!r}" for g in range(model.ngeom)]
+    servos = [f"actuator {label(model.actuator(a).name, a)!r}" for a in range(model.nu)]
     for names, kind, keys in (
         (bodies, "body", ("pos", "quat", "ipos")),
         (joints, "jnt", ("pos", "axis", "range", "stiffness")),
         (dofs, "dof", ("damping", "armature", "frictionloss")),
+        (geoms, "geom", ("size", "friction")),
+        (servos, "actuator", ("gainprm", "forcerange")),
     ):
         for key in keys:
             rows = np.atleast_2d(getattr(model, f"{kind}_{key}").T).T

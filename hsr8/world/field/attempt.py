@@ -22,9 +22,18 @@ from hsr8.world.field.layout import (
     standard_beacons,
     with_first_moved,
 )
-from hsr8.world.field.motion import Circle, MotionLaw, Passage, Shuttle
+from hsr8.world.field.motion import Circle, MotionLaw, Passage, Point, Shuttle
 from hsr8.world.field.wander import draw_wander
 
+Array = NDArray[np.float64]
+Mask = NDArray[np.bool_]
+
+COLORS = ("red", "green", "blue", "violet")
+BATCH = 64  # candidate positions drawn at a time
+MAX_BATCHES = 30  # per object
+MAX_LANES = 300  # per mover
+# Maximum offset of a lane between walls from the route, along x and y, in a world of scale 1 [m].
+ROUTE_OFFSET = 0.30
 START_TURN = radians(60.0)  # maximum angle between the start heading and the first via point [rad]
 
 
@@ -69,18 +78,6 @@ class FairDistances:
             point_to_border=0.35 * scale,
             obstacle_to_border=0.05 * scale,
         )
-
-
-Array = NDArray[np.float64]
-Mask = NDArray[np.bool_]
-Point = tuple[float, float]
-
-COLORS = ("red", "green", "blue", "violet")
-BATCH = 64  # candidate positions drawn at a time
-MAX_BATCHES = 30  # per object
-MAX_LANES = 300  # per mover
-# Maximum offset of a lane between walls from the route, along x and y, in a world of scale 1 [m].
-ROUTE_OFFSET = 0.30
 
 
 class CrowdedError(Exception):

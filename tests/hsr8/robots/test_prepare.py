@@ -12,7 +12,8 @@ from scipy.spatial.transform import Rotation
 
 from hsr8.errors import ModelError
 from hsr8.robots.loaded import read_robot
-from hsr8.robots.prepare import hold, prepare, rebase
+from hsr8.robots.normal_form import rebase
+from hsr8.robots.prepare import hold, prepare
 from hsr8.robots.read import compile_spec, read_spec
 from hsr8.robots.roles import find_roles
 from hsr8.robots.skeleton import Posed

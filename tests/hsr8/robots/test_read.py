@@ -54,6 +54,10 @@ def option(**values):
             "body 'torso': pos, got inf 0 0; expected finite",
         ),
         (setting("body", "torso", pos="0 0 1e9"), "body 'torso': 1e+09 m from the body that carr"),
+        (
+            setting("position", "l_knee", forcerange="-inf 3"),
+            "actuator 'l_knee': forcerange, got -inf 3; expected finite",
+        ),
     ],
 )
 def test_numbers_that_are_not_those_of_a_robot_are_refused(read, change, reason):
