@@ -15,7 +15,7 @@ from hsr8.errors import ScenarioError, SimulationDiverged, UsageError
 from hsr8.evaluation.sweep.seeds import parse_seeds
 from hsr8.loop import Simulation
 from hsr8.render import viewer
-from hsr8.robots import models
+from hsr8.robots import files
 from hsr8.scenario.layers import BUILT_IN, built_in_names
 from hsr8.scenario.loader import load_scenario, loads
 from tests.hsr8.bad_input import keys, model_changed, mutated, near, value, written
@@ -68,10 +68,10 @@ def model_case(rng, folder):
     scenario = load_scenario("quick", (f'robot.body="{body}"', 'camera.source="analytic"'))
     copy = folder / "models"
     shutil.rmtree(copy, ignore_errors=True)
-    shutil.copytree(models.models_dir(), copy)
+    shutil.copytree(files.models_dir(), copy)
     file = copy / rng.choice(MODELS)
     file.write_text(model_changed(rng, file.read_text(encoding="utf-8")), encoding="utf-8")
-    with patch.object(models, "PACKAGE", folder / "hsr8"):
+    with patch.object(files, "PACKAGE", folder / "hsr8"):
         begin(scenario, 0, MODEL_TICKS)
 
 
