@@ -5,9 +5,8 @@ import pickle
 import sys
 from collections.abc import Callable
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, ParamSpec, TypeVar
+from typing import TYPE_CHECKING, Any, ParamSpec, TypeVar, cast
 
-from numba import njit
 from numba.core import config
 from numba.core.caching import NullCache
 from numba.core.compiler import CompileResult
@@ -15,6 +14,7 @@ from numba.core.serialize import dumps
 from numba.core.sigutils import normalize_signature
 
 from compilation import store
+from compilation.function import OPTIONS, CompiledFunction
 from compilation.sources import stamp
 
 if TYPE_CHECKING:
@@ -36,10 +36,12 @@ def compiled(function: Callable[P, R]) -> "Dispatcher[P, R]":
     """
     if function.__closure__:
         raise TypeError(f"{function.__qualname__}: closure; expected a function of a module")
-    dispatcher = njit(function)
-    if Path(function.__code__.co_filename).is_file() and not config.DISABLE_JIT:
+    if config.DISABLE_JIT:
+        return cast("Dispatcher[P, R]", function)
+    dispatcher = CompiledFunction(function, targetoptions=OPTIONS)
+    if Path(function.__code__.co_filename).is_file():
         dispatcher._cache = CodeCache(function)
-    return dispatcher
+    return cast("Dispatcher[P, R]", dispatcher)
 
 
 class CodeCache(NullCache):
