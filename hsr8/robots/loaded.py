@@ -21,15 +21,15 @@ from hsr8.robots.posture import check_joint_names, completed_posture, stated_pos
 from hsr8.robots.prepare import LEG_JOINTS, Prepared, prepare
 from hsr8.robots.read import compile_spec, drop_drawn_meshes, read_spec
 from hsr8.robots.refusals import check_roles
+from hsr8.robots.rehearsal import within_joints
 from hsr8.robots.roles import Roles, base_note, find_roles, present
+from hsr8.robots.rules import fit, one_leg_load
 from hsr8.robots.servos import choose_servos
 from hsr8.robots.skeleton import HINGE, Posed
 from hsr8.robots.soles import soles_of
 from hsr8.robots.tree import tree_of
 from walking.body.robot_model import RobotModel
 from walking.parameters import WalkingParameters
-from walking.rehearsal import within_joints
-from walking.rules import fit, one_leg_load
 from walking.scaling import parameters_for
 
 Array = NDArray[np.float64]

@@ -8,13 +8,13 @@ from numpy.typing import NDArray
 
 from hsr8.robots.defaults import navigation_speed
 from hsr8.robots.loaded import LoadedRobot
+from hsr8.robots.rules import one_leg_load
 from hsr8.robots.servos import OWN_SERVOS
 from hsr8.trials.calibration import random_commands, random_head, time_scale
 from hsr8.trials.walk import Trial, Walked
 from walking.body.robot_model import RobotModel
 from walking.command import VelocityCommand
 from walking.parameters import LimitParameters
-from walking.rules import one_leg_load
 
 Array = NDArray[np.float64]
 Report = Callable[["WalkResult"], None]

@@ -4,10 +4,10 @@ from dataclasses import replace
 
 import pytest
 
+from hsr8.robots.rehearsal import rehearse, within_joints
 from walking.body.robot_model import RobotModel
 from walking.command import VelocityCommand
 from walking.parameters import WalkingParameters
-from walking.rehearsal import rehearse, within_joints
 
 DEFAULTS = WalkingParameters()
 

@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from walking import rules
+from hsr8.robots import rules
 from walking.body.robot_model import MAX_COMPLIANCE, MAX_STIFFENING, RobotModel
 from walking.parameters import CONTROL_PERIOD, WalkingParameters
 from walking.scaling import parameters_for
