@@ -5,26 +5,19 @@ from math import ceil
 import numpy as np
 
 from walking.arrays import Array
-from walking.body.leg import FootPose
 from walking.body.robot_model import RobotModel
 from walking.body.tree import LEFT_LEG, RIGHT_LEG
 from walking.command import Command, CommandState, HeadTarget, VelocityCommand
 from walking.command_limits import CommandLimits, Limit, limits_of
 from walking.constants import joint_records, robot_record
-from walking.corrections import restart_cycle
-from walking.foothold import Foothold, foothold, put
-from walking.footsteps import STILL, cadence, put_timing
-from walking.gait import plan_walk, stand
 from walking.odometry import LegOdometry
 from walking.parameters import CONTROL_PERIOD, WalkingParameters
-from walking.posture import pelvis_over
 from walking.published import Publication, publish, report
 from walking.records import FOOTHOLD, KNOT, LIVE, PLAN, RAMP, WALK, parameters_record
 from walking.sensing import BodySensors
 from walking.state import WalkingState
-from walking.swing import rest_at
 from walking.targets import JointTargets
-from walking.tick import begin, finish, watch
+from walking.tick import begin, finish, stand_ready, watch
 from walking.zmp_plan import max_knots
 
 PLANS = 3  # see `walking.records.LIVE`
@@ -224,46 +217,28 @@ class WalkingEngine:
 
     def _stand(self, robot: RobotModel) -> None:
         """Set the state of a robot that stands in the ready posture."""
-        walk, gait = self._walk, self._plan.gait
-        limbs, constants, parameters = walk.limbs, self._robots[0], self._parameters[0]
-        for side, foot in enumerate(ready_stance(robot)):
-            put(gait.footholds[side], foot)
-            rest_at(limbs.feet[side], foot)
-        for timing in (gait.clock.timing, walk.steering.timing):
-            put_timing(timing, cadence(STILL, parameters))
-        stand(gait, constants, parameters)
-        walk.admission.clock, walk.admission.landing = gait.clock, gait.landing
-        walk.admission.fraction = 1.0
-        plan_walk(
-            self._plan,
-            self._ramps[LIVE],
-            self._steps[LIVE],
-            foothold(gait.landing),
-            constants.still,
-            False,
-            constants.still,
-            constants,
-            parameters,
-        )
-        ramp, pendulum = self._ramps[LIVE, 0], walk.pendulum
-        pendulum.x, pendulum.y, pendulum.zmp_x, pendulum.zmp_y = 2 * (ramp.bx, ramp.by)
-        restart_cycle(walk.corrections)
-        limbs.pelvis = pelvis_over(limbs.feet, (ramp.bx, ramp.by), constants.com_ahead)
+        limbs = self._walk.limbs
         limbs.com = robot.com(robot.ready)[:2]
         limbs.leg_angles = robot.ready[:12]
         limbs.head = robot.neck.angles(robot.ready)
+        stand_ready(
+            self._walks,
+            self._plans,
+            self._ramps,
+            self._steps,
+            _ready_stance(robot),
+            self._robots,
+            self._parameters,
+        )
 
 
-def ready_stance(robot: RobotModel) -> tuple[Foothold, Foothold]:
-    """Return the feet in the ready posture; the plan frame has its origin under the hips."""
-    feet: list[FootPose] = [
+def _ready_stance(robot: RobotModel) -> Array:
+    """Return x, y [m] and yaw [rad] of the feet; the plan frame has its origin under the hips."""
+    feet = [
         leg.pose(robot.ready[part])
         for leg, part in zip(robot.legs, (LEFT_LEG, RIGHT_LEG), strict=True)
     ]
-    left, right = (
-        Foothold(left=side == 0, x=foot.x, y=foot.y, yaw=foot.yaw) for side, foot in enumerate(feet)
-    )
-    return left, right
+    return np.array([(foot.x, foot.y, foot.yaw) for foot in feet])
 
 
 def _values(command: Command) -> tuple[tuple[float, float, float, float, float, float], bool]:

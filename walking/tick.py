@@ -25,13 +25,23 @@ from walking.corrections import (
 )
 from walking.estimation import estimate, measure
 from walking.feedforward import set_motion, set_offsets, set_setpoints
-from walking.foothold import foothold, put
-from walking.footsteps import STILL, Command, tendency
-from walking.gait import advance, retime, start, support_foot, swing_foot, swing_of, touch_down
+from walking.foothold import Foothold, foothold, put
+from walking.footsteps import STILL, Command, cadence, put_timing, tendency
+from walking.gait import (
+    advance,
+    plan_walk,
+    retime,
+    stand,
+    start,
+    support_foot,
+    swing_foot,
+    swing_of,
+    touch_down,
+)
 from walking.head import advance_head, head_joints
 from walking.parameters import CONTROL_PERIOD
 from walking.planar import norm, rotate, rotate_back
-from walking.posture import set_posture
+from walking.posture import pelvis_over, set_posture
 from walking.records import LIVE, Record
 from walking.reference import zmp_under
 from walking.steering import (
@@ -42,10 +52,54 @@ from walking.steering import (
     wanted_velocity,
 )
 from walking.support import Region, depth, load_fraction, polygon, support_region
+from walking.swing import rest_at
 from walking.swing_reaction import compensate
 
 SAME_HEIGHT = 1e-9  # rounding error of swing heights [m]
 DIVERGED = 1e6  # distance of the pendulum from the support foot per length of the leg [1]
+
+
+@compiled
+def stand_ready(
+    walks: Record,
+    plan_records: Record,
+    ramps: Record,
+    steps: Record,
+    stance: Array,
+    robots: Record,
+    parameter_records: Record,
+) -> None:
+    """Set the state of a robot that stands in the ready posture.
+
+    Args:
+        walks: state (1,), changed.
+        plan_records: plans (3,), changed.
+        ramps: ZMP references of the plans (3, n), changed.
+        steps: footholds of the plans (3, m), changed.
+        stance: x, y [m] and yaw [rad] of the left and right foot (2, 3).
+        robots: constants (1,).
+        parameter_records: parameters of the walk (1,).
+    """
+    walk, robot, parameters, live = walks[0], robots[0], parameter_records[0], plan_records[LIVE]
+    gait, limbs, pendulum = live.gait, walk.limbs, walk.pendulum
+    for side in range(2):
+        foot = Foothold(side == 0, stance[side, 0], stance[side, 1], stance[side, 2])
+        put(gait.footholds[side], foot)
+        rest_at(limbs.feet[side], foot)
+    put_timing(gait.clock.timing, cadence(STILL, parameters))
+    put_timing(walk.steering.timing, cadence(STILL, parameters))
+    stand(gait, robot, parameters)
+    remember(walk.admission, gait)
+    walk.admission.fraction = 1.0
+    put(walk.admission.landing, foothold(gait.landing))
+    landing, still = foothold(gait.landing), robot.still
+    plan_walk(live, ramps[LIVE], steps[LIVE], landing, still, False, still, robot, parameters)
+    end = ramps[LIVE, 0]
+    pendulum.x, pendulum.y = pendulum.zmp_x, pendulum.zmp_y = end.bx, end.by
+    restart_cycle(walk.corrections)
+    limbs.pelvis[0], limbs.pelvis[1], limbs.pelvis[2] = pelvis_over(
+        limbs.feet, (end.bx, end.by), robot.com_ahead
+    )
 
 
 @compiled
