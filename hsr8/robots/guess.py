@@ -32,7 +32,6 @@ MAX_HEAD = 0.2  # mass of a head in masses of the robot [1]
 MID_PLANE = 0.03  # distance of the yaw axis of a neck from the mid plane, in sizes of the robot [1]
 MID_HEAD = 0.08  # distance of the mass of a head from that plane [1]
 SHOULDER = 0.15  # extent of a shoulder, in sizes of the robot [1]
-MIN_LIMITS = 0.3  # difference of the limits of a knee that shows where it bends [rad]
 SIDEWAYS = 0.7  # minimum cosine between an arm that is to be lowered and the left [1]
 SPREAD = 0.25  # angle of hanging arms from the vertical [rad]
 
@@ -171,13 +170,7 @@ def _to_feet(stance: Stance) -> list[tuple[int, ...]]:
 
 def _knee_vote(stance: Stance) -> int:
     """Return 1 if the ranges let the knees bend forward, -1 if backward, else 0."""
-    skeleton, bend = stance.skeleton, 0.0
-    for leg in _to_feet(stance):
-        pitching = [j for j in leg[-LEG_JOINTS:] if skeleton.is_pitch(j)]
-        lower, upper = skeleton.ranges[pitching[1]] * np.sign(skeleton.axes[pitching[1], 1])
-        if np.isfinite(lower) and np.isfinite(upper) and abs(lower + upper) > MIN_LIMITS:
-            bend += lower + upper
-    return int(np.sign(bend))
+    return int(np.sign(sum(stance.skeleton.bend(leg[-LEG_JOINTS:]) for leg in _to_feet(stance))))
 
 
 def _name_vote(stance: Stance) -> int:

@@ -39,7 +39,7 @@ class Closure:
         dofs: degrees of freedom of the legs (m,).
         loop: those of cranks and rods (k,).
         transmission: rates of `loop` per rate of `dofs` (k, m).
-        coupled: which of `dofs` the constraints move (m,).
+        coupled: mask of those of `dofs` that the constraints move (m,).
     """
 
     ties: list[int]

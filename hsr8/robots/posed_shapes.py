@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from hsr8.errors import ModelError
 from hsr8.robots.normal_form import COLLISION_GROUP
 from hsr8.robots.roles import Roles
-from hsr8.robots.skeleton import Posed
+from hsr8.robots.skeleton import Posed, is_below
 
 Array = NDArray[np.float64]
 
@@ -42,7 +42,7 @@ def arm_spheres(robot: Posed, roles: Roles, *, has_meshes: bool) -> list[tuple[A
     arms = []
     for shoulder in roles.shoulders or ():
         root = int(model.joint(shoulder).bodyid[0])
-        geoms = [g for g in range(model.ngeom) if _below(model, int(model.geom_bodyid[g]), root)]
+        geoms = [g for g in range(model.ngeom) if is_below(model, int(model.geom_bodyid[g]), root)]
         visible = [g for g in geoms if _seen(model, g, has_meshes=has_meshes)]
         spheres = [sphere for g in visible for sphere in _spheres(model, data, g)]
         centres = np.array([centre for centre, _ in spheres]).reshape(-1, 3)
@@ -81,13 +81,6 @@ def _seen(model: mujoco.MjModel, geom: int, *, has_meshes: bool) -> bool:
         return True
     mesh = model.geom_type[geom] == mujoco.mjtGeom.mjGEOM_MESH
     return bool(model.geom_group[geom] < COLLISION_GROUP) and not mesh
-
-
-def _below(model: mujoco.MjModel, body: int, root: int) -> bool:
-    """Return whether a body is `root` or hangs on it."""
-    while body > root:
-        body = int(model.body_parentid[body])
-    return body == root
 
 
 def _spheres(model: mujoco.MjModel, data: mujoco.MjData, geom: int) -> list[tuple[Array, float]]:

@@ -25,7 +25,6 @@ MAX_SHIFT = 0.01  # of a mirrored joint axis, in lengths of the leg [1]
 MAX_TURN = np.radians(1.0)  # of a mirrored joint axis [rad]
 MAX_RANGE_DIFFERENCE = 0.1  # of mirrored limits; ranges that differ more are intersected [rad]
 PITCHING = ("hip", "knee", "ankle")
-MIN_LIMITS = 0.3  # difference of the limits of a knee that shows where it bends [rad]
 MIN_FREEDOM = 0.01  # singular value of the scaled Jacobian of a bent leg, minimum over maximum [1]
 SLACK = 1e-6  # of limits [rad]
 MAX_CAMERA = 2.0  # distance of a camera from the origin of its body, in lengths of the leg [1]
@@ -133,7 +132,7 @@ class _Checks:
         skeleton, feet = self._skeleton, self._description.feet
         bend = [self._bend(leg) for leg in self._legs]
         names = side_vote(*feet)
-        if not max(bend) < 0.0 and not (max(map(abs, bend)) == 0.0 and names < 0):
+        if not max(bend) < 0 and not (max(map(abs, bend)) == 0 and names < 0):
             return
         exchanged = "left and right are exchanged; expected the left foot first"
         backward = "the knees bend backward; expected forward: such legs are not supported"
@@ -154,20 +153,18 @@ class _Checks:
                     f"at zero angles, got {got}; expected hip, knee and ankle"
                 )
 
-    def _bend(self, leg: Sequence[int]) -> float:
-        """Return how the range of a knee bends it, about the left axis: 1, -1, or 0 for both."""
+    def _bend(self, leg: Sequence[int]) -> int:
+        """Return how the range of a knee bends it, see `Skeleton.bend`."""
         knee = [j for j in leg if self._skeleton.is_pitch(j)][1]
         sign = float(np.sign(self._skeleton.axes[knee, 1]))
-        lower, upper = np.subtract(_about_left(self._skeleton, knee), sign * self._zero_of(knee))
-        one_sided = np.isfinite([lower, upper]).all() and abs(lower + upper) > MIN_LIMITS
-        return float(np.sign(lower + upper)) if one_sided else 0.0
+        return self._skeleton.bend(leg, sign * self._zero_of(knee))
 
     def bending(self) -> None:
         """The ranges must include a bent leg."""
         for leg in self._legs:
             pitching = [j for j in leg if self._skeleton.is_pitch(j)]
             for part, joint, angle in zip(PITCHING, pitching, BENT, strict=True):
-                lower, upper = _about_left(self._skeleton, joint)
+                lower, upper = self._skeleton.range_about_left(joint)
                 zero = self._zero_of(joint) * np.sign(self._skeleton.axes[joint, 1])
                 if not lower - SLACK <= zero + angle <= upper + SLACK:
                     name = self._skeleton.joints[joint]
@@ -329,14 +326,6 @@ class _Checks:
 
     def _zero_of(self, joint: int) -> float:
         return self._zero.get(self._skeleton.joints[joint], 0.0)
-
-
-def _about_left(skeleton: Skeleton, joint: int) -> tuple[float, float]:
-    """Return the range of a pitching joint about the left axis [rad]."""
-    lower, upper = skeleton.ranges[joint]
-    if skeleton.axes[joint, 1] < 0.0:
-        lower, upper = -upper, -lower
-    return float(lower), float(upper)
 
 
 def _text(direction: Array) -> str:

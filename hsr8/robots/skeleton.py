@@ -5,6 +5,7 @@ A *group* is a set of bodies that move together with one hinge; the base is the 
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
+from math import isfinite
 
 import mujoco
 import numpy as np
@@ -15,6 +16,7 @@ Array = NDArray[np.float64]
 HINGE = int(mujoco.mjtJoint.mjJNT_HINGE)
 FREE = int(mujoco.mjtJoint.mjJNT_FREE)
 BALL = int(mujoco.mjtJoint.mjJNT_BALL)
+MIN_LIMITS = 0.3  # difference of the limits of a knee that shows where it bends [rad]
 PARALLEL = 0.9  # minimum cosine of an axis that counts as a yaw or pitch axis [1]
 
 
@@ -159,6 +161,23 @@ class Skeleton:
         """Return whether the axis of a joint points to the left or to the right."""
         return bool(abs(self.axes[joint, 1]) > PARALLEL)
 
+    def range_about_left(self, joint: int) -> tuple[float, float]:
+        """Return the range of a pitching joint about the left axis [rad]."""
+        lower, upper = self.ranges[joint].tolist()
+        return (-upper, -lower) if self.axes[joint, 1] < 0.0 else (lower, upper)
+
+    def bend(self, leg: Sequence[int], zero: float = 0.0) -> int:
+        """Return how the range of a knee bends it: 1 forward, -1 backward, 0 both or unknown.
+
+        Args:
+            leg: joints of the leg, of which the second that pitches is the knee.
+            zero: angle of the straight knee about the left axis [rad].
+        """
+        knee = [j for j in leg if self.is_pitch(j)][1]
+        lower, upper = (limit - zero for limit in self.range_about_left(knee))
+        one_sided = isfinite(lower) and isfinite(upper) and abs(lower + upper) > MIN_LIMITS
+        return int(np.sign(lower + upper)) if one_sided else 0
+
     def is_yaw(self, joint: int) -> bool:
         """Return whether the axis of a joint is vertical."""
         return bool(abs(self.axes[joint, 2]) > PARALLEL)
@@ -190,7 +209,7 @@ def skeleton_of(
             data.qpos[model.jnt_qposadr[j]] = (angles or {}).get(model.joint(j).name, 0.0)
     mujoco.mj_kinematics(model, data)
     origin, rotation = data.xpos[root].copy(), data.xmat[root].reshape(3, 3).copy()
-    tree = [b for b in range(root, model.nbody) if _is_below(model, b, root)]
+    tree = [b for b in range(root, model.nbody) if is_below(model, b, root)]
     hinges: list[int] = []
     parents: list[int] = []
     others: list[str] = []
@@ -240,7 +259,8 @@ def label(name: str, index: int) -> str:
     return name or f"#{index}"
 
 
-def _is_below(model: mujoco.MjModel, body: int, root: int) -> bool:
+def is_below(model: mujoco.MjModel, body: int, root: int) -> bool:
+    """Return whether a body is `root` or below it."""
     while body > root:
         body = int(model.body_parentid[body])
     return body == root

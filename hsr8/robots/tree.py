@@ -9,13 +9,13 @@ from numpy.typing import NDArray
 
 from hsr8.robots.mechanism import TO_JOINT
 from hsr8.robots.roles import Roles
+from hsr8.robots.skeleton import HINGE
 from walking.body.sole import Sole
 from walking.body.tree import Frame, RobotTree, turn
 
 Array = NDArray[np.float64]
 Ints = NDArray[np.integer]
 
-HINGE = int(mujoco.mjtJoint.mjJNT_HINGE)
 UNLIMITED = np.pi  # range of a joint without limits, to either side [rad]
 
 

@@ -9,7 +9,7 @@ from typing import Any, get_args
 
 from pydantic_core import PydanticUndefined
 
-from hsr8.keys import chosen, entries, hints
+from hsr8.keys import TAGS, chosen, entries, hints
 from hsr8.scenario.schema import Navigation, Scenario
 from hsr8.scenario.section import Section
 from hsr8.scenario.sensors import IDEAL
@@ -20,7 +20,6 @@ Table = dict[str, Any]
 Factor = Callable[[str], float]
 """Ratio of the quantities in some unit, see `hsr8.robots.scale.RobotScale.factor`."""
 
-KINDS = ("kind", "motion")  # keys that determine the other keys of their table
 PROFILES = {"extended": NavigationParameters.extended, "paper": NavigationParameters.paper}
 
 
@@ -76,7 +75,7 @@ def under(given: Table, defaults: Table) -> Table:
 def merged(base: Table, over: Table) -> Table:
     """Return `over` put over `base`, table by table."""
     # Another kind of mission, fault or mover has other keys: the old ones are dropped.
-    changed = any(key in over and over[key] != base.get(key, over[key]) for key in KINDS)
+    changed = any(key in over and over[key] != base.get(key, over[key]) for key in TAGS)
     result = {} if changed else dict(base)
     if over.get("file") != base.get("file") and "file" in over:
         result.pop("data", None)  # of another track file

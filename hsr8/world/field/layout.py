@@ -30,7 +30,7 @@ class Obstacle:
         radius: radius of the cylinder [m].
         height: height of the cylinder [m].
         color: name of the colour class.
-        motion: motion laws of a mover; None of a static obstacle.
+        motion: motion law of a mover; None of a static obstacle.
     """
 
     position: Point
@@ -101,7 +101,7 @@ class Layout:
 
     @property
     def movers(self) -> tuple[Obstacle, ...]:
-        """Obstacles with a motion laws."""
+        """Obstacles with a motion law."""
         return tuple(o for o in self.obstacles if o.motion is not None)
 
     def motion(self) -> Movers:
