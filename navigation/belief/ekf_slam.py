@@ -181,12 +181,9 @@ class EkfSlam:
         p = self._tracking
         pose, covariance = self.pose, self.covariance
         detections = in_world(frame.observations, pose, covariance, max_pose_sigma=p.max_pose_sigma)
-        expected = Viewpoint.of(frame.view, pose, p.detection_range).in_clear_view(
-            self._x[3:].reshape(-1, 2),
-            detections.positions,
-            detections.radii,
-            margin=p.view_margin,
-            occlusion_margin=p.occlusion_margin,
+        viewpoint = Viewpoint.of(frame.view, pose, p.detection_range, p.view_margin)
+        expected = viewpoint.in_clear_view(
+            self._x[3:].reshape(-1, 2), detections.positions, detections.radii, p.occlusion_margin
         )
         for i in np.flatnonzero(expected).tolist():
             if i not in matched:

@@ -69,7 +69,8 @@ class Estimator:
         detections = in_world(
             frame.observations, pose, covariance, max_pose_sigma=p.tracking.max_pose_sigma
         )
-        viewpoint = Viewpoint.of(frame.view, pose, p.tracking.detection_range)
+        looked_at = p.tracking.detection_range, p.tracking.view_margin
+        viewpoint = Viewpoint.of(frame.view, pose, *looked_at)
         free = self._map.free_at(detections.positions)
         tracks = self._tracker.update(frame.time, detections, viewpoint, free)
         if isinstance(localizer, EkfSlam):

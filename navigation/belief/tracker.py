@@ -73,7 +73,8 @@ class Tracker:
         Args:
             time: time of the frame [s].
             detections: detections in W.
-            viewpoint: camera in W, with the range within which detection is certain.
+            viewpoint: camera in W, with the range and the part of the image in which detection is
+                certain.
             on_free_floor: which detections are on floor seen empty before (m,): a new obstacle
                 there has moved.
         """
@@ -132,7 +133,7 @@ class Tracker:
         if (self._objects["last_time"] == time).all():
             return
         p, clouds, rng = self._parameters, self._clouds, self._rng
-        seen_from = viewpoint.eye(p.view_margin), viewpoint.sight.shadow
+        seen_from = viewpoint.eye, viewpoint.shadow
         fates = misses(self._objects, clouds, detections.rows, *seen_from, time, dt, self._limits)
         for i in np.flatnonzero(fates >= SPAWNS).tolist():
             if fates[i] == REFUTED:
@@ -169,9 +170,9 @@ class Tracker:
 
     def _in_clear_view(self, cloud: Array, detections: Detections, viewpoint: Viewpoint) -> Mask:
         """Return whether each particle of a cloud (6, m) is in clear view (m,)."""
-        eye, points = viewpoint.eye(self._parameters.view_margin), cloud[X : Y + 1].T
+        eye, points = viewpoint.eye, np.ascontiguousarray(cloud[X : Y + 1].T)
         discs = occluders(self._objects, detections.rows, eye, self._limits)
-        return clearly_visible(np.ascontiguousarray(points), eye[0], viewpoint.sight.shadow, discs)
+        return clearly_visible(points, eye[0], viewpoint.shadow, discs)
 
 
 @compiled

@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from compilation import compiled
-from navigation.observation import CameraView, Sight, shadow_at
+from navigation.observation import CameraView, shadow_at
 from navigation.record import record_type
 from navigation.transform import yaw_rotation
 from navigation.value import value
@@ -184,68 +184,50 @@ def observed_cells(
 
 @value
 class Viewpoint:
-    """Camera of one frame in the field frame W.
+    """Camera of one frame in the field frame W, as compiled functions take it.
 
     Attributes:
-        rotation: R_WC, columns right, down, forward (3, 3).
-        position: p_WC (3,) [m].
-        horizontal_half, vertical_half: half the fields of view [rad]. A horizontal half of pi/2
-            or more means a panoramic camera, which also sees up and down.
-        range: maximum distance of a detection along the floor, 0 for a blind camera [m].
-        heading: heading of the robot [rad].
-        sight: visible part of an obstacle.
+        eye: record of type `EYE` (1,).
+        shadow: distance up to which the body hides the floor, see `Sight` (n,) [m].
     """
 
-    rotation: Array
-    position: Array
-    horizontal_half: float
-    vertical_half: float
-    range: float
-    heading: float = 0.0
-    sight: Sight = Sight()
+    eye: Rows
+    shadow: Array
 
     @classmethod
-    def of(cls, view: CameraView, pose: Array, reach: float) -> "Viewpoint":
-        """Transform the camera of a frame to W.
+    def of(cls, view: CameraView, pose: Array, reach: float, margin: float = 0.0) -> "Viewpoint":
+        """Transform the camera of a frame to W; a blind camera has no range.
+
+        A horizontal field of view of pi or more means a panoramic camera, which also sees up and
+        down.
 
         Args:
             view: camera in R.
             pose: x, y, heading of R in W (3,) [m, m, rad].
-            reach: range [m].
+            reach: maximum distance of a detection along the floor [m].
+            margin: border of the image that does not count [rad].
         """
         x, y, heading = pose.tolist()
-        rotation = yaw_rotation(heading)
-        position = rotation @ view.position
+        to_world = yaw_rotation(heading)
+        position = to_world @ view.position
         position[0] += x
         position[1] += y
-        return cls(
-            rotation @ view.rotation,
-            position,
-            0.5 * view.horizontal_fov,
-            0.5 * view.vertical_fov,
-            0.0 if view.blind else reach,
-            heading,
-            view.sight,
-        )
-
-    def eye(self, margin: float) -> Rows:
-        """Return the camera as a record of type `EYE` (1,), its image less a border [rad]."""
-        panoramic, height = self.horizontal_half >= 0.5 * pi, float(self.position[2])
-        width = tan(max(self.horizontal_half - margin, 0.0))
+        half, top = 0.5 * view.horizontal_fov, view.sight.top
+        panoramic = half >= 0.5 * pi
         row = (
-            self.position,
-            self.rotation,
-            self.heading,
-            cos(min(self.horizontal_half, pi)) if panoramic else width,
-            tan(max(self.vertical_half - margin, 0.0)),
-            self.range,
-            self.sight.top - height if self.sight.top > 0.0 else 0.0,
+            position,
+            to_world @ view.rotation,
+            heading,
+            cos(min(half, pi)) if panoramic else tan(max(half - margin, 0.0)),
+            tan(max(0.5 * view.vertical_fov - margin, 0.0)),
+            0.0 if view.blind else reach,
+            top - float(position[2]) if top > 0.0 else 0.0,
             panoramic,
         )
-        return np.array([row], EYE)
+        return cls(np.array([row], EYE), view.sight.shadow)
 
     def in_clear_view(
-        self, points: Array, centres: Array, radii: Array, *, margin: float, occlusion_margin: float
+        self, points: Array, centres: Array, radii: Array, margin: float = 0.0
     ) -> Mask:
         """Return whether an obstacle at each point is in clear view: its top or its foot (n,).
 
@@ -253,8 +235,6 @@ class Viewpoint:
             points: points in W (n, 2) [m].
             centres: centres of the occluding discs (m, 2) [m].
             radii: radii of these discs (m,) [m].
-            margin: distance from the border of the image [rad].
-            occlusion_margin: enlargement of every disc [m].
+            margin: enlargement of every disc [m].
         """
-        eye, shadow = self.eye(margin), self.sight.shadow
-        return clear_points(points, eye, shadow, centres, radii, occlusion_margin)
+        return clear_points(points, self.eye, self.shadow, centres, radii, margin)

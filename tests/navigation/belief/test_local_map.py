@@ -82,9 +82,7 @@ def test_only_the_footprint_of_the_camera_is_seen(view):
     n = len(grid.age)
     centres = grid.origin + (np.stack(np.meshgrid(np.arange(n), np.arange(n)), -1) + 0.5) * P.cell
     viewpoint = Viewpoint.of(camera, np.zeros(3), P.range)
-    observed = viewpoint.in_clear_view(
-        centres.reshape(-1, 2), *NONE, margin=0.0, occlusion_margin=0.0
-    )
+    observed = viewpoint.in_clear_view(centres.reshape(-1, 2), *NONE)
     assert np.array_equal(grid.confidence.ravel() == 1.0, observed)
     assert np.array_equal(grid.confidence_at(centres.reshape(-1, 2)), grid.confidence.ravel())
 

@@ -40,7 +40,8 @@ class Stage:
                 self.observe(pose, location[:2], label=label, noise=error, sigma=sigma, **details)
             )
         sightings = in_world(observed, pose, EXACT, max_pose_sigma=0.1)
-        viewpoint = Viewpoint.of(self.view(pan=pan), pose, self.parameters.detection_range)
+        p = self.parameters
+        viewpoint = Viewpoint.of(self.view(pan=pan), pose, p.detection_range, p.view_margin)
         self.tracks = self.tracker.update(
             self.time, sightings, viewpoint, np.zeros(len(sightings.radii), bool)
         )
@@ -187,15 +188,9 @@ def test_particles_where_the_camera_looks_in_vain_are_given_up(view, observe):
     (before,) = stage.tracks
     for _ in range(30):
         stage.show()
-    viewpoint = Viewpoint.of(view(pan=0.0), np.zeros(3), 2.5)
+    viewpoint = Viewpoint.of(view(pan=0.0), np.zeros(3), 2.5, stage.parameters.view_margin)
     for t in stage.tracks:
-        in_view = viewpoint.in_clear_view(
-            t.particles.positions,
-            np.zeros((0, 2)),
-            np.zeros(0),
-            margin=stage.parameters.view_margin,
-            occlusion_margin=0.0,
-        )
+        in_view = viewpoint.in_clear_view(t.particles.positions, np.zeros((0, 2)), np.zeros(0))
         assert t.particles.weights[in_view].sum() < 0.2
     assert before.particles.weights.sum() == pytest.approx(1.0)
 
@@ -337,7 +332,7 @@ def test_a_detection_on_free_floor_is_assigned_to_the_lost_mover(view, observe):
             EXACT,
             max_pose_sigma=0.1,
         )
-        viewpoint = Viewpoint.of(view(), np.zeros(3), 2.2)
+        viewpoint = Viewpoint.of(view(), np.zeros(3), 2.2, P.view_margin)
         for k in range(1, 4):
             tracks = stage.tracker.update(
                 stage.time + k * DT, observed, viewpoint, np.array([freed])

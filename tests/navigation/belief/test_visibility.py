@@ -6,7 +6,9 @@ import pytest
 
 from navigation.belief.visibility import FREE, OCCUPIED, UNSEEN, Viewpoint, observed_cells
 from navigation.observation import Sight, shadow_at
+from navigation.transform import yaw_rotation
 
+RANGE = 2.5
 NOTHING = np.empty((0, 2)), np.empty(0)
 
 
@@ -21,12 +23,12 @@ def around(view):
     return Viewpoint.of(view(hfov=2.0 * pi, vfov=pi), np.zeros(3), 9.0)
 
 
-def contains(viewpoint, points, margin=0.0):
-    return viewpoint.in_clear_view(points, *NOTHING, margin=margin, occlusion_margin=0.0)
+def contains(viewpoint, points):
+    return viewpoint.in_clear_view(points, *NOTHING)
 
 
 def hidden(viewpoint, points, centres, radii):
-    return ~viewpoint.in_clear_view(points, centres, radii, margin=0.0, occlusion_margin=0.0)
+    return ~viewpoint.in_clear_view(points, centres, radii)
 
 
 def test_a_disc_occludes_points_behind_it_only(around):
@@ -47,10 +49,8 @@ def test_visibility_moves_with_the_robot(view):
     def expected(x, y, turn):
         c, s = cos(turn), sin(turn)
         R = np.array([[c, -s], [s, c]])
-        viewpoint = Viewpoint.of(view(pan=0.4), np.array([x, y, turn]), 2.5)
-        return viewpoint.in_clear_view(
-            points @ R.T + (x, y), discs @ R.T + (x, y), radii, margin=0.05, occlusion_margin=0.05
-        )
+        viewpoint = Viewpoint.of(view(pan=0.4), np.array([x, y, turn]), 2.5, 0.05)
+        return viewpoint.in_clear_view(points @ R.T + (x, y), discs @ R.T + (x, y), radii, 0.05)
 
     plain = expected(0.0, 0.0, 0.0)
     assert plain.any()
@@ -61,7 +61,7 @@ def test_an_omnidirectional_camera_contains_everything_in_range(view):
     rng = np.random.default_rng(2)
     points = rng.uniform(-3.0, 3.0, (50, 2))
     wide = view(0.4, -0.3, hfov=2.0 * np.pi, vfov=np.pi)
-    observed = contains(Viewpoint.of(wide, np.array([0.3, -0.2, 1.0]), 1.5), points, 0.1)
+    observed = contains(Viewpoint.of(wide, np.array([0.3, -0.2, 1.0]), 1.5, 0.1), points)
     np.testing.assert_array_equal(observed, np.hypot(*(points - [0.3, -0.2]).T) <= 1.5)
 
 
@@ -83,40 +83,48 @@ def test_a_panoramic_camera_contains_a_sector(view):
 
 @pytest.fixture
 def scene(view):
-    """Points, viewpoint, discs."""
+    """Points, camera in R, its pose in W, discs."""
 
     def drawn(seed):
         rng = np.random.default_rng(seed)
         sight = Sight(0.3, rng.uniform(0.0, 1.5, 36))
         camera = view(pan=rng.uniform(-1, 1), tilt=-0.6, hfov=1.5, vfov=0.8)
         camera = replace(camera, sight=sight)
-        viewpoint = Viewpoint.of(camera, rng.uniform(-1, 1, 3), 2.5)
+        pose = rng.uniform(-1, 1, 3)
         points = rng.uniform(-3, 3, (200, 2))
         centres, radii = rng.uniform(-2, 2, (20, 2)), rng.uniform(0.05, 0.2, 20)
-        return points, viewpoint, centres, radii
+        return points, (camera, pose), centres, radii
 
     return drawn
 
 
-def contained(points, v, margin):
-    offset = points - v.position[:2]
+def eye(camera, pose):
+    """Return the position of a camera in W."""
+    return yaw_rotation(pose[2]) @ camera.position + (*pose[:2], 0.0)
+
+
+def contained(points, camera, pose, margin):
+    position, sight = eye(camera, pose), camera.sight
+    offset = points - position[:2]
     distance = np.hypot(offset[:, 0], offset[:, 1])
-    bearing = np.arctan2(offset[:, 1], offset[:, 0]) - v.heading
-    foot = distance >= np.array([shadow_at(b, v.sight.shadow) for b in bearing])
-    foot &= shown(offset, -v.position[2], v, margin)
-    return (distance <= v.range) & (foot | shown(offset, v.sight.top - v.position[2], v, margin))
+    bearing = np.arctan2(offset[:, 1], offset[:, 0]) - pose[2]
+    foot = distance >= np.array([shadow_at(b, sight.shadow) for b in bearing])
+    foot &= shown(offset, -position[2], camera, pose, margin)
+    top = shown(offset, sight.top - position[2], camera, pose, margin)
+    return (distance <= RANGE) & (foot | top)
 
 
-def shown(offset, up, v, margin):
+def shown(offset, up, camera, pose, margin):
     d = np.column_stack([offset, np.full(len(offset), up)])
-    right, down, forward = (d @ v.rotation).T
-    inside = np.abs(right) <= tan(v.horizontal_half - margin) * forward
-    inside &= np.abs(down) <= tan(v.vertical_half - margin) * forward
+    right, down, forward = (d @ (yaw_rotation(pose[2]) @ camera.rotation)).T
+    inside = np.abs(right) <= tan(0.5 * camera.horizontal_fov - margin) * forward
+    inside &= np.abs(down) <= tan(0.5 * camera.vertical_fov - margin) * forward
     return inside & (forward > 0.0)
 
 
-def blocked(points, v, centres, radii, slack):
-    p, a = points[:, None] - v.position[:2], centres - v.position[:2]
+def blocked(points, camera, pose, centres, radii, slack):
+    origin = eye(camera, pose)[:2]
+    p, a = points[:, None] - origin, centres - origin
     along = np.sum(p * a, axis=2)
     across = p[..., 0] * a[:, 1] - p[..., 1] * a[:, 0]
     nearer = along > np.sum(a * a, axis=1)
@@ -125,24 +133,24 @@ def blocked(points, v, centres, radii, slack):
 
 @pytest.mark.parametrize("seed", range(4))
 def test_points_agree_with_the_formulas_over_arrays(scene, seed):
-    points, v, centres, radii = scene(seed)
-    inside, behind = contained(points, v, 0.05), blocked(points, v, centres, radii, 0.03)
-    clear = v.in_clear_view(points, centres, radii, margin=0.05, occlusion_margin=0.03)
+    points, view, centres, radii = scene(seed)
+    inside, behind = contained(points, *view, 0.05), blocked(points, *view, centres, radii, 0.03)
+    clear = Viewpoint.of(*view, RANGE, 0.05).in_clear_view(points, centres, radii, 0.03)
     assert np.array_equal(clear, inside & ~behind)
     assert 0 < clear.sum() < inside.sum()
 
 
 @pytest.mark.parametrize("seed", range(4))
 def test_cells_agree_with_the_formulas_over_arrays(scene, seed):
-    _, v, centres, radii = scene(seed)
+    _, view, centres, radii = scene(seed)
     corner, cell, count = (-20, -17), 0.1, 40
-    eye, first = v.eye(0.0), np.array(corner, float)
-    marks = observed_cells(first, cell, count, eye, v.sight.shadow, centres, radii)
+    v, first = Viewpoint.of(*view, RANGE), np.array(corner, float)
+    marks = observed_cells(first, cell, count, v.eye, v.shadow, centres, radii)
     x, y = (cell * (first + np.arange(count) + 0.5) for first in corner)
     points = np.stack(np.meshgrid(x, y), axis=-1).reshape(-1, 2)
     apart = np.hypot(*(points[:, None] - centres).transpose(2, 0, 1))
     on = (apart < radii + 0.5 * cell).any(axis=1)
-    observed = np.where(blocked(points, v, centres, radii, 0.0), UNSEEN, FREE)
-    wanted = contained(points, v, 0.0) * np.where(on, OCCUPIED, observed)
+    observed = np.where(blocked(points, *view, centres, radii, 0.0), UNSEEN, FREE)
+    wanted = contained(points, *view, 0.0) * np.where(on, OCCUPIED, observed)
     assert np.array_equal(marks.ravel(), wanted)
     assert set(wanted.tolist()) == {UNSEEN, FREE, OCCUPIED}

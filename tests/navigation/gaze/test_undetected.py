@@ -42,10 +42,10 @@ def test_ground_in_view_loses_its_risk_and_ground_beside_keeps_it(world):
     assert cells[behind, 2].sum() > 50.0 * cells[ahead, 2].sum()
 
 
-def test_undetected_movers_enter_ground_that_was_seen_before(world):
+def test_undetected_movers_enter_ground_that_was_seen_before(world, view):
     local_map, undetected = world(frames=4)
     before = risks(undetected)
-    blind = Viewpoint(np.eye(3), np.array([0.0, 0.0, 0.4]), 0.5, 0.5, 0.0)
+    blind = Viewpoint.of(replace(view(), blind=True), np.zeros(3), 2.5)
     for k in range(150):
         local_map.update(0.3 + 0.06 * k, blind, (0.0, 0.0), *NOTHING)
         undetected.update(local_map, 0.3 + 0.06 * k)
@@ -83,7 +83,7 @@ def test_the_risk_has_the_mirror_symmetry_of_the_world(world):
 def test_the_densities_stay_in_the_world_while_the_map_scrolls(world, view):
     local_map, undetected = world(frames=4, parameters=replace(P, speed=1e-9))
     before = risks(undetected)
-    blind = Viewpoint(np.eye(3), np.array([0.0, 0.0, 0.4]), 0.5, 0.5, 0.0)
+    blind = Viewpoint.of(replace(view(), blind=True), np.zeros(3), 2.5)
     local_map.update(0.3, blind, (0.6, -0.3), *NOTHING)
     undetected.update(local_map, 0.3)
     after = risks(undetected, position=(0.0, 0.0))

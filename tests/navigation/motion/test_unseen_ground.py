@@ -26,9 +26,7 @@ def test_a_look_20_deg_down_shows_all_checked_ground(view):
     eye = Viewpoint.of(view(tilt=-np.radians(20.0)), pose, 3.0)
     for near, shown in ((P.near, True), (0.25, False)):
         points = ground_points(pose, pose[2], replace(P, near=near))
-        visible = eye.in_clear_view(
-            points, np.zeros((0, 2)), np.zeros(0), margin=0.0, occlusion_margin=0.0
-        )
+        visible = eye.in_clear_view(points, np.zeros((0, 2)), np.zeros(0))
         assert visible.all() == shown
 
 

@@ -15,6 +15,7 @@ from hsr8.world.body.kinematic import KinematicBody
 from hsr8.world.camera.rendered import RenderedCamera
 from hsr8.world.field.layout import Obstacle
 from navigation.belief.visibility import Viewpoint
+from navigation.observation import CameraView, Sight
 from vision.detector import Detector
 from vision.parameters import PoseParameters
 from vision.self_mask import BodyPart
@@ -49,17 +50,18 @@ def test_near_obstacles_are_found_where_they_are_expected(world, silent):
         image = eyes.capture(body)()
         rotation = body.data.camera(HEAD_CAMERA).xmat.reshape(3, 3) * (1.0, -1.0, -1.0)
         position = body.data.camera(HEAD_CAMERA).xpos.copy()
-        half = 0.5 * camera.horizontal_fov, 0.5 * camera.vertical_fov
-        looked = Viewpoint(rotation, position, *half, 2.5, 0.0, camera_sight(scenario))
-        if not Viewpoint(rotation, position, *half, 2.5).in_clear_view(
-            point[None], *NOTHING, margin=0.07, occlusion_margin=0.0
-        )[0]:
+        fov = camera.horizontal_fov, camera.vertical_fov
+        view = CameraView(rotation, position, pan, tilt, *fov, sight=camera_sight(scenario))
+        looked, foot = (
+            Viewpoint.of(v, np.zeros(3), 2.5, 0.07).in_clear_view(point[None], *NOTHING)[0]
+            for v in (view, replace(view, sight=Sight()))
+        )
+        if not foot:
             continue  # the foot is outside the image
-        clear = looked.in_clear_view(point[None], *NOTHING, margin=0.07, occlusion_margin=0.0)[0]
         detections = detector.detect(image, HeadCameraPose(rotation, position, pan, tilt))
         x, y = point.tolist()
         off = [np.hypot(d.distance - distance, d.bearing - atan2(y, x)) for d in detections]
-        found[bool(clear)].append(min(off, default=9.0) < 0.2)
+        found[bool(looked)].append(min(off, default=9.0) < 0.2)
     eyes.close()
     assert len(found[True]) > 50
     assert np.mean(found[True]) > 0.99
