@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from navigation.belief.belief import Belief
-from navigation.belief.prediction import predict
+from navigation.belief.estimator import predict
 from navigation.decision import GazeDecision, MotionDecision, Task
 from navigation.motion.landmark_obstacles import LandmarkObstacles
 from navigation.observation import CameraView, Frame

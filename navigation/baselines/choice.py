@@ -3,12 +3,10 @@
 import numpy as np
 
 from navigation.baselines.baseline_planner import Avoidance, BaselinePlanner
-from navigation.baselines.dynamic_window import DynamicWindow
+from navigation.baselines.fields import PlainUnivector, PotentialField
 from navigation.baselines.n_posture import NPosture
 from navigation.baselines.orca import Orca
-from navigation.baselines.path_integral import PathIntegral
-from navigation.baselines.plain_univector import PlainUnivector
-from navigation.baselines.potential_field import PotentialField
+from navigation.baselines.sampling import DynamicWindow, PathIntegral
 from navigation.decision import SpeedLimits
 from navigation.motion.planner import Planner
 from navigation.parameters.navigation import NavigationParameters

@@ -87,7 +87,7 @@ class Belief:
 
     Attributes:
         time: of pose and positions [s]: of the capture, or later after
-            `navigation.belief.prediction`.
+            `navigation.belief.estimator`.
         pose: x, y, heading of R in W (3,) [m, m, rad], heading wrapped.
         pose_covariance: (3, 3).
         tracks: obstacles, by id; see `navigation.belief.tracks` for arrays.

@@ -6,8 +6,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from navigation.belief.belief import Belief, Motion, Track
+from navigation.belief.estimator import predict
 from navigation.belief.local_map import LocalMap
-from navigation.belief.prediction import predict
 from navigation.observation import CameraView
 from navigation.parameters.belief import LocalMapParameters
 

@@ -1,15 +1,20 @@
 import numpy as np
 import pytest
 
+from navigation.belief.belief import Motion
+from navigation.belief.tracks import Tracks
 from navigation.motion.univector import (
     blended_sum,
+    extended_radius,
     nearness,
     normalized,
+    physical_radius,
     shrunk_for_goal,
     weighted_sum,
 )
 from navigation.parameters.motion import UnivectorParameters
 
+P = UnivectorParameters()
 NO_VIRTUAL = np.zeros((0, 2)), np.zeros(0)
 
 
@@ -96,3 +101,25 @@ def test_near_the_goal_the_radius_leaves_its_fraction_of_the_room():
     s, d_e = shrunk_for_goal(s_oe, s_phys, np.array([0.21, 0.3, 0.45]), p)
     assert s == pytest.approx([0.21, 0.25, 0.3])
     assert d_e == pytest.approx([0.03, 0.05, 0.15])
+
+
+def radius(track, velocity=(0.0, 0.0), motion=None, psi_sf=0.0, psi_ob=0.0):
+    o = Tracks.of([track((1, 0), velocity, motion)])
+    return float(extended_radius(o, psi_sf, np.array([psi_ob]), P)[0])
+
+
+def test_a_still_certain_obstacle_has_the_sum_of_the_radii(track):
+    assert radius(track) == pytest.approx(P.s_robot + P.margin + 0.08)
+    o = Tracks.of([track((1, 0))])
+    assert physical_radius(o, P) == pytest.approx([P.s_robot + 0.08])
+
+
+def test_it_grows_with_speed_and_with_each_uncertainty(track):
+    base = radius(track)
+    assert radius(track, (0.1, 0.0)) == pytest.approx(base + 0.1 * P.eta_vo)
+    assert radius(track, psi_sf=0.4) == pytest.approx(base + 0.4 * P.eta_imp)
+    assert radius(track, psi_ob=0.6) == pytest.approx(base + 0.6 * P.eta_imp)
+
+
+def test_a_track_called_static_does_not_grow_with_its_noise(track):
+    assert radius(track, (0.1, 0.0), Motion.STATIC) == radius(track)

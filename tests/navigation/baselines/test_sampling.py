@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from navigation.baselines.planning_scene import PlanningScene
-from navigation.baselines.rollout import contact_cost, gaps, rollout
+from navigation.baselines.sampling import contact_cost, gaps, rollout
 from navigation.belief.tracks import Tracks
 from navigation.decision import Task
 from navigation.parameters.navigation import NavigationParameters
