@@ -35,6 +35,7 @@ NUMBERS: dict[str, dict[str, int]] = {  # attributes of an element, and how many
     "mesh": {"scale": 3},
     "color": {"rgba": 4},
 }
+PARTS, LINK_PARTS = ("link", "joint", "material"), ("inertial", "visual", "collision")
 REQUIRED = {"mass", "box", "sphere", "cylinder", "capsule"}  # elements without defaults
 SHAPES = ("box", "sphere", "cylinder", "capsule", "mesh")
 JOINTS = ("fixed", "revolute", "continuous", "prismatic")
@@ -78,9 +79,6 @@ def read_urdf(
         ModelError: the file cannot be read, a number is invalid, or the links do not form a tree.
     """
     robot = _parsed(file)
-    for element in list(robot):
-        if element.tag not in ("link", "joint", "material"):
-            robot.remove(element)  # among them <mujoco>, whose options are replaced
     _check_numbers(robot, file)
     _check_tree(robot, file)
     _drop_world(robot)
@@ -145,6 +143,7 @@ def drop_invalid_meshes(spec: mujoco.MjSpec) -> list[str]:
 
 
 def _parsed(file: Path) -> Element:
+    """Return the elements of a URDF file, without those for other programs."""
     try:
         robot = ElementTree.fromstring(file.read_bytes())
     except (OSError, ValueError, ElementTree.ParseError) as error:
@@ -155,6 +154,10 @@ def _parsed(file: Path) -> Element:
         )
     if any("xacro" in element.tag for element in robot.iter()):
         raise ModelError(f"{file}: a xacro file; expected the URDF file that `xacro` makes of it")
+    for parent, known in ((robot, PARTS), *((link, LINK_PARTS) for link in robot.findall("link"))):
+        for element in list(parent):
+            if element.tag not in known:
+                parent.remove(element)  # among them <mujoco>, whose options are replaced
     return robot
 
 

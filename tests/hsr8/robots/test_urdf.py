@@ -66,6 +66,13 @@ def test_limits_come_from_the_file(tmp_path):
     assert float(knee.frictionloss[0]) == 0.05
 
 
+def test_elements_of_other_programs_are_ignored(tmp_path):
+    robot = SmallUrdf().element()
+    SubElement(SubElement(link(robot, "l_foot"), "collision_checking"), "capsule", name="sole")
+    SubElement(SubElement(robot, "gazebo"), "capsule")
+    assert soles(robot, tmp_path)[0] == pytest.approx(SOLE)
+
+
 @pytest.mark.parametrize("placeholder", ["-1", "3e38", "10001", "inf"])
 def test_a_placeholder_of_an_effort_is_no_limit(placeholder, tmp_path):
     robot = SmallUrdf().element()
