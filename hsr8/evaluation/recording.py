@@ -5,7 +5,8 @@ from contextlib import ExitStack, suppress
 from dataclasses import asdict, dataclass, replace
 from pathlib import Path
 from time import perf_counter
-from typing import Any
+from types import TracebackType
+from typing import Any, Self
 
 from hsr8 import arithmetic
 from hsr8.compilation_watch import CompilationWatch
@@ -100,6 +101,95 @@ def _manifest(scenario: Scenario, command: Sequence[str], renderer: str) -> Mani
     return replace(manifest, libraries=libraries)
 
 
+class Recording:
+    """Recording of a simulation that its caller drives: a context for its ticks, then a result.
+
+    Args:
+        simulation: simulation that is not yet started; the context starts it.
+        folder: receives tables and results; None keeps them in memory.
+        live: address of a viewer that shows the log during the run; empty for none.
+
+    Raises:
+        RecordingFailed: here and in every method, the folder cannot be written.
+    """
+
+    def __init__(
+        self, simulation: Simulation, folder: RunFolder | None = None, *, live: str = ""
+    ) -> None:
+        self._started, self._wall_time, self._diverged = perf_counter(), 0.0, ""
+        self._simulation, self._folder = simulation, folder
+        self._compiling, self._opened = CompilationWatch(), ExitStack()
+        scenario = simulation.scenario
+        self._memory = Memory() if folder is None else Memory(metrics.COLUMNS)
+        sinks: list[Sink] = [self._memory] if folder is None else [folder, self._memory]
+        if live:
+            # Imported late: runs without a viewer start a third of a second earlier.
+            from hsr8.rerun_log.run_log import RunLog  # noqa: PLC0415
+
+            world = simulation.model, simulation.humanoid, simulation.layout
+            sinks.append(RunLog(live, world, scenario, name=f"{scenario.name} {scenario.seed}"))
+        self._recorder = Recorder(
+            simulation.humanoid.model.names,
+            sinks,
+            scale=simulation.layout.scale,
+            images=IMAGES[scenario.recorder.images],
+            period=LIVE_PERIOD if live else PERIOD,
+        )
+
+    def __enter__(self) -> Self:
+        self._opened.enter_context(self._compiling)
+        self._opened.callback(self._close)
+        self._opened.enter_context(self._simulation)
+        return self
+
+    def __exit__(
+        self,
+        kind: type[BaseException] | None,
+        error: BaseException | None,
+        traceback: TracebackType | None,
+    ) -> None:
+        self._opened.__exit__(kind, error, traceback)
+        self._wall_time = perf_counter() - self._started - self._compiling.seconds
+
+    def append(self, tick: Tick) -> None:
+        """Record one control tick."""
+        self._recorder.append(tick)
+        self._diverged = next((e.text for e in tick.events if e.kind == "diverged"), "")
+
+    def result(self, exit_reason: str = "") -> Result:
+        """Return the result, after the context.
+
+        Args:
+            exit_reason: reason of the caller to end the run; by default that of the simulation.
+        """
+        simulation, scenario = self._simulation, self._simulation.scenario
+        reason = exit_reason or simulation.outcome().exit_reason
+        tables = self._memory.tables()
+        results = metrics.metrics(
+            tables,
+            simulation.layout,
+            scenario.navigation.mission,
+            certificate=simulation.certificate,
+            exit_reason=reason,
+            state_hash=simulation.state_hash(),
+            wall_time=self._wall_time,
+        )
+        run: Run
+        if self._folder is not None:
+            self._folder.write_metrics(results)
+            run = open_run(self._folder.path)
+        else:
+            rows = {name: len(table) for name, table in tables.items()}
+            manifest = _manifest(scenario, (f"{CALL}...)",), scenario.camera.source)
+            ended = manifest.ended(reason, rows)
+            run = MemoryRun(None, asdict(ended), scenario, tables, results)
+        criteria = evaluate_criteria(scenario.criteria, results)
+        return Result(run, results, criteria, self._diverged)
+
+    def _close(self) -> None:
+        self._recorder.close(self._simulation.exit_reason or "error")
+
+
 def record(
     simulation: Simulation,
     folder: RunFolder | None = None,
@@ -119,62 +209,15 @@ def record(
         RecordingFailed: the folder cannot be written.
     """
     try:
-        return _record(simulation, folder, live, on_tick)
+        recording = Recording(simulation, folder, live=live)
+        with suppress(KeyboardInterrupt), recording:
+            for tick in simulation:
+                recording.append(tick)
+                if on_tick is not None:
+                    on_tick(tick)
+        return recording.result()
     except RecordingFailed:
         if folder is not None:
             with suppress(RecordingFailed):
                 folder.note(FAILED, {})
         raise
-
-
-def _record(
-    simulation: Simulation,
-    folder: RunFolder | None,
-    live: str,
-    on_tick: Callable[[Tick], None] | None,
-) -> Result:
-    started, diverged, scenario = perf_counter(), "", simulation.scenario
-    memory = Memory() if folder is None else Memory(metrics.COLUMNS)
-    sinks: list[Sink] = [memory] if folder is None else [folder, memory]
-    if live:
-        # Imported late: runs without a viewer start a third of a second earlier.
-        from hsr8.rerun_log.run_log import RunLog  # noqa: PLC0415
-
-        world = simulation.model, simulation.humanoid, simulation.layout
-        sinks.append(RunLog(live, world, scenario, name=f"{scenario.name} {scenario.seed}"))
-    with CompilationWatch() as compiling:
-        recorder = Recorder(
-            simulation.humanoid.model.names,
-            sinks,
-            scale=simulation.layout.scale,
-            images=IMAGES[scenario.recorder.images],
-            period=LIVE_PERIOD if live else PERIOD,
-        )
-        with suppress(KeyboardInterrupt), ExitStack() as opened:
-            opened.callback(lambda: recorder.close(simulation.exit_reason or "error"))
-            opened.enter_context(simulation)
-            for tick in simulation:
-                recorder.append(tick)
-                if on_tick is not None:
-                    on_tick(tick)
-                diverged = next((e.text for e in tick.events if e.kind == "diverged"), "")
-        wall_time = perf_counter() - started - compiling.seconds
-    results = metrics.metrics(
-        tables := memory.tables(),
-        simulation.layout,
-        scenario.navigation.mission,
-        certificate=simulation.certificate,
-        exit_reason=simulation.outcome().exit_reason,
-        state_hash=simulation.outcome().state_hash,
-        wall_time=wall_time,
-    )
-    run: Run
-    if folder is not None:
-        folder.write_metrics(results)
-        run = open_run(folder.path)
-    else:
-        rows = {name: len(table) for name, table in tables.items()}
-        manifest = _manifest(scenario, (f"{CALL}...)",), scenario.camera.source)
-        ended = manifest.ended(str(results["exit_reason"]), rows)
-        run = MemoryRun(None, asdict(ended), scenario, tables, results)
-    return Result(run, results, evaluate_criteria(scenario.criteria, results), diverged)

@@ -1,14 +1,10 @@
-"""One run of an environment: the simulation, and the tables for its metrics in memory."""
+"""One run of an environment, recorded in memory."""
 
 from contextlib import ExitStack
-from time import perf_counter
-from typing import Any
 
 from hsr8.decisions import Situation
-from hsr8.evaluation import metrics
+from hsr8.evaluation.recording import Recording, Result
 from hsr8.loop import Simulation
-from hsr8.recorder.memory import Memory
-from hsr8.recorder.recorder import Recorder
 from hsr8.scenario.schema import Scenario
 from hsr8.world.truth.truth import Truth
 
@@ -19,30 +15,27 @@ class Episode:
     """Run that stops at the decisions of an environment; close it.
 
     Args:
-        scenario: to run.
-        seed: of the run.
+        scenario: scenario to run.
+        seed: seed of the run.
         footsteps: stop at the decisions of motion only, not at every frame.
         end_on_contact: end at the first contact with an obstacle.
 
     Attributes:
-        simulation: of the run.
-        exit_reason: that of the simulation or contact; empty before the end.
+        simulation: simulation of the run.
+        exit_reason: reason of the simulation, or contact; empty before the end.
     """
 
     def __init__(
         self, scenario: Scenario, seed: int, *, footsteps: bool, end_on_contact: bool
     ) -> None:
-        self._started = perf_counter()
         self._footsteps = footsteps
         self._end_on_contact = end_on_contact
         self.simulation = Simulation(scenario, seed)
         self.exit_reason = ""
         self._situation: Situation | None = None
-        self._memory = Memory(metrics.COLUMNS)
-        joints, scale = self.simulation.humanoid.model.names, self.simulation.layout.scale
-        self._recorder = Recorder(joints, [self._memory], scale=scale)
+        self._recording = Recording(self.simulation)
         self._open = ExitStack()
-        self._open.enter_context(self.simulation)
+        self._open.enter_context(self._recording)
 
     @property
     def truth(self) -> Truth:
@@ -72,22 +65,13 @@ class Episode:
 
     def complete(self) -> None:
         """Complete the tick with the decisions made."""
-        self._recorder.append(self.simulation.step())
+        self._recording.append(self.simulation.step())
         self.exit_reason = self.simulation.exit_reason or ""
 
-    def results(self) -> dict[str, Any]:
-        """Return the metrics of the run, after its end."""
-        self._recorder.close(self.exit_reason)
-        simulation = self.simulation
-        return metrics.metrics(
-            self._memory.tables(),
-            simulation.layout,
-            simulation.scenario.navigation.mission,
-            certificate=simulation.certificate,
-            exit_reason=self.exit_reason,
-            state_hash=simulation.state_hash(),
-            wall_time=perf_counter() - self._started,
-        )
+    def result(self) -> Result:
+        """End the run and return its result."""
+        self.close()
+        return self._recording.result(self.exit_reason)
 
     def close(self) -> None:
         """Close the simulation."""
