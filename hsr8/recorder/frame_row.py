@@ -1,5 +1,10 @@
 """Row of a camera frame: detections, belief and decisions, with the objects in its columns."""
 
+from math import inf
+from typing import Any
+
+import numpy as np
+
 from hsr8.recorder.columns import BOOL, BYTES, INT, SHADE, TEXT, VARYING, Column, Row
 
 POSE, VELOCITY, POSE_COVARIANCE = "m, m, rad", "m/s, m/s, rad/s", "m, rad"
@@ -26,6 +31,14 @@ def camera_columns(path: str, when: str, camera: str, head: str) -> tuple[Column
         Column(head, pan_tilt, f"measured pan and tilt{when}", "rad", (2,)),
         Column(f"{head}_rate", rates, f"measured rates of pan and tilt{when}", "rad/s", (2,)),
     )
+
+
+def _nearest_track(recorded: Any) -> float:
+    """Return the distance of a `RecordedFrame`."""
+    belief = recorded.frame.belief
+    position = belief.pose[:2]
+    distances = (float(np.hypot(*(t.position - position))) - t.radius for t in belief.tracks)
+    return min(distances, default=inf)
 
 
 DETECTION = Row(
@@ -165,6 +178,12 @@ FRAME = Row(
         type=TEXT,
     ),
     Column("tracks", f"{BELIEF}.tracks", "believed obstacles", items=TRACK),
+    Column(
+        "nearest_track",
+        _nearest_track,
+        "distance of the robot axis to the nearest believed obstacle, infinite without one",
+        "m",
+    ),
     Column("target", f"{TASK}.target", "destination in W", "m", (2,)),
     Column("target_heading", f"{TASK}.heading", "heading to arrive with", "rad"),
     Column(

@@ -35,6 +35,7 @@ LOCALIZATION = {"localized": GREEN, "lost": RED}
 LANES = {"planner": SITUATIONS, "gaze": GAZE, "localization": LOCALIZATION}
 PLOTS = {
     "clearance": (("clearance [m]", BLUE),),
+    "clearance/believed": (("nearest believed obstacle, from the robot axis [m]", ORANGE),),
     "partial": (("ψ local map", GREY), ("ψ self", BLUE), ("ψ obstacle", ORANGE), ("ψ way", GREEN)),
     "pose_error": (("position error [m]", BLUE), ("2σ [m]", GREY), ("heading error [rad]", ORANGE)),
 }
@@ -63,6 +64,10 @@ def log_decisions(log: LogStream, frames: Table, truth: Array) -> None:
     """Log camera frames, each with the true pose of that time (n, 3) [m, m, rad]."""
     times = frames["time"]
     log.curves("/plots/partial", times, frames["psi"])
+    if "nearest_track" in frames:  # runs of earlier versions have none
+        nearest = frames["nearest_track"][:, None]
+        shown = np.where(np.isfinite(nearest), nearest, np.nan)
+        log.curves("/plots/clearance/believed", times, shown)
     dx, dy, turn = (frames["pose"] - truth).T
     spread = 2.0 * ellipse.axes(frames["pose_covariance"][:, :2, :2])[0][:, 0]
     turned = [abs(wrap(angle)) for angle in turn.tolist()]
