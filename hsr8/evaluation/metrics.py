@@ -81,7 +81,7 @@ def metrics(
     truth = truth_at(frames, records)
     time = float(records["time"][-1]) if len(records) else 0.0
     arrival = _arrival(frames, truth, layout, mission)
-    collisions = _collisions(records)
+    collisions, first = _collisions(records)
     moving = sum(c.moving for c in collisions)
     path, standing = _path(records, layout.scale)
     falls, tilt = _falls(records)
@@ -110,6 +110,7 @@ def metrics(
         "collisions_moving": moving,
         "collisions_static": len(collisions) - moving,
         "collisions_at_fault": sum(c.closing for c in collisions),
+        "first_collision_s": first,
         "collisions_per_m": len(collisions) / path if path > 0.0 else None,
         "via_points_missed": arrival.missed,
         "max_tilt_deg": degrees(tilt),
@@ -187,16 +188,16 @@ def _arrival_error(records: Table, layout: Layout, arrival: _Arrival) -> float |
     return degrees(abs(wrap(float(records["robot"][-1, 2]) - layout.goal_heading)))
 
 
-def _collisions(records: Table) -> list[Contact]:
-    """Return the first contact of each collision."""
+def _collisions(records: Table) -> tuple[list[Contact], float | None]:
+    """Return the first contact of each collision, and the time of the first collision [s]."""
     counter, table = CollisionCounter(), records["contacts"]
     columns = (table[name].tolist() for name in Contact.__dataclass_fields__)
     contacts = [Contact(*values) for values in zip(*columns, strict=True)]
-    ends = np.cumsum(table.counts)
-    for row in np.flatnonzero(table.counts).tolist():
+    ends, rows = np.cumsum(table.counts), np.flatnonzero(table.counts)
+    for row in rows.tolist():
         touching = contacts[ends[row] - table.counts[row] : ends[row]]
         counter.add(float(records["time"][row]), tuple(touching))
-    return counter.collisions
+    return counter.collisions, float(records["time"][rows[0]]) if len(rows) else None
 
 
 def _falls(records: Table) -> tuple[int, float]:

@@ -139,6 +139,11 @@ SECTIONS = {
             RUN | COUNT | COMPARED,
             "collisions",
         ),
+        Metric(
+            "first_collision_s",
+            "time of the first collision, for `hsr8 replay --time` and `hsr8 render --start`",
+            RUN,
+        ),
         Metric("collisions_moving", "collisions with movers", RUN | COUNT, "with moving obstacles"),
         Metric(
             "collisions_static",

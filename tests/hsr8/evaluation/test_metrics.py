@@ -129,6 +129,7 @@ def test_collisions_by_kind(measure, fake):
     records = (fake.record(0.02 * k, contacts=touched.get(k, ())) for k in range(100))
     results = measure(records)
     assert results["collisions"] == 3
+    assert results["first_collision_s"] == pytest.approx(0.2)
     assert results["collisions_moving"] == 2
     assert results["collisions_static"] == 1
     assert results["collisions_at_fault"] == 1
