@@ -141,7 +141,7 @@ SECTIONS = {
         ),
         Metric(
             "first_collision_s",
-            "time of the first collision, for `hsr8 replay --time` and `hsr8 render --start`",
+            "time of the first collision, as a start for `--start` of `hsr8 render`",
             RUN,
         ),
         Metric("collisions_moving", "collisions with movers", RUN | COUNT, "with moving obstacles"),
