@@ -23,7 +23,7 @@ import tyro
 from hsr8.api import run
 from hsr8.cli.command_line import settings
 from hsr8.cli.main import COMMANDS, entry, parse
-from hsr8.errors import RenderingUnavailable
+from hsr8.errors import RenderingUnavailable, UsageError
 from hsr8.gl import require_gl
 from hsr8.robots.description import read_description
 from hsr8.robots.locate import find_description, installed_model, robot_names
@@ -47,7 +47,12 @@ RUNS = ("quick", "course", "paper")  # that a page may take for done
 STANDS_FOR = {
     **dict.fromkeys(("SCENARIO", "NAME", "FILE"), "quick"),
     **{"ROBOT": "hsr8", "RUN": "runs/quick", "A": "runs/quick", "B": "runs/course", "A:B": "0:2"},
-    **{"PNG": "picture.png", "IMAGE...": "image.png", "$SLURM_ARRAY_TASK_ID/32": "1/32"},
+    **{
+        "MODEL": "my_robot.xml",
+        "PNG": "picture.png",
+        "IMAGE...": "image.png",
+        "$SLURM_ARRAY_TASK_ID/32": "1/32",
+    },
 }
 # Appended, since of an option given twice the last one holds.
 IN_SHORT = {
@@ -58,8 +63,8 @@ IN_SHORT = {
     "render": ["--size", "64x64", "--fps", "10"],
     "replay": ["--time", "0.1"],
 }
-# Only read, since they would need what the page cannot give or take seconds.
-ONLY_READ = {"color-table", "doctor --compile", "robot inspect", "robot check", "robot calibrate"}
+# Only read: the first needs labelled images, the others take long.
+ONLY_READ = {"color-table", "doctor --compile", "robot check", "robot calibrate"}
 WITHOUT_ARGUMENTS = {"list", "doctor", "schema"}
 GOOD = {"success": True, "collisions": 0, "falls": 0, "path_length_m": 2.0, "exit_reason": "goal"}
 
@@ -140,9 +145,9 @@ def draws():
 
 
 def installed(robot):
-    """Whether the model of a robot is there, which a page may leave to its reader."""
+    """Whether the model of a shipped robot is there, which a page may leave to its reader."""
     if robot not in robot_names():
-        return False
+        return True
     file = find_description(robot)
     return installed_model(read_description(file), file.parent) is not None
 
@@ -155,7 +160,7 @@ def hsr8(words, capsys):
     elif (
         ONLY_READ & set(given)
         or " ".join(given[:2]) in ONLY_READ
-        or (given[0] in ("render", "doctor") and not draws())
+        or ((given[0] in ("render", "doctor") or "--image" in given) and not draws())
         or (given[0] == "replay" and "--view" in given)  # lasts until Ctrl-C
         or ("--robot" in given and not installed(given[given.index("--robot") + 1]))
     ):
@@ -216,6 +221,8 @@ def others(words):
         project = tomllib.loads((ROOT / "pyproject.toml").read_text())["project"]
         for extra in re.findall(r"^\.\[(\w+)\]", words[-1]):
             assert extra in project["optional-dependencies"]
+    if words[:2] == ["docker", "run"]:
+        parse(words[words.index("hsr8") + 1 :])
     assert words[0] in OTHERS, f"{shlex.join(words)}: say in {__name__} how this is executed"
 
 
@@ -230,10 +237,11 @@ def finished(tmp_path_factory):
 
 @pytest.fixture
 def stand_ins(monkeypatch, tmp_path, finished):
-    """Where a page is followed: runs lie there, nothing opens a window or takes hours."""
+    """A folder with runs and a robot, where nothing opens a window or takes hours."""
     monkeypatch.chdir(tmp_path)
     for name in RUNS:
         shutil.copytree(finished, tmp_path / "runs" / name)
+    shutil.copy(ROOT / "models" / "hsr8" / "hsr8.xml", tmp_path / "my_robot.xml")
     monkeypatch.setattr("hsr8.api.run", run_in_short)
     monkeypatch.setattr("hsr8.evaluation.sweep.runs.require_gl", lambda: "none")
     monkeypatch.setattr("hsr8.evaluation.sweep.runs.open_executor", lambda name, workers: Instant())
@@ -312,11 +320,14 @@ def test_every_command_of_the_page_works(page, stand_ins, capsys, monkeypatch):
         "make coffee",
         "bash scripts/no_such.sh",
         "pip install '.[tea]'",
+        "hsr8 run course --robot no_robot.toml",
+        "docker run --rm hsr8 rum quick",
         "frobnicate",
     ],
 )
 def test_a_wrong_command_is_found(line, stand_ins, capsys, monkeypatch):
-    wrong = (AssertionError, pytest.fail.Exception, OSError, subprocess.CalledProcessError)
+    failed = pytest.fail.Exception
+    wrong = (AssertionError, UsageError, OSError, failed, subprocess.CalledProcessError)
     with pytest.raises(wrong):
         follow(f"```bash\n{line}\n```\n", capsys, monkeypatch)
 
