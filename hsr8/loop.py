@@ -249,7 +249,7 @@ class Simulation:
 
         Args:
             vx: forward [m/s].
-            vy: to the left [m/s].
+            vy: velocity to the left [m/s].
             wz: yaw rate, counter-clockwise positive [rad/s].
 
         Raises:

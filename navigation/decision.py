@@ -101,7 +101,7 @@ class VirtualObstacle:
     Attributes:
         position: p_vo in W (2,) [m].
         radius: R_vo [m].
-        track_id: of its mover.
+        track_id: id of its mover.
     """
 
     position: Array

@@ -30,7 +30,7 @@ class Mission:
         """Start at the first waypoint.
 
         Args:
-            waypoints: in W (n, 2) [m], n >= 1.
+            waypoints: positions in W (n, 2) [m], n >= 1.
             goal_heading: heading at the goal [rad]; None for any.
             endless: whether the waypoints are a tour.
             parameters: arrival distances and tolerance.

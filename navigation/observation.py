@@ -128,8 +128,8 @@ class Frame:
         time: capture time [s].
         odometry: pose of R in the odometry frame at capture (x, y, yaw) (3,) [m, m, rad];
             yaw is unwrapped.
-        motion_covariance: of the odometry increment since the previous frame, a displacement in
-            R of the previous frame and a turn (3, 3).
+        motion_covariance: covariance of the odometry increment since the previous frame, a
+            displacement in R of that frame and a turn (3, 3).
         view: pose and field of view of the camera.
         observations: detections.
     """

@@ -22,7 +22,7 @@ class SamplePoints:
     Attributes:
         distance: (n,) [m].
         bearing: (n,) [rad].
-        points: in R (n, 2) [m].
+        points: points in R (n, 2) [m].
     """
 
     distance: Array
@@ -82,7 +82,7 @@ def psi_self(pose_covariance: Array, parameters: EvaluationParameters) -> float:
     """Return psi_sf, the self-localization uncertainty (Yoo & Kim, eq. (2)).
 
     Args:
-        pose_covariance: of x, y, heading (3, 3).
+        pose_covariance: covariance of x, y, heading (3, 3).
         parameters: thresholds; `t_heading` = 0 ignores the heading.
     """
     psi = max_deviation(pose_covariance[:2, :2]) / parameters.t_sf

@@ -34,8 +34,8 @@ def find_posts(
     """Return the pairs of blobs stacked like the two colours of a beacon.
 
     Args:
-        blobs: of one image.
-        outlines: of the blobs.
+        blobs: blobs of one image.
+        outlines: outlines of the blobs.
         indices: the blobs of beacon colours.
         camera_height: above the floor [m].
         parameters: sizes of beacons.

@@ -20,7 +20,7 @@ class Blob:
     """Connected component of one colour class.
 
     Attributes:
-        label: of its colour class.
+        label: label of its colour class.
         box: left, top, right, bottom pixel, right and bottom exclusive.
         runs: run-length encoding: row, first and last (exclusive) column and label of each run,
             by row, then column (n, 4) [pixel].

@@ -27,8 +27,8 @@ class ColorClass:
     """Colour class.
 
     Attributes:
-        name: of the colour.
-        kind: of the objects painted in it.
+        name: name of the colour.
+        kind: kind of the objects painted in it.
         rgb: paint, channels 0..1, well below 1 so that strong light clips no channel and keeps
             the hue.
         hue: first and last hue in OpenCV's half degrees, 0..180; first > last wraps

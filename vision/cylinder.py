@@ -39,7 +39,7 @@ class RimCue:
 
     Attributes:
         rim: points.
-        height: of the rim above the floor [m].
+        height: height of the rim above the floor [m].
         near: near half of the circle, else the far half.
     """
 
@@ -54,8 +54,8 @@ class Candidate:
 
     Attributes:
         left, right: sides of larger and smaller azimuth.
-        rims: at most three.
-        height: of the cylinder [m].
+        rims: rim edges, at most three.
+        height: height of the cylinder [m].
         radius: known or typical radius [m].
         radius_sigma: its standard deviation [m].
     """
@@ -73,10 +73,10 @@ class Cylinder:
     """Located cylinder relative to the camera.
 
     Attributes:
-        azimuth: of the axis from the heading of the camera [rad].
+        azimuth: azimuth of the axis from the heading of the camera [rad].
         distance: horizontal, from the camera to the axis [m].
         radius: [m].
-        covariance: of (azimuth, distance, radius) (3, 3).
+        covariance: covariance of (azimuth, distance, radius) (3, 3).
         misfit: sum of squared normalized residuals of the edges [1].
         outlier_fraction: fraction of outliers among the rim points [1].
     """
@@ -148,7 +148,7 @@ def locate(
         roundness_sigma: standard deviation of the outline relative to the radius [1].
         edge_correlation: correlation of the errors of two points of one edge [1].
         outlier_threshold: deviation of an outlier from its rim [standard deviations].
-        unit: of length, in which the bounds of the kernel are given [m].
+        unit: unit of length, in which the bounds of the kernel are given [m].
     """
     if not candidates:
         return []

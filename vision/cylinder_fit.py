@@ -289,8 +289,8 @@ def fit(
             deviation of one slope, of all rims, from low to high for each candidate (m, 3).
         first_rims: first rim of each candidate, and m (n + 1,).
         points: first point of each rim, and their number (m + 1,).
-        azimuth: of the points of the rims [rad].
-        slope: of the points of the rims [1].
+        azimuth: azimuths of the points of the rims [rad].
+        slope: slopes of the points of the rims [1].
         pose: height of the camera [m]; variances of its tilt, roll, yaw [rad²], height [m²], and
             of the motion blur by pan and tilt [rad²] (7,).
         options: roundness, edge correlation and outlier threshold as for

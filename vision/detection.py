@@ -19,7 +19,7 @@ class Detection:
         label: colour class of an obstacle; ``top/bottom`` colour classes of a beacon.
         bearing: direction of the axis, counter-clockwise from x of R [rad].
         distance: horizontal distance of the axis from the origin of R [m].
-        covariance: of (distance, bearing) (2, 2) [m², m rad, rad²].
+        covariance: covariance of (distance, bearing) (2, 2) [m², m rad, rad²].
         radius: radius of the cylinder [m].
         radius_sigma: its standard deviation [m].
         by_radius: partial derivatives of (distance, bearing) with respect to the radius (2,)

@@ -31,7 +31,7 @@ class _Hypothesis:
     Attributes:
         kind: obstacle or beacon.
         blobs: one of an obstacle, upper and lower of a beacon.
-        outline: of the last blob.
+        outline: outline of the last blob.
         candidate: edges.
         occluded: whether it is partly occluded.
     """
@@ -87,7 +87,7 @@ class Detector:
 
         Args:
             image: RGB (height, width, 3).
-            pose: of the camera at capture.
+            pose: pose of the camera at capture.
 
         Raises:
             VisionError: the image does not have the size of the camera or is not RGB of uint8.

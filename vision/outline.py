@@ -41,7 +41,7 @@ class Side:
     """One side edge of a blob.
 
     Attributes:
-        azimuth: from the heading of the camera [rad].
+        azimuth: azimuth from the heading of the camera [rad].
         sigma: standard deviation of one point of it [rad].
         count: number of independent points averaged.
         low, high: minimum and maximum slope of the visible edge [1].
@@ -63,8 +63,8 @@ class Rim:
     """Lower or upper edge of a blob, without its ends and cut parts.
 
     Attributes:
-        azimuth: of its points from the heading of the camera (n,) [rad].
-        slope: of its points (n,) [1].
+        azimuth: azimuths of its points from the heading of the camera (n,) [rad].
+        slope: slopes of its points (n,) [1].
         outer: label of the outer neighbour of each point, 0 for the background (n,).
         sigma: standard deviation of one slope [1].
     """
@@ -114,7 +114,7 @@ def trace(
     """Trace the silhouette edges of blobs.
 
     Args:
-        blobs: of one image.
+        blobs: blobs of one image.
         padded: its labels with a border of `OUTSIDE` one pixel wide (h + 2, w + 2).
         view: camera and pose.
         edge_sigma: standard deviation of one point of an edge [pixel].
@@ -266,7 +266,7 @@ def silhouettes(
 
     Args:
         boxes: left, top, right, bottom of the blobs (n, 4) [pixel].
-        extents: of the blobs, concatenated.
+        extents: extents of the blobs, concatenated.
         padded: labels of the image with a border of `OUTSIDE` one pixel wide (h + 2, w + 2).
         view: packed.
 
@@ -340,8 +340,8 @@ def envelopes(
 
     Args:
         box: left, top, right, bottom of the blob (4,) [pixel].
-        extents: of the blob.
-        runs: of the blob.
+        extents: extents of the blob.
+        runs: runs of the blob.
         padded: labels of the image with a border of `OUTSIDE` one pixel wide (h + 2, w + 2).
         view: packed.
 

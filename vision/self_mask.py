@@ -29,8 +29,8 @@ class BodyPart:
     """Bounding volume of a limb: the convex hull of spheres fixed in the robot frame R.
 
     Attributes:
-        centres: of the spheres (n, 3) [m].
-        radii: of the spheres (n,) [m], including the motion of the limb.
+        centres: centres of the spheres (n, 3) [m].
+        radii: radii of the spheres (n,) [m], including the motion of the limb.
     """
 
     centres: Array
@@ -57,11 +57,11 @@ def apply_self_mask(
     """Set the label of the background that may be the robot's body, in place.
 
     Args:
-        parts: of the body.
-        labels: of the image (h, w).
+        parts: parts of the body.
+        labels: labels of the image (h, w).
         camera: intrinsics.
-        pose: of the camera.
-        label: of the self mask.
+        pose: pose of the camera.
+        label: label of the self mask.
 
     Returns:
         Whether the body may be in the image.
@@ -94,10 +94,10 @@ def silhouette(
     outside the image on one side.
 
     Args:
-        centres: of the spheres (n, 3) [m].
-        radii: of the spheres (n,) [m].
-        position: of the camera (3,) [m].
-        rotation: of the camera, columns are its right, down and forward axes (3, 3).
+        centres: centres of the spheres (n, 3) [m].
+        radii: radii of the spheres (n,) [m].
+        position: position of the camera (3,) [m].
+        rotation: rotation of the camera, columns are its right, down and forward axes (3, 3).
         camera: half width, half height and focal length (3,) [pixel].
     """
     points = np.empty((RIM_POINTS * len(centres), 2))

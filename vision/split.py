@@ -71,7 +71,7 @@ def split(
 
     Args:
         blob: merged blob.
-        outline: of the blob.
+        outline: outline of the blob.
         padded: labels of the image with a border of `OUTSIDE` one pixel wide.
         view: camera and pose.
         parameters: sizes of obstacles.
@@ -332,7 +332,7 @@ def pieces_of(
         envelope: (n,) [1].
         usable: columns where the outline is an edge of an object (n,).
         start: azimuth of the right border of the first column [rad].
-        width: of a column [rad].
+        width: width of a column [rad].
         min_step: minimum step between two pieces [1].
         drop: height of the rim minus that of the camera [m].
         nearest: whether the outline is of the nearest object of each column, else the farthest.

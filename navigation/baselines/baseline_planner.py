@@ -45,8 +45,8 @@ class BaselinePlanner:
 
         Args:
             parameters: profile; univector, velocity_mapping and planner are used.
-            limits: of the walking layer.
-            avoidance: of the baseline.
+            limits: speed limits of the walking layer.
+            avoidance: obstacle avoidance of the baseline.
         """
         self._parameters = parameters
         self._limits = limits
@@ -58,8 +58,8 @@ class BaselinePlanner:
         """Decide the motion of the next footstep; call once per footstep.
 
         Args:
-            belief: of the robot.
-            task: of the mission.
+            belief: belief of the robot.
+            task: task of the mission.
             look: direction in W that the body turns to for a fixed camera, if any [rad].
         """
         heading = float(belief.pose[2])

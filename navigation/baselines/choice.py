@@ -18,9 +18,9 @@ def build_planner(
     """Build the planner of `parameters.planner.method`.
 
     Args:
-        parameters: of all decisions.
-        limits: of the walking layer.
-        rng: for the samples of `mppi`.
+        parameters: parameters of all decisions.
+        limits: speed limits of the walking layer.
+        rng: generator of the samples of `mppi`.
     """
     p = parameters.planner
     avoidance: Avoidance

@@ -114,7 +114,7 @@ def orca_plane(
     """Return the half-plane of velocities without collision with one disc within `horizon`.
 
     Args:
-        position: of the disc relative to the robot [m].
+        position: position of the disc relative to the robot [m].
         relative: velocity of the robot relative to the disc [m/s].
         own: velocity of the robot [m/s].
         radius: collision distance [m].

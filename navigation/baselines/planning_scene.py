@@ -20,16 +20,16 @@ class PlanningScene:
     """Inputs of one decision.
 
     Attributes:
-        pose: of the robot in W (3,) [m, m, rad].
+        pose: pose of the robot in W (3,) [m, m, rad].
         body: present velocity of the robot in R (3,) [m/s, m/s, rad/s].
         obstacles: n obstacles in W.
-        inflation: of their radii by uncertainty (n,) [m].
-        task: of the mission.
+        inflation: enlargement of their radii by uncertainty (n,) [m].
+        task: task of the mission.
         course: direction of the move-to-goal field in W [rad].
         speed: desired speed along the course [m/s].
         facing: target heading; None for the direction of motion [rad].
-        side: of the arrival, see `move_to_goal`.
-        limits: of the walking layer.
+        side: side of the arrival, see `move_to_goal`.
+        limits: speed limits of the walking layer.
         parameters: profile.
     """
 

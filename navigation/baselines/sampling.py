@@ -153,7 +153,7 @@ def gaps(position: Array, scene: PlanningScene, radii: Array, max_gap: float) ->
     """Return the gap to the nearest obstacle after every footstep (k, t) [m].
 
     Args:
-        position: of k sequences of t footsteps (k, t, 2) [m].
+        position: positions of k sequences of t footsteps (k, t, 2) [m].
         scene: obstacles, which continue at constant velocity.
         radii: collision distances of the obstacles (n,) [m].
         max_gap: upper bound of the gap [m].

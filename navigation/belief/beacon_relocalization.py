@@ -49,7 +49,7 @@ class BeaconRelocalization:
         """Return whether the pose must be wrong, after the beacons of one frame.
 
         Args:
-            time: of the frame [s].
+            time: time of the frame [s].
             accepted: beacons inside the gate.
             rejected: beacons outside the gate.
         """

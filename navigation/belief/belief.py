@@ -29,8 +29,8 @@ class Particles:
     """Particle set of a lost mover.
 
     Attributes:
-        positions: in W (n, 2) [m].
-        velocities: in W (n, 2) [m/s].
+        positions: positions in W (n, 2) [m].
+        velocities: velocities in W (n, 2) [m/s].
         turn_rates: left positive (n,) [rad/s].
         weights: sum to one (n,).
     """
@@ -50,7 +50,7 @@ class Track:
         label: colour class.
         position: (2,) [m].
         velocity: (2,) [m/s]; zero for a static track.
-        covariance: of (x, y, vx, vy) (4, 4).
+        covariance: covariance of (x, y, vx, vy) (4, 4).
         radius: [m].
         radius_sigma: [m].
         motion: motion class.
@@ -58,7 +58,7 @@ class Track:
         age: time from its last detection to the capture of the frame [s].
         last_seen: position of its last detection (2,) [m].
         visible: detected in the latest frame.
-        particles: of a lost track that may move, else None.
+        particles: particles of a lost track that may move, else None.
         reach: radius of the reachable disc of its axis around `last_seen`: three standard
             deviations of that detection plus, unless static, max_speed times age [m].
         turn_rate: left positive; zero for a static track [rad/s].
@@ -86,7 +86,7 @@ class Belief:
     """Pose, tracks and local map after a camera frame.
 
     Attributes:
-        time: of pose and positions [s]: of the capture, or later after
+        time: time of pose and positions [s]: that of the capture, or later after
             `navigation.belief.estimator`.
         pose: x, y, heading of R in W (3,) [m, m, rad], heading wrapped.
         pose_covariance: (3, 3).

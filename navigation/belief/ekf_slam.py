@@ -34,7 +34,7 @@ class EkfSlam:
     """Extended Kalman filter of the pose and the mapped landmarks.
 
     Args:
-        parameters: of the belief.
+        parameters: parameters of the belief.
         pose: x, y, heading at the start (3,) [m, m, rad].
 
     Attributes:
@@ -106,8 +106,8 @@ class EkfSlam:
         The map does not change while lost, because the tracks are displaced by the wrong pose.
 
         Args:
-            frame: of the last update.
-            tracks: after that frame.
+            frame: frame of the last update.
+            tracks: tracks after that frame.
         """
         if self.lost:
             return

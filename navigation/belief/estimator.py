@@ -26,11 +26,11 @@ class Estimator:
     """Estimator of the belief from camera frames.
 
     Args:
-        parameters: of localization, tracking and local map.
+        parameters: parameters of localization, tracking and local map.
         beacons: position in W by name [m]; empty: EKF SLAM, in which the start pose is exact and
             defines W.
         start_pose: x, y, heading of R in W (3,) [m, m, rad].
-        start_covariance: of the start pose (3, 3).
+        start_covariance: covariance of the start pose (3, 3).
         rng: source of the particles of lost tracks.
     """
 
@@ -102,7 +102,7 @@ def predict(belief: Belief, then: Array, now: Array, time: float, view: CameraVi
     and the local map remain those of the frame.
 
     Args:
-        belief: at the capture.
+        belief: belief at the capture.
         then: pose of R in the odometry frame at the capture (3,) [m, m, rad].
         now: pose of R in the odometry frame now (3,) [m, m, rad].
         time: now [s].

@@ -120,8 +120,8 @@ def mix(
         covariances: (n, 3, 5, 5).
         changes: probability of mode j after mode i (3, 3).
         dt: time since the last mixing [s].
-        start_variance: of the velocity of an obstacle that starts to move [m²/s²].
-        turn_variance: of its turn rate [rad²/s²].
+        start_variance: variance of the velocity of an obstacle that starts to move [m²/s²].
+        turn_variance: variance of its turn rate [rad²/s²].
     """
     n = len(weights)
     mixed_weights, mixed = np.zeros((n, 3)), np.zeros((n, 3, SIZE))
@@ -200,7 +200,7 @@ def move(
         covariances: (n, 3, 5, 5).
         dt: [s].
         q: square root of the density of the white acceleration [m/s^1.5].
-        diffusion: of a static obstacle [m²/s].
+        diffusion: diffusion of a static obstacle [m²/s].
         keep: autocorrelation of the turn rate after dt [1].
         turn_variance: stationary variance of the turn rate [rad²/s²].
     """

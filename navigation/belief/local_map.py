@@ -96,7 +96,7 @@ class LocalMap:
         """Update by one frame.
 
         Args:
-            time: of the frame [s].
+            time: time of the frame [s].
             viewpoint: its camera in W.
             centre: position of the robot in W [m].
             obstacles: centres of the detected obstacles in W (n, 2) [m].
@@ -165,7 +165,7 @@ def lookup(points: Array, corner: Corner, cell: float, cells: Array, outside: fl
     """Return the values of a square grid at points (m,).
 
     Args:
-        points: in W (m, 2) [m].
+        points: points in W (m, 2) [m].
         corner: index of the first column and row, counted from the origin of W.
         cell: side of a cell [m].
         cells: rows along y, columns along x (n, n).
@@ -187,10 +187,10 @@ def free(points: Array, corner: Corner, cell: float, log_odds: Array) -> Mask:
     """Return whether the five cells in a cross around each point are free (m,).
 
     Args:
-        points: in W (m, 2) [m].
+        points: points in W (m, 2) [m].
         corner: index of the first column and row, counted from the origin of W.
         cell: side of a cell [m].
-        log_odds: of occupancy, rows along y, columns along x (n, n).
+        log_odds: log odds of occupancy, rows along y, columns along x (n, n).
     """
     n = len(log_odds)
     empty = np.zeros(len(points), np.bool_)
@@ -211,10 +211,10 @@ def update_grid(
     """Update a grid by one frame, in place.
 
     Args:
-        marks: of the frame (n, n), see `observed_cells`.
+        marks: marks of the frame (n, n), see `observed_cells`.
         seen_at: time at which each cell was last seen (n, n) [s].
-        log_odds: of occupancy (n, n).
-        time: of the frame [s].
+        log_odds: log odds of occupancy (n, n).
+        time: time of the frame [s].
         evidence: change of the log odds of a free and of an occupied cell, and their maximum
             absolute value [1].
     """

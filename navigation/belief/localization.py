@@ -29,7 +29,7 @@ class Localizer:
         parameters: noise, gate and recovery.
         beacons: position in W by name [m].
         pose: x, y, heading at the start (3,) [m, m, rad].
-        covariance: of the start pose (3, 3).
+        covariance: covariance of the start pose (3, 3).
 
     Attributes:
         lost: whether the beacons have contradicted the pose for too long.

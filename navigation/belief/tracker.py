@@ -75,7 +75,7 @@ class Tracker:
             detections: detections in W.
             viewpoint: camera in W, with the range and the part of the image in which detection is
                 certain.
-            on_free_floor: which detections are on floor seen empty before (m,): a new obstacle
+            on_free_floor: whether each detection is on floor seen empty before (m,): a new obstacle
                 there has moved.
         """
         p, rows = self._limits, detections.rows

@@ -23,7 +23,7 @@ class BlindGaze(GazePolicy):
     """Gaze that depends on time alone; this one looks straight ahead.
 
     Args:
-        parameters: of the decisions.
+        parameters: parameters of the decisions.
         grid: cells of the gaze map.
     """
 

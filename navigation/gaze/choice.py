@@ -37,7 +37,7 @@ def gaze_policy(
 
     Args:
         parameters: profile.
-        limits: of the walking layer.
+        limits: speed limits of the walking layer.
         grid: cells of the gaze map.
         beacons: known positions in W (m, 2) [m].
         neck: maximum rate [rad/s] and acceleration [rad/s²] of the camera.

@@ -60,8 +60,8 @@ class GazeGrid:
 
         Args:
             parameters: limits of the gaze, resolution and size of the boxes.
-            horizontal_fov: of the camera [rad].
-            vertical_fov: of the camera [rad].
+            horizontal_fov: horizontal field of view of the camera [rad].
+            vertical_fov: vertical field of view of the camera [rad].
         """
         p = parameters
         self._step = p.step

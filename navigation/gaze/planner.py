@@ -42,7 +42,7 @@ class GazePlanner:
 
         Args:
             parameters: profile.
-            limits: of the walking layer.
+            limits: speed limits of the walking layer.
             beacons: positions in W by name [m].
             fov: horizontal and vertical field of view of the camera [rad].
             neck: maximum rate [rad/s] and acceleration [rad/s²] of the camera.
@@ -63,8 +63,8 @@ class GazePlanner:
         """Choose the gaze; call at every frame.
 
         Args:
-            belief: of the robot.
-            task: of the mission.
+            belief: belief of the robot.
+            task: task of the mission.
             motion: decision of the planner, None before the first.
 
         Returns:

@@ -22,7 +22,7 @@ class GazeContext:
     """Inputs of a gaze decision.
 
     Attributes:
-        task: of the mission.
+        task: task of the mission.
         motion: decision of the planner, None before the first.
         scene: belief and partial evaluations.
     """

@@ -38,8 +38,8 @@ class RiskGaze(GazePolicy):
     """Gaze at the view of the highest value per time, decided at every frame.
 
     Args:
-        parameters: of the decisions.
-        limits: of the walking layer.
+        parameters: parameters of the decisions.
+        limits: speed limits of the walking layer.
         grid: views.
         beacons: known positions in W (m, 2) [m].
         neck: maximum rate [rad/s] and acceleration [rad/s²] of the camera.

@@ -34,19 +34,19 @@ class GazeScene:
     """Scene of one gaze decision.
 
     Attributes:
-        belief: of the robot.
+        belief: belief of the robot.
         obstacles: all tracks (n).
-        bearing: of the obstacles in R (n,) [rad].
-        distance: of the obstacles (n,) [m].
+        bearing: bearings of the obstacles in R (n,) [rad].
+        distance: distances of the obstacles (n,) [m].
         attended: the set O (n,).
-        reachable: within pan and half a field of view (n,).
+        reachable: whether each is within pan and half a field of view (n,).
         psi_ob: eq. (3) (n,).
         psi_sf: eq. (2).
         psi_way: eq. (4).
         map: eq. (1).
         samples: its sample points.
-        beacon_bearing: of the beacons within reach and range, in R (m,) [rad].
-        beacon_distance: of these beacons (m,) [m].
+        beacon_bearing: bearings of the beacons within reach and range, in R (m,) [rad].
+        beacon_distance: distances of these beacons (m,) [m].
         camera_height: above the floor [m].
     """
 
@@ -98,11 +98,11 @@ def gaze_scene(
     """Evaluate (1)-(4) in the present belief.
 
     Args:
-        belief: of the robot.
+        belief: belief of the robot.
         motion: latest decision of the planner, None before the first.
         samples: sample points of (1).
         beacons: known positions of beacons in W (m, 2) [m].
-        parameters: of the decisions.
+        parameters: parameters of the decisions.
     """
     e, g = parameters.evaluation, parameters.gaze
     view, pose = belief.view, belief.pose

@@ -36,8 +36,8 @@ def turning_sign(p_od: Array, p_or: Array) -> Array:
     """Return the sign of the shorter side (Yoo & Kim, eq. (9)): +1, counter-clockwise, or -1.
 
     Args:
-        p_od: from obstacles to the destination (..., 2) [m].
-        p_or: from obstacles to the robot (..., 2) [m].
+        p_od: vectors from obstacles to the destination (..., 2) [m].
+        p_or: vectors from obstacles to the robot (..., 2) [m].
 
     Returns:
         (...).

@@ -18,7 +18,7 @@ class LandmarkObstacles:
 
     Args:
         known: position of every landmark in W by its name [m].
-        radius: of a landmark [m].
+        radius: radius of a landmark [m].
         parameters: attention range and standard deviation.
     """
 

@@ -160,8 +160,8 @@ class MotionField:
         """Return uncapped virtual obstacles in the whole band, with a remembered side.
 
         Args:
-            pose: of the robot (3,) [m, m, rad].
-            velocity: of the robot in W (2,) [m/s].
+            pose: pose of the robot (3,) [m, m, rad].
+            velocity: velocity of the robot in W (2,) [m/s].
             scene: obstacles and destination.
         """
         virtual = []
@@ -256,7 +256,7 @@ class PlannedField:
 
     Attributes:
         field: modified univector field.
-        heading: of the robot [rad].
+        heading: heading of the robot [rad].
         scene: obstacles and destination.
         virtual: virtual obstacles with an effect at all points.
     """

@@ -27,8 +27,8 @@ def move_to_goal(
     away from the destination. Beyond d_con it points at the destination.
 
     Args:
-        position: of the robot in W (..., 2) [m].
-        heading: of the robot (...) [rad]; has an effect for k_alpha != 1 only.
+        position: position of the robot in W (..., 2) [m].
+        heading: heading of the robot (...) [rad]; has an effect for k_alpha != 1 only.
         target: destination (2,) [m].
         target_heading: arrival heading [rad].
         parameters: gains, d_con and the form of the arrival.
@@ -66,7 +66,7 @@ def muf(position: ArrayLike, target: Array, phi: Array) -> Array:
     heading and is not part of the field.
 
     Args:
-        position: of the robot in W (..., 2) [m].
+        position: position of the robot in W (..., 2) [m].
         target: destination (2,) [m].
         phi: result of `move_to_goal` (...) [rad].
     """

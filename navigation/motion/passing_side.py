@@ -36,7 +36,7 @@ class PassingSides:
         """Return the sign of (9) for each obstacle (n,).
 
         Args:
-            position: of the robot (2,) [m].
+            position: position of the robot (2,) [m].
             target: destination (2,) [m].
             obstacles: n obstacles.
             s_oe: extended radii (n,) [m].

@@ -50,8 +50,8 @@ class _Wanted:
     """Result of field and velocity modification, before the safety filter.
 
     Attributes:
-        direction: in W [rad].
-        speed: along it [m/s].
+        direction: direction in W [rad].
+        speed: speed along it [m/s].
         situation: outcome of velocity modification.
         virtual: active virtual obstacles.
         field: vector field; None for a turn on the spot.
@@ -76,7 +76,7 @@ class Planner:
 
         Args:
             parameters: profile.
-            limits: of the walking layer.
+            limits: speed limits of the walking layer.
         """
         self._parameters = parameters
         self._limits = limits
@@ -95,8 +95,8 @@ class Planner:
         """Decide the motion of the next footstep; call once per footstep.
 
         Args:
-            belief: of the robot.
-            task: of the mission.
+            belief: belief of the robot.
+            task: task of the mission.
             look: direction in W that the body turns to for a fixed camera, if any [rad].
         """
         heading = float(belief.pose[2])

@@ -24,9 +24,9 @@ def body_velocity(error: float, speed: float, turn: float, envelope: Envelope) -
 
     Args:
         error: direction of motion relative to the heading [rad].
-        speed: along that direction [m/s].
+        speed: speed along that direction [m/s].
         turn: target heading relative to the heading [rad].
-        envelope: of the walking layer.
+        envelope: speed envelope of the walking layer.
 
     Returns:
         vx, vy, wz [m/s, m/s, rad/s].
@@ -54,11 +54,11 @@ def rollout(
 
     Args:
         candidates: velocities in W (n, 2) [m/s].
-        heading: of the robot [rad].
+        heading: heading of the robot [rad].
         course: direction of a candidate that stands [rad].
         facing: target heading; NaN for the direction of motion [rad].
         body_now: present velocity of the body in R (3,) [m/s, m/s, rad/s].
-        envelope: of the walking layer.
+        envelope: speed envelope of the walking layer.
         gait: duration of a footstep [s], maximum change between footsteps of velocity [m/s]
             and of turn rate [rad/s], heading error above which a fast path starts with a turn
             [rad], and the speed of a fast path [m/s].
@@ -121,8 +121,8 @@ def contact_times(
     Inside a disc the time is zero if closing, and infinite if leaving.
 
     Args:
-        velocity: of the segments of n paths (k, n, 2) [m/s].
-        duration: of the segments (k, n) [s].
+        velocity: velocities of the segments of n paths (k, n, 2) [m/s].
+        duration: durations of the segments (k, n) [s].
         position: start of the paths (2,) [m].
         discs: records of type `DISC` (m,).
 

@@ -26,7 +26,7 @@ class RolloutStart:
     """Start of a rollout.
 
     Attributes:
-        pose: of the robot (3,) [m, m, rad].
+        pose: pose of the robot (3,) [m, m, rad].
         body: present velocity in R, vx, vy, wz (3,) [m/s, m/s, rad/s].
         course: direction of motion in W, defined also for zero velocity [rad].
         facing: target heading of the body.
@@ -44,7 +44,7 @@ class SafetyFilter:
     Args:
         parameters: horizons and penalties.
         mapping: velocity mapping.
-        limits: of the walking layer.
+        limits: speed limits of the walking layer.
     """
 
     def __init__(
@@ -73,7 +73,7 @@ class SafetyFilter:
         """Return direction in W [rad] and speed [m/s] of the best candidate.
 
         Args:
-            start: of the rollout.
+            start: start of the rollout.
             wanted: desired velocity in W (2,) [m/s].
             discs: collision hypotheses, records of type `DISC` (m,).
         """

@@ -23,7 +23,7 @@ def weighted_sum(u_muf: Array, u_auf: Array, w_muf: float, w_auf: float) -> Arra
 
     Args:
         u_muf: unit vectors (..., 2).
-        u_auf: of n obstacles (..., n, 2).
+        u_auf: unit vectors u_auf of n obstacles (..., n, 2).
         w_muf: weight of move-to-goal.
         w_auf: weight of avoid-obstacle.
 
@@ -57,7 +57,7 @@ def blended_sum(
 
     Args:
         u_muf: unit vectors (..., 2).
-        u_auf: of n obstacles (..., n, 2).
+        u_auf: unit vectors u_auf of n obstacles (..., n, 2).
         ramp: nearness of the obstacles (..., n).
         u_virtual: directions at m dynamic virtual obstacles (..., m, 2), or (m, 2) for all.
         weight: f of the virtual obstacles in [0, 1] (..., m), or (m,) for all.

@@ -16,8 +16,8 @@ def ground_points(pose: Array, direction: float, parameters: UnseenGroundParamet
     """Return the checked points in W, three columns ahead of the robot (3 rows, 2) [m].
 
     Args:
-        pose: of the robot (3,) [m, m, rad].
-        direction: of its motion in W [rad].
+        pose: pose of the robot (3,) [m, m, rad].
+        direction: direction of its motion in W [rad].
         parameters: extent of the ground.
     """
     p = parameters

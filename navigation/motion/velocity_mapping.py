@@ -29,10 +29,10 @@ def body_velocity(
 
     Args:
         course: direction of motion in W [rad].
-        speed: along the course [m/s].
-        heading: of the robot [rad].
+        speed: speed along the course [m/s].
+        heading: heading of the robot [rad].
         facing: target heading [rad].
-        limits: of the walking layer.
+        limits: speed limits of the walking layer.
         turn_gain: turn rate per heading error [1/s].
 
     Returns:
@@ -53,8 +53,8 @@ def idle_velocity(searching: bool, turn_rate: float, limits: SpeedLimits) -> Arr
     Args:
         searching: whether it turns on the spot to search for beacons, which the head alone may
             not reach.
-        turn_rate: of the search [rad/s].
-        limits: of the walking layer.
+        turn_rate: turn rate of the search [rad/s].
+        limits: speed limits of the walking layer.
     """
     return np.array([0.0, 0.0, min(turn_rate, limits.wz) if searching else 0.0])
 

@@ -51,7 +51,7 @@ def modify_speed(
         encounters: the movers, in axes of the line of motion.
         desired: speed [m/s].
         now: present speed [m/s].
-        limits: of the robot.
+        limits: speed limits of the robot.
         parameters: horizon, and whether to brake inside the band.
     """
     horizon = parameters.horizon

@@ -34,8 +34,8 @@ class PathPoint:
 
     Attributes:
         ux, uy: unit vector of the mover's velocity.
-        along: from the mover to the projection, along the velocity [m].
-        lateral: of the robot, left of the path [m].
+        along: distance from the mover to the projection, along the velocity [m].
+        lateral: lateral position of the robot, left of the path [m].
         x, y: p_vo in W [m].
     """
 
@@ -61,7 +61,7 @@ def path_point(robot: Array, obstacle: Array, velocity: Array) -> PathPoint | No
     Args:
         robot: position (2,) [m].
         obstacle: position (2,) [m].
-        velocity: of the obstacle over ground, not zero (2,) [m/s].
+        velocity: velocity of the obstacle over ground, not zero (2,) [m/s].
 
     Returns:
         None if the projection is behind the mover.

@@ -28,9 +28,9 @@ def search_waypoint(
     """Return the farthest point of the shortest path with a free line of sight (2,) [m].
 
     Args:
-        position: of the robot (2,) [m].
+        position: position of the robot (2,) [m].
         target: destination (2,) [m].
-        centres: of the static obstacles (n, 2) [m].
+        centres: centres of the static obstacles (n, 2) [m].
         radii: minimum distances of the robot from them (n,) [m].
         parameters: cell, reach and margin of the grid.
 

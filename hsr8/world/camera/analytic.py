@@ -59,9 +59,9 @@ class AnalyticCamera:
     Args:
         layout: obstacles and beacons.
         camera: intrinsics.
-        settings: of the camera.
+        settings: settings of the camera.
         rng: generator of noise and misses.
-        faults: of the images.
+        faults: faults of the images.
         fov: horizontal field of view, more than that of `camera` if panoramic [rad].
         sight: what the robot's own body hides.
     """
@@ -112,7 +112,7 @@ class AnalyticCamera:
         Args:
             time: simulated time [s].
             robot: x, y, heading in W [m, m, rad].
-            position: of the camera in W (3,) [m].
+            position: position of the camera in W (3,) [m].
             rotation: R_WC, columns right, down, forward (3, 3).
         """
         self._eye[:3], self._eye[3:12] = position, rotation.ravel()
@@ -296,8 +296,8 @@ def project(x: float, y: float, radius: float, height: float, beacon: bool, eye:
     All are 0 if the cylinder is outside the image.
 
     Args:
-        x: of the axis from the camera [m].
-        y: of the axis from the camera [m].
+        x: position of the axis from the camera [m].
+        y: position of the axis from the camera [m].
         radius: [m].
         height: [m].
         beacon: whether the cylinder is a beacon, recognised only with both colours in the image.

@@ -21,7 +21,7 @@ class CameraFaults:
     """Magnitudes of the camera faults; it draws no random numbers.
 
     Args:
-        faults: of the scenario; faults of other parts are ignored.
+        faults: faults of the scenario; faults of other parts are ignored.
     """
 
     def __init__(self, faults: Sequence[Fault] = ()) -> None:

@@ -23,7 +23,7 @@ class CapturedFrame:
     Attributes:
         captured: time of the capture [s].
         image: returns the image (height, width, 3) of a rendered camera, once it is complete.
-        detections: of an analytic camera.
+        detections: detections of an analytic camera.
     """
 
     captured: float

@@ -79,8 +79,8 @@ def culled(
     Args:
         positions: centre of each geom in W (n, 3) [m].
         eye: apex of the frustum in W (3,) [m].
-        rotation: from the camera to W, row by row (9,).
-        normals: of the sides in the camera frame, inward (m, 3).
+        rotation: rotation from the camera to W, row by row (9,).
+        normals: normals of the sides in the camera frame, inward (m, 3).
         reach: bounding radius of each geom (n,) [m].
         boxes: geoms that are boxes along the axes of W (k,).
         halves: half sides of the boxes (k, 3) [m].

@@ -23,7 +23,7 @@ class ImageNoise:
 
     Args:
         noise: magnitudes.
-        shape: of an image (height, width).
+        shape: shape of an image (height, width).
         rng: generator of this camera.
     """
 

@@ -38,7 +38,7 @@ class MotionBlur:
 
         Args:
             image: sharp image (height, width, 3).
-            angular_velocity: of the camera in its frame C (3,) [rad/s].
+            angular_velocity: angular velocity of the camera in its frame C (3,) [rad/s].
         """
         rotation = self._shutter * np.asarray(angular_velocity, float)
         ends = [

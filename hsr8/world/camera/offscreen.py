@@ -26,7 +26,7 @@ class Offscreen:
     Args:
         model: compiled world; its offscreen buffer must hold the image.
         camera: name of the camera.
-        width, height: of the image [pixel].
+        width, height: width and height of the image [pixel].
 
     Raises:
         RenderingUnavailable: OpenGL cannot render here.

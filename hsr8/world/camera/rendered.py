@@ -35,7 +35,7 @@ class RenderedCamera:
         model: compiled world; its offscreen buffer must hold the image.
         settings: size and noise of the images.
         rng: generator of the noise.
-        faults: of the images.
+        faults: faults of the images.
 
     Raises:
         RenderingUnavailable: OpenGL cannot render here.

@@ -197,10 +197,10 @@ def gap_bounds(
     """Return lower bounds of the gaps between n obstacles and m geoms, from above (n m,) [m].
 
     Args:
-        positions: of all geoms in W (ngeom, 3) [m].
+        positions: positions of all geoms in W (ngeom, 3) [m].
         obstacles: geom of each obstacle (n,).
-        radii: of the obstacles (n,) [m].
-        geoms: of the robot (m,).
+        radii: radii of the obstacles (n,) [m].
+        geoms: geoms of the robot (m,).
         spheres: bounding radius of each geom of the robot (m,) [m].
     """
     bounds = np.empty(len(obstacles) * len(geoms))

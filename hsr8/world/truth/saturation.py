@@ -22,7 +22,7 @@ class Saturation:
     """Saturation of the servos since the start of the run, in the order of walking.
 
     Attributes:
-        names: of the joints (n,).
+        names: names of the joints (n,).
         torque_any: control ticks with any joint at its maximum torque.
         torque_ticks: control ticks at maximum torque, by joint (n,).
         stop_any: control ticks with any joint at the end of its range.

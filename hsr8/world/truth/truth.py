@@ -17,7 +17,7 @@ class Contact:
 
     Attributes:
         obstacle: number in the layout: obstacles, then beacons.
-        name: of the obstacle or beacon, for people.
+        name: name of the obstacle or beacon, for people.
         moving: whether it is a mover.
         robot_geom: name of the geom of the robot, or of its body.
         force: normal force [N].
@@ -37,13 +37,13 @@ class ActivePush:
     """Push that acts on the robot.
 
     Attributes:
-        number: of the push in its run.
+        number: number of the push in its run.
         begin: start of the push [s].
         duration: total [s].
         body: name of the pushed body.
-        direction: from the heading of the robot at the start, counter-clockwise [rad].
-        point: of the force in W (3,) [m].
-        force: in W (3,) [N].
+        direction: direction from the heading of the robot at the start, counter-clockwise [rad].
+        point: point of action of the force in W (3,) [m].
+        force: force in W (3,) [N].
     """
 
     number: int
