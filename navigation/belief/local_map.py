@@ -141,22 +141,14 @@ class LocalMap:
         self._log_odds = shifted(self._log_odds, rows, columns, 0.0)
 
 
+@compiled
 def shifted(cells: Array, rows: int, columns: int, empty: float) -> Array:
     """Return the cells (n, n) of a window moved by (rows, columns); new cells are `empty`."""
-    if rows == 0 and columns == 0:
-        return cells
     n = len(cells)
     moved = np.full((n, n), empty)
-    if abs(rows) < n and abs(columns) < n:
-        target = (
-            slice(max(0, -rows), n - max(0, rows)),
-            slice(max(0, -columns), n - max(0, columns)),
-        )
-        source = (
-            slice(max(0, rows), n + min(0, rows)),
-            slice(max(0, columns), n + min(0, columns)),
-        )
-        moved[target] = cells[source]
+    for row in range(max(0, -rows), n - max(0, rows)):
+        for column in range(max(0, -columns), n - max(0, columns)):
+            moved[row, column] = cells[row + rows, column + columns]
     return moved
 
 

@@ -27,11 +27,16 @@ def test_an_image_shows_the_world_as_it_is_now(body):
         before = camera.capture(body)()
         again = camera.capture(body)()
         body.data.joint("head_pan").qpos[0] = 0.5
+        body.data.qpos[:2] += 2.0
         turned = camera.capture(body)()
+        body.data.joint("head_pan").qpos[0] = 0.0
+        body.data.qpos[:2] -= 2.0
+        back = camera.capture(body)()
     assert before.shape == (240, 320, 3)
     assert before.dtype == np.uint8
     assert np.array_equal(before, again)
     assert not np.array_equal(before, turned)
+    assert np.array_equal(before, back)  # the previous pose has no effect
 
 
 def test_vision_locates_the_obstacle(body):
