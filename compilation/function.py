@@ -6,6 +6,7 @@ from numba.core.codegen import JITCodeLibrary
 from numba.core.compiler import CompileResult, Flags, compile_extra
 from numba.core.registry import CPUDispatcher
 from numba.core.sigutils import normalize_signature
+from numba.core.types import unliteral
 from numba.core.typing import make_concrete_template
 
 OPTIONS = {"nopython": True, "boundscheck": None, "no_cfunc_wrapper": True}
@@ -15,8 +16,9 @@ class CompiledFunction(CPUDispatcher):
     """Function that Python and other compiled functions call.
 
     Numba by default optimises and translates a function for its own sake and again within each
-    caller, up to the entry point from Python. Here a function called from compiled code is lowered
-    once, and the entry point optimises and translates all of its code at once.
+    caller, up to the entry point from Python, and lowers it for each constant argument. Here a
+    function called from compiled code is lowered once, and the entry point optimises and translates
+    all of its code at once.
 
     The arguments are those of `numba.core.dispatcher.Dispatcher`.
     """
@@ -28,7 +30,7 @@ class CompiledFunction(CPUDispatcher):
     def get_call_template(self, args: Any, kws: Any) -> tuple[Any, ...]:
         """Return what Numba types a call in compiled code by, see `numba.core.dispatcher`."""
         signature, args = self._compiler.fold_argument_types(args, kws)
-        args = tuple(args)
+        args = tuple(map(unliteral, args))
         if args not in self._parts:
             self._parts[args] = self._lower(args)
         name, part = self.py_func.__name__, self._parts[args]

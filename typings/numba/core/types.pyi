@@ -1,0 +1,3 @@
+from typing import Any
+
+def unliteral(kind: Any) -> Any: ...
