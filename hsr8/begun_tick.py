@@ -9,7 +9,7 @@ from hsr8.plugin_method import number
 from hsr8.record import Second
 from hsr8.robot import SensorFrame
 from navigation.decision import GazeDecision, MotionDecision
-from walking.targets import JointTargets
+from walking.signals import JointTargets
 
 
 @dataclass(slots=True)

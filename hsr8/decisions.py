@@ -10,7 +10,7 @@ from navigation.belief.estimator import predict
 from navigation.decision import GazeDecision, MotionDecision, Task
 from navigation.motion.landmark_obstacles import LandmarkObstacles
 from navigation.observation import CameraView, Frame
-from walking.value import value
+from walking.signals import value
 
 Array = NDArray[np.float64]
 

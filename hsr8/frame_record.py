@@ -8,7 +8,7 @@ from navigation.belief.belief import Belief
 from navigation.decision import GazeDecision, MotionDecision, Task
 from navigation.observation import Frame
 from vision.detection import Detection
-from walking.value import value
+from walking.signals import value
 
 Image = NDArray[np.uint8]
 

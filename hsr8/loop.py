@@ -38,8 +38,8 @@ from hsr8.world.model.index import ModelIndex
 from hsr8.world.truth.truth import Truth
 from walking.engine import PlanDiverged
 from walking.parameters import CONTROL_PERIOD
-from walking.phase import Phase
-from walking.targets import JointTargets
+from walking.signals import JointTargets
+from walking.state import Phase
 
 GOAL_DWELL = 1.0  # simulated time after the goal is reached [s]
 FALL_DWELL = 0.6  # simulated time after the final fall, so that it is visible [s]

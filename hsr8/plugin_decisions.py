@@ -17,7 +17,7 @@ from hsr8.plugin_file import start_plugin
 from hsr8.plugin_method import PluginMethod, number, numbers, shown
 from navigation.belief.belief import Belief
 from navigation.decision import GazeDecision, MotionDecision, SpeedLimits, Task
-from walking.value import value
+from walking.signals import value
 
 Array = NDArray[np.float64]
 

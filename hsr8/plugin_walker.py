@@ -16,16 +16,13 @@ from hsr8.errors import UsageError
 from hsr8.plugin_file import start_plugin
 from hsr8.plugin_method import PluginMethod, numbers, shown
 from walking.body.robot_model import RobotModel
-from walking.command import Command, HeadTarget, VelocityCommand
-from walking.command_limits import CommandLimits, Limit
+from walking.command import Command, CommandLimits, HeadTarget, Limit, VelocityCommand
 from walking.head import Head
 from walking.observer import BodyEstimate, BodyObserver
 from walking.odometry import LegOdometry
 from walking.parameters import CONTROL_PERIOD, WalkingParameters
-from walking.sensing import BodySensors
+from walking.signals import BodySensors, JointTargets, value
 from walking.state import WalkingState
-from walking.targets import JointTargets
-from walking.value import value
 
 Array = NDArray[np.float64]
 

@@ -9,11 +9,9 @@ from numpy.typing import NDArray
 from hsr8.frame_record import FrameRecord
 from hsr8.world.truth.saturation import Saturation
 from hsr8.world.truth.truth import Truth
-from walking.command import Command, HeadTarget
-from walking.command_limits import Limit
-from walking.sensing import BodySensors
+from walking.command import Command, HeadTarget, Limit
+from walking.signals import BodySensors, value
 from walking.state import WalkingState
-from walking.value import value
 
 
 class Event(NamedTuple):

@@ -19,10 +19,8 @@ from vision.detection import Detection
 from vision.parameters import PoseParameters
 from walking.command import Command, HeadTarget, VelocityCommand
 from walking.odometry import Odometry, increment
-from walking.sensing import BodySensors
+from walking.signals import BodySensors, JointTargets, value
 from walking.state import WalkingState
-from walking.targets import JointTargets
-from walking.value import value
 from walking.walker import Walker
 
 MAX_PENDING = 128  # images captured but not yet delivered

@@ -14,16 +14,14 @@ from typing import NamedTuple
 
 from compilation import compiled
 from walking.admission import Model, Plans, admit, plan_in, skip
-from walking.arrays import Point, Vector
-from walking.clamp import clamp, dead_zone
-from walking.command_limits import BALANCE, LANDING_FROZEN, LANDING_SPEED, ZMP_REGION
+from walking.command import BALANCE, LANDING_FROZEN, LANDING_SPEED, ZMP_REGION
 from walking.foothold import Foothold, equal, foothold, put
 from walking.footsteps import equal_strides, is_same, landing_of, reachable
 from walking.gait import aimed, equal_clocks, shorten, support_foot
 from walking.parameters import CONTROL_PERIOD
 from walking.patterns import advance_pattern, planned_dcm, rejects_infeasible, reset_plan
 from walking.pendulum import dcm_of, dcm_reference, ramp_weights, track_dcm, track_reference
-from walking.planar import rotate, rotate_back
+from walking.plane import Point, Vector, clamp, dead_zone, rotate, rotate_back
 from walking.records import BEST, LIVE, Record
 from walking.support import Region, clip
 

@@ -9,8 +9,8 @@ from walking.body.robot_model import RobotModel
 from walking.estimation import steady_gains
 from walking.footsteps import STILL, velocity_strides
 from walking.parameters import CONTROL_PERIOD, GRAVITY, LIGHT_LOAD, WalkingParameters
+from walking.patterns import preview_gains
 from walking.pendulum import natural_frequency
-from walking.preview import preview_gains
 from walking.records import JOINT, PREVIEW_SUM, ROBOT, Record, parameters_record
 from walking.swing_reaction import leg_reaction
 

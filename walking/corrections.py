@@ -7,9 +7,8 @@ one foot and closes it with the other one; only the mean over both is the comman
 from math import cos, exp, sin
 
 from compilation import compiled
-from walking.arrays import Point, Vector
-from walking.clamp import clamp
 from walking.parameters import CONTROL_PERIOD
+from walking.plane import Point, Vector, clamp
 from walking.records import Record
 
 NO_FOOT = -1

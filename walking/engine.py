@@ -4,19 +4,25 @@ from math import ceil
 
 import numpy as np
 
-from walking.arrays import Array
 from walking.body.robot_model import RobotModel
 from walking.body.tree import LEFT_LEG, RIGHT_LEG
-from walking.command import Command, CommandState, HeadTarget, VelocityCommand
-from walking.command_limits import CommandLimits, Limit, limits_of
+from walking.command import (
+    Command,
+    CommandLimits,
+    CommandState,
+    HeadTarget,
+    Limit,
+    VelocityCommand,
+    limits_of,
+)
 from walking.constants import joint_records, robot_record
 from walking.odometry import LegOdometry
 from walking.parameters import CONTROL_PERIOD, WalkingParameters
+from walking.plane import Array
 from walking.published import Publication, publish, report
 from walking.records import FOOTHOLD, KNOT, LIVE, PLAN, RAMP, WALK, parameters_record
-from walking.sensing import BodySensors
+from walking.signals import BodySensors, JointTargets
 from walking.state import WalkingState
-from walking.targets import JointTargets
 from walking.tick import begin, finish, stand_ready, watch
 from walking.zmp_plan import max_knots
 

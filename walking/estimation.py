@@ -11,10 +11,9 @@ import numpy as np
 from scipy.linalg import solve_discrete_are
 
 from compilation import compiled
-from walking.arrays import Array, Point, Vector
 from walking.odometry import reckon
 from walking.parameters import CONTROL_PERIOD, EstimatorParameters
-from walking.planar import from_frame, rotate, rotate_back
+from walking.plane import Array, Point, Vector, from_frame, rotate, rotate_back
 from walking.records import Record
 
 

@@ -6,10 +6,8 @@ the DCM error and damp the trunk.
 """
 
 from compilation import compiled
-from walking.arrays import Array, Point, Vector
-from walking.clamp import clamp
 from walking.parameters import CONTROL_PERIOD
-from walking.planar import rotate_back
+from walking.plane import Array, Point, Vector, clamp, rotate_back
 from walking.records import Record
 
 LEG_JOINTS = 6

@@ -3,7 +3,7 @@
 from typing import NamedTuple
 
 from compilation import compiled
-from walking.planar import Frame, from_frame
+from walking.plane import Frame, from_frame
 from walking.records import Record
 
 

@@ -8,9 +8,7 @@ commanded one.
 from math import cos, sin, sqrt
 
 from compilation import compiled
-from walking.arrays import Array, Point, Vector
-from walking.clamp import clamp
-from walking.command_limits import (
+from walking.command import (
     CLEARANCE,
     REACH,
     STEP_LENGTH,
@@ -21,7 +19,7 @@ from walking.command_limits import (
 )
 from walking.foothold import Foothold, placed
 from walking.parameters import CONTROL_PERIOD
-from walking.planar import rotate_back
+from walking.plane import Array, Point, Vector, clamp, rotate_back
 from walking.records import Record
 
 POSITION_TOLERANCE = 0.024  # of equal footholds, per half stance [1]

@@ -6,11 +6,10 @@ first stance. Times are control ticks.
 """
 
 from compilation import compiled
-from walking.arrays import Point
-from walking.clamp import clamp
 from walking.foothold import Foothold, foothold, put
 from walking.footsteps import is_parallel, landing_of
 from walking.parameters import CONTROL_PERIOD
+from walking.plane import Point, clamp
 from walking.records import Record
 from walking.reference import (
     chain_footholds,

@@ -5,10 +5,10 @@ from math import asin, atan2, cos, sin, sqrt
 import numpy as np
 
 from compilation import compiled
-from walking.arrays import Array, Point
 from walking.body.robot_model import RobotModel
 from walking.command import HeadTarget
 from walking.parameters import CONTROL_PERIOD, WalkingParameters
+from walking.plane import Array, Point
 from walking.records import JOINT, LIMBS, ROBOT, Record, parameters_record
 
 

@@ -4,26 +4,127 @@ from math import asin, atan2
 
 import numpy as np
 
-from walking.arrays import Array, Point, Vector
-from walking.body.foot_contacts import FootContacts
 from walking.body.robot_model import RobotModel
-from walking.body.rolling_feet import RollingFeet
-from walking.command import VelocityCommand
-from walking.command_limits import CommandLimits
+from walking.command import CommandLimits, VelocityCommand
 from walking.constants import robot_record
 from walking.estimation import filter_error, pressure
 from walking.foothold import Foothold
 from walking.odometry import LegOdometry, reckon
-from walking.parameters import CONTROL_PERIOD, GRAVITY, WalkingParameters
-from walking.phase import Phase
-from walking.planar import Frame, from_frame, norm, rotate, rotate_back
+from walking.parameters import (
+    CONTROL_PERIOD,
+    GRAVITY,
+    LIGHT_LOAD,
+    GaitParameters,
+    WalkingParameters,
+)
+from walking.plane import Array, Frame, Point, Vector, from_frame, norm, rotate, rotate_back
 from walking.published import incline
 from walking.records import WALK, parameters_record
-from walking.sensing import BodySensors
-from walking.state import Balance, HeadCameraPose, WalkingState
+from walking.signals import BodySensors, value
+from walking.state import Balance, HeadCameraPose, Phase, WalkingState
 from walking.support import depth, polygon
 from walking.tick import watch
-from walking.value import value
+
+CONTACT_LOAD = 2.0 * LIGHT_LOAD  # of the weight; a lifted foot with more of it has landed [1]
+
+
+class FootContacts:
+    """Contacts of the feet with the floor, by their load with hysteresis.
+
+    A footstep is completed when a foot lands that was lifted for a minimum time. The robot stands
+    when both feet have been on the floor for longer than a footstep; it starts standing.
+
+    Args:
+        mass: of the robot [kg].
+        gait: duration of a footstep and minimum time of a foot in the air.
+
+    Attributes:
+        on_floor: whether the left and the right foot are on the floor.
+        step_count: completed footsteps.
+        phase: gait phase; with both feet in the air the last one.
+    """
+
+    def __init__(self, mass: float, gait: GaitParameters) -> None:
+        weight = mass * GRAVITY
+        self._lifted, self._landed = LIGHT_LOAD * weight, CONTACT_LOAD * weight
+        self._min_ticks = gait.min_swing_time / CONTROL_PERIOD
+        self._step_ticks = gait.footstep_time / CONTROL_PERIOD
+        self._in_air = [0, 0]  # ticks since each foot was lifted
+        self._both: float = self._step_ticks  # ticks since both are on the floor
+        self.on_floor = [True, True]
+        self.step_count = 0
+        self.phase = Phase.STANDING
+
+    def update(self, left: float, right: float) -> None:
+        """Run one tick, given the load of each foot [N]."""
+        for side, load in enumerate((left, right)):
+            self._in_air[side] = 0 if self.on_floor[side] else self._in_air[side] + 1
+            if self.on_floor[side]:
+                self.on_floor[side] = load >= self._lifted
+            elif load > self._landed:
+                self.on_floor[side] = True
+                self.step_count += self._in_air[side] >= self._min_ticks
+        both = all(self.on_floor)
+        self._both = self._both + 1 if both else 0
+        if both:
+            standing = self._both > self._step_ticks
+            self.phase = Phase.STANDING if standing else Phase.DOUBLE_SUPPORT
+        elif any(self.on_floor):
+            self.phase = Phase.LEFT_SUPPORT if self.on_floor[0] else Phase.RIGHT_SUPPORT
+
+
+class RollingFeet:
+    """Contact points of both feet, and their motion relative to the base.
+
+    The frame of a foot that rolls moves, although the foot does not slide. The point of the sole at
+    the centre of pressure does not move.
+
+    Attributes:
+        contact: contact point of each foot relative to the base, level axes (2, 3) [m].
+        motion: displacement of the points in contact since the last tick, relative to the base;
+            axes of the IMU's yaw, z up (2, 3) [m].
+        rolled: part of their displacement by rolling, since each foot landed; robot frame
+            (2, 2) [m].
+    """
+
+    def __init__(self) -> None:
+        self.contact = np.zeros((2, 3))
+        self.motion = np.zeros((2, 3))
+        self.rolled = np.zeros((2, 2))
+        self._sum = np.zeros((2, 3))
+        self._before: tuple[Array, Array] | None = None
+
+    def update(
+        self, position: Array, rotation: Array, pressure: Array, yaw: float, loaded: list[bool]
+    ) -> None:
+        """Run one tick.
+
+        Args:
+            position: of each foot relative to the base, level axes (2, 3) [m].
+            rotation: of each foot, level axes (2, 3, 3).
+            pressure: centre of pressure of each foot in its frame, x, y (2, 2) [m].
+            yaw: of the IMU [rad].
+            loaded: whether the left and the right foot are on the floor.
+        """
+        c, s = np.cos(yaw), np.sin(yaw)
+        turn = np.array([[c, -s, 0.0], [s, c, 0.0], [0.0, 0.0, 1.0]])
+        arms = np.column_stack([pressure, np.zeros(2)])
+        self.contact = position + _turned(rotation, arms)
+        turned, moved = turn @ rotation, position @ turn.T
+        if self._before is not None:
+            moved_before, turned_before = self._before
+            rolling = _turned(turned - turned_before, arms)
+            self.motion = moved - moved_before + rolling
+            self._sum = np.where(np.array(loaded)[:, None], self._sum + rolling, 0.0)
+            self.rolled = (self._sum @ turn)[:, :2]
+        self._before = moved, turned
+
+
+def _turned(rotations: Array, vectors: Array) -> Array:
+    """Return the vectors (n, 3), each multiplied by its matrix (n, 3, 3)."""
+    product: Array = np.einsum("kij,kj->ki", rotations, vectors)
+    return product
+
 
 VELOCITY_TIME = 0.05  # time constant of the legs in the velocity filter [s]
 SLIP = 0.1  # standard deviation of the slip of unknown feet, relative to the distance walked [1]

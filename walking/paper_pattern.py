@@ -18,11 +18,9 @@ from math import exp, inf, log, sqrt
 from typing import NamedTuple
 
 from compilation import compiled
-from walking.arrays import Point
-from walking.clamp import clamp
 from walking.parameters import CONTROL_PERIOD
 from walking.pendulum import dcm_of, dcm_reference, hold, ramp_weights, track_reference
-from walking.planar import rotate
+from walking.plane import Point, clamp, rotate
 from walking.records import Record
 from walking.reference import is_single
 from walking.support import Region

@@ -6,8 +6,8 @@ Kajita et al., IROS 2001; divergent component of motion ξ = x + x'/ω: Takenaka
 from math import cosh, exp, sinh, sqrt
 
 from compilation import compiled
-from walking.arrays import Point, Vector
 from walking.parameters import CONTROL_PERIOD, GRAVITY
+from walking.plane import Point, Vector
 from walking.records import Record
 from walking.support import Region, clip
 

@@ -7,11 +7,9 @@ leg would be stretched. The arms swing against the legs.
 from math import cos, sin, sqrt
 
 from compilation import compiled
-from walking.arrays import Array, Point, Vector
 from walking.body.kinematics import Pose, solve_leg
-from walking.clamp import clamp
 from walking.gait import is_airborne, swing_of
-from walking.planar import rotate_back
+from walking.plane import Array, Point, Vector, clamp, rotate_back
 from walking.records import Record
 from walking.swing import NO_FOOT
 

@@ -6,16 +6,14 @@ from typing import Any
 import numpy as np
 
 from compilation import compiled
-from walking.arrays import Array, Indices, Point
 from walking.body.kinematics import chain_end
-from walking.command import Command, CommandState, VelocityCommand
-from walking.command_limits import CommandLimits, limits_of
+from walking.command import Command, CommandLimits, CommandState, VelocityCommand, limits_of
 from walking.foothold import Foothold, foothold, put
 from walking.gait import support_foot, swing_foot
 from walking.odometry import Odometry
-from walking.phase import Phase
+from walking.plane import Array, Indices, Point
 from walking.records import FOOTHOLD, LIVE, WORD, Record, record
-from walking.state import Balance, HeadCameraPose, WalkingState
+from walking.state import Balance, HeadCameraPose, Phase, WalkingState
 from walking.steering import report_applied
 from walking.support import CORNERS, polygon
 

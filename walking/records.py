@@ -179,7 +179,7 @@ ROBOT = record(
     position_gain=float,
     velocity_gain=float,
     ankle_gain=float,
-    # Gains of preview control, see `walking.preview`.
+    # Gains of preview control, see `walking.patterns`.
     preview_position=float,
     preview_velocity=float,
     preview_zmp=float,

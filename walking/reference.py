@@ -1,10 +1,9 @@
 """Planned footholds, and the ZMP reference that they give."""
 
 from compilation import compiled
-from walking.arrays import Point
 from walking.foothold import Foothold, foothold, put
 from walking.footsteps import is_parallel, landing_of
-from walking.planar import from_frame
+from walking.plane import Point, from_frame
 from walking.records import Record
 
 

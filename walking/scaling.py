@@ -5,9 +5,8 @@ from functools import cache
 from typing import Any, TypeVar, get_type_hints
 
 from walking.body.robot_model import RobotModel
-from walking.dimension import DecayPerTick, Dimension, GainPerTick, Rule
+from walking.dimension import HSR_VIII, DecayPerTick, Dimension, GainPerTick, RobotMeasures, Rule
 from walking.parameters import WalkingParameters
-from walking.robot_measures import HSR_VIII, RobotMeasures
 
 Section = TypeVar("Section")
 

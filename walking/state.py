@@ -1,11 +1,28 @@
-"""State that walking publishes: odometry, camera pose, gait, balance."""
+"""State that walking publishes: phase, odometry, camera pose, gait, balance."""
 
-from walking.arrays import Array
-from walking.command_limits import CommandLimits
+from enum import StrEnum
+
+from walking.command import CommandLimits
 from walking.foothold import Foothold
 from walking.odometry import Odometry
-from walking.phase import Phase
-from walking.value import value
+from walking.plane import Array
+from walking.signals import value
+
+
+class Phase(StrEnum):
+    """Support phase, or getting up or fallen after a fall."""
+
+    STANDING = "standing"
+    DOUBLE_SUPPORT = "double"
+    LEFT_SUPPORT = "left"
+    RIGHT_SUPPORT = "right"
+    GETTING_UP = "up"
+    FALLEN = "fallen"
+
+    @property
+    def down(self) -> bool:
+        """Whether the robot is off its feet: odometry and camera pose are invalid."""
+        return self in (Phase.GETTING_UP, Phase.FALLEN)
 
 
 @value

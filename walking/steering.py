@@ -6,9 +6,7 @@ Velocity commands and command states may follow in any order.
 from math import sqrt
 
 from compilation import compiled
-from walking.arrays import Vector
-from walking.clamp import clamp
-from walking.command_limits import (
+from walking.command import (
     ACCELERATION,
     BALANCE,
     COMBINED_SPEED,
@@ -29,6 +27,7 @@ from walking.footsteps import (
     velocity_strides,
 )
 from walking.parameters import CONTROL_PERIOD
+from walking.plane import Vector, clamp
 from walking.records import PAPER, Record
 
 SAME_SPEED = 1e-9  # rounding error of velocities [m/s, rad/s]

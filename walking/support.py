@@ -10,9 +10,8 @@ from typing import NamedTuple
 import numpy as np
 
 from compilation import compiled
-from walking.arrays import Array, Point
 from walking.foothold import Foothold
-from walking.planar import from_frame, norm
+from walking.plane import Array, Point, from_frame, norm
 from walking.records import Record
 
 SAME = 1e-9  # distance of equal corners [m]

@@ -9,7 +9,7 @@ from math import ceil
 from compilation import compiled
 from walking.foothold import Foothold, towards
 from walking.parameters import CONTROL_PERIOD
-from walking.planar import norm
+from walking.plane import norm
 from walking.records import Record
 
 PEAK = 1.875  # peak speed over mean speed of a minimum-jerk motion from rest to rest [1]

@@ -24,14 +24,14 @@ from typing import NamedTuple
 import numpy as np
 
 from compilation import compiled
-from walking.arrays import Point
-from walking.body.leg import FootPose
+from walking.body.kinematics import FootPose
 from walking.body.robot_model import RobotModel
 from walking.body.tree import LEFT_LEG, RIGHT_LEG
 from walking.foothold import Foothold, foothold
 from walking.gait import support_foot, swing_foot
 from walking.parameters import CONTROL_PERIOD, GRAVITY
 from walking.pendulum import ramp_weights
+from walking.plane import Point
 from walking.records import Record
 from walking.reference import zmp_under
 

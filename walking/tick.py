@@ -8,10 +8,9 @@ import numpy as np
 
 from compilation import compiled
 from walking.admission import Model, Plans, remember
-from walking.arrays import Array, Indices, Point
 from walking.balance import advance_pendulum, end_capture, exceeds, place_foot, zmp_shift
 from walking.body.kinematics import feet_poses
-from walking.command_limits import BALANCE, FALLEN, SWING_HEIGHT, TIMING
+from walking.command import BALANCE, FALLEN, SWING_HEIGHT, TIMING
 from walking.corrections import (
     correct_offset,
     cycle_begins,
@@ -40,7 +39,7 @@ from walking.gait import (
 )
 from walking.head import advance_head, head_joints
 from walking.parameters import CONTROL_PERIOD
-from walking.planar import norm, rotate, rotate_back
+from walking.plane import Array, Indices, Point, norm, rotate, rotate_back
 from walking.posture import pelvis_over, set_posture
 from walking.records import LIVE, Record
 from walking.reference import zmp_under
@@ -123,7 +122,7 @@ def watch(
         com: centre of mass for these joints in the base frame (3,) [m].
         orientation: attitude of the IMU, quaternion w-x-y-z (4,).
         gyro: angular velocity of the trunk (3,) [rad/s].
-        pads: load on the pads of each sole, see `walking.sensing.BodySensors` (2, 4) [N].
+        pads: load on the pads of each sole, see `walking.signals.BodySensors` (2, 4) [N].
         feet_chains: see `walking.body.kinematics.feet_poses`.
         feet_joints: joints of these chains.
         robots: constants (1,).

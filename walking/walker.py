@@ -8,17 +8,35 @@ from typing import Protocol
 import numpy as np
 
 from walking.body.robot_model import RobotModel
-from walking.command import Command, HeadTarget, VelocityCommand
-from walking.command_limits import CommandLimits, Limit
+from walking.command import Command, CommandLimits, CommandState, HeadTarget, Limit, VelocityCommand
 from walking.engine import WalkingEngine
-from walking.get_up.get_up import GetUp, Outcome
+from walking.get_up import GetUp, Outcome
 from walking.odometry import LegOdometry
-from walking.parameters import WalkingParameters
-from walking.phase import Phase
-from walking.sensing import BodySensors
-from walking.state import WalkingState
-from walking.targets import JointTargets
-from walking.warm_up import warm_up
+from walking.parameters import CONTROL_PERIOD, GRAVITY, WalkingParameters
+from walking.signals import BodySensors, JointTargets
+from walking.state import Phase, WalkingState
+
+START_TIME = 0.03  # double support before the first footstep of the warm-up [s]
+TICKS = 20  # of the warm-up, enough for a double and a single support
+
+
+def warm_up(robot: RobotModel, parameters: WalkingParameters) -> None:
+    """Compile or load every function that a control tick calls; the robot does not move."""
+    at_once = replace(parameters.gait, settle_time=0.0, start_time=START_TIME)
+    engine = WalkingEngine(robot, replace(parameters, gait=at_once))
+    sensors = BodySensors(
+        joint_position=robot.ready,
+        joint_velocity=np.zeros_like(robot.ready),
+        gyro=np.zeros(3),
+        accelerometer=np.array([0.0, 0.0, GRAVITY]),
+        orientation=np.array([1.0, 0.0, 0.0, 0.0]),
+        foot_force=np.full((2, 4), robot.mass * GRAVITY / 8.0),
+    )
+    forward = VelocityCommand(parameters.limits.forward_acceleration * CONTROL_PERIOD)
+    for _ in range(TICKS):
+        engine.step(sensors, forward, HeadTarget())
+    engine.step(sensors, CommandState(), HeadTarget())
+    engine.state()
 
 
 class Engine(Protocol):

@@ -22,7 +22,6 @@ from typing import NamedTuple
 import numpy as np
 
 from compilation import compiled
-from walking.arrays import Array, Point, Vector
 from walking.parameters import CONTROL_PERIOD
 from walking.pendulum import (
     dcm_reference,
@@ -30,6 +29,7 @@ from walking.pendulum import (
     slide_tick,
     track_reference,
 )
+from walking.plane import Array, Point, Vector
 from walking.records import CELL, COMPARED, KNOT, RAMP, Record
 from walking.reference import is_single
 from walking.support import Region

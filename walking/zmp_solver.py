@@ -6,7 +6,7 @@ boxes do not reach the DCM in the direction of the residual.
 """
 
 from compilation import compiled
-from walking.arrays import Array, Point
+from walking.plane import Array, Point
 from walking.records import Record
 
 SOLVED = 1e-10  # maximum residual of the DCM [m]

@@ -25,7 +25,7 @@ from hsr8.world.field.generator import draw_layout
 from navigation.observation import CameraView, Frame, Sight
 from vision.detection import Detection
 from walking.parameters import CONTROL_PERIOD
-from walking.targets import JointTargets
+from walking.signals import JointTargets
 
 BELIEF = (
     *("pose", "pose_covariance", "lost", "filter_faults", "seen_beacons", "tracks"),

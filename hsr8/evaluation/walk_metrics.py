@@ -10,7 +10,7 @@ from hsr8.recorder.derived import mean_velocity, strides
 from hsr8.recorder.limit_bits import BITS
 from hsr8.recorder.table import Table
 from navigation.angles import wrap
-from walking.phase import Phase
+from walking.state import Phase
 
 Array = NDArray[np.float64]
 

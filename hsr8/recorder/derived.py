@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from hsr8.recorder.table import Table
 from navigation.angles import wrap
 from walking.body.robot_model import RobotModel
-from walking.phase import Phase
+from walking.state import Phase
 
 Array = NDArray[np.float64]
 Rows = NDArray[np.intp]

@@ -1,6 +1,6 @@
 """Limited commands in a table: the active limits in one integer, one bit each."""
 
-from walking.command_limits import Limit
+from walking.command import Limit
 
 LIMITS = tuple(Limit)
 """Limits in the order of their bits."""

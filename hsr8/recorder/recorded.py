@@ -14,7 +14,7 @@ from hsr8.recorder.sampled_field import NO_FIELD, SampledField, sampled
 from hsr8.recorder.throttle import Throttle
 from navigation.belief.belief import Belief
 from navigation.decision import GazeDecision, MotionDecision
-from walking.value import value
+from walking.signals import value
 
 Array = NDArray[np.float64]
 

@@ -11,13 +11,13 @@ import numpy as np
 from hsr8.recorder.columns import BOOL, BYTES, INT, TEXT, VARYING, Column, Row
 from hsr8.recorder.frame_row import FRAME, POSE, POSE_COVARIANCE, VELOCITY, camera_columns
 from hsr8.recorder.limit_bits import limit_bits
-from walking.arrays import Array
+from walking.plane import Array
 
 if TYPE_CHECKING:  # reading a run needs no robot
     from hsr8.record import Tick, TickRecord
 
 JOINTS = ("joints",)
-LIMITS = "active limits of the command, bit k for limit k of `walking.command_limits.Limit`"
+LIMITS = "active limits of the command, bit k for limit k of `walking.command.Limit`"
 DEPTH = "distance of the planned ZMP from the edge of the soles, negative outside"
 PADS = "front-left, front-right, back-left and back-right"
 

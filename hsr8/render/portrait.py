@@ -13,7 +13,7 @@ from hsr8.robots.shown import SHOWN_GROUP, stature
 from hsr8.world.body.physics import place_robot
 from hsr8.world.field.layout import Layout
 from hsr8.world.model.assembly import Optics
-from walking.robot_measures import HSR_VIII
+from walking.dimension import HSR_VIII
 
 SIZE = 640, 800  # width and height [pixel]
 SOLE = 0.90, 0.20, 0.45, 1.0  # colour of the soles

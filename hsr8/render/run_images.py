@@ -27,7 +27,7 @@ from hsr8.robots.scale import DEFAULT_STATURE
 from hsr8.robots.shown import stature
 from hsr8.world.field.generator import draw_layout
 from hsr8.world.model.assembly import Optics, Quality
-from walking.robot_measures import HSR_VIII
+from walking.dimension import HSR_VIII
 
 Array = NDArray[np.float64]
 Draw = Callable[[int], Image]

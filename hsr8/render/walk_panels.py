@@ -11,8 +11,8 @@ from numpy.typing import NDArray
 
 from hsr8.recorder.derived import STRIDE, Speedometer, Walk, pushes_of
 from hsr8.recorder.limit_bits import LIMITS
-from walking.command_limits import Limit
-from walking.phase import Phase
+from walking.command import Limit
+from walking.state import Phase
 
 Array = NDArray[np.float64]
 

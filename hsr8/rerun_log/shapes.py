@@ -12,7 +12,7 @@ import numpy as np
 import rerun as rr
 from numpy.typing import NDArray
 
-from walking.body.sole import Sole
+from walking.body.tree import Sole
 
 Array = NDArray[np.float64]
 

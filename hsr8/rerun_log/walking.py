@@ -24,8 +24,8 @@ from hsr8.rerun_log.decisions import (
 from hsr8.rerun_log.shapes import raised
 from hsr8.rerun_log.stream import LogStream
 from walking.body.robot_model import RobotModel
-from walking.command_limits import Limit
-from walking.robot_measures import HSR_VIII
+from walking.command import Limit
+from walking.dimension import HSR_VIII
 
 Array = NDArray[np.float64]
 

@@ -6,8 +6,8 @@ from typing import Any
 
 from hsr8.robots.loaded import LoadedRobot, load_robot
 from hsr8.robots.scale import DEFAULT_ROBOT, RobotDefaults, RobotScale
+from walking.dimension import HSR_VIII
 from walking.parameters import WalkingParameters
-from walking.robot_measures import HSR_VIII
 
 SPEED = {"vx": 0.20, "vx_backward": 0.10, "vy": 0.08, "wz": 0.8}
 """Speed limits of HSR-VIII in navigation [m/s, rad/s]."""

@@ -21,7 +21,7 @@ from hsr8.robots.servos import physics_step
 from hsr8.robots.skeleton import BaseFrame, Posed
 from hsr8.robots.soles import Rectangle
 from hsr8.robots.tree import Parts
-from walking.body.sole import Sole
+from walking.body.tree import Sole
 
 Array = NDArray[np.float64]
 

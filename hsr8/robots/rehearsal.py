@@ -11,12 +11,12 @@ from math import cos, sin
 import numpy as np
 from numpy.typing import NDArray
 
-from walking.arrays import Array
 from walking.body.robot_model import RobotModel
 from walking.command import HeadTarget, VelocityCommand
 from walking.engine import WalkingEngine
 from walking.parameters import CONTROL_PERIOD, GRAVITY, WalkingParameters
-from walking.sensing import BodySensors
+from walking.plane import Array
+from walking.signals import BodySensors
 
 STEPS = 8  # footsteps of a rehearsal
 MAX_SPEED, MAX_TORQUE = 1.2, 1.0  # of the joints, of their maximum [1]

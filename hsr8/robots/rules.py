@@ -9,10 +9,10 @@ from math import sqrt
 
 import numpy as np
 
-from walking.arrays import Array
-from walking.body.leg import FootPose
+from walking.body.kinematics import FootPose
 from walking.body.robot_model import RobotModel
 from walking.body.tree import LEFT_LEG, RIGHT_LEG
+from walking.dimension import HSR_VIII
 from walking.feedforward import support_torque
 from walking.parameters import (
     CONTROL_PERIOD,
@@ -22,7 +22,7 @@ from walking.parameters import (
     StabilizerParameters,
     WalkingParameters,
 )
-from walking.robot_measures import HSR_VIII
+from walking.plane import Array
 
 MAX_GYRO_GAIN = 0.12  # ankle setpoint per angular velocity; above, soft ankles oscillate [s]
 PLAN_FRACTION = 0.6  # maximum margin of the planned ZMP, of the sole's half width [1]

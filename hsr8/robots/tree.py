@@ -10,8 +10,7 @@ from numpy.typing import NDArray
 from hsr8.robots.mechanism import TO_JOINT
 from hsr8.robots.roles import Roles
 from hsr8.robots.skeleton import HINGE
-from walking.body.sole import Sole
-from walking.body.tree import Frame, RobotTree, turn
+from walking.body.tree import Frame, RobotTree, Sole, turn
 
 Array = NDArray[np.float64]
 Ints = NDArray[np.integer]

@@ -23,7 +23,7 @@ from hsr8.scenario.schema import Scenario
 from hsr8.scenario.section import CONTROL_PERIOD_MS
 from hsr8.scenario.track import n_placed
 from hsr8.suggestion import suggestion
-from walking.body.joints import JOINT_NAMES
+from walking.body.tree import JOINT_NAMES
 
 MAX_LATENCY_MS = 500
 """Maximum latency of an image [ms]."""

@@ -20,9 +20,9 @@ from hsr8.world.truth.saturation import Saturation
 from walking.body.robot_model import RobotModel
 from walking.body.tree import RIGHT_LEG
 from walking.command import Command, HeadTarget, VelocityCommand
+from walking.dimension import HSR_VIII
 from walking.engine import WalkingEngine
 from walking.parameters import CONTROL_PERIOD, GRAVITY, WalkingParameters
-from walking.robot_measures import HSR_VIII
 from walking.state import HeadCameraPose
 
 Array = NDArray[np.float64]

@@ -27,12 +27,11 @@ from navigation.decision import GazeDecision, MotionDecision, Task, VirtualObsta
 from navigation.observation import CameraView, Frame
 from navigation.parameters.belief import LocalMapParameters
 from vision.detection import Detection
-from walking.body.joints import JOINT_NAMES
+from walking.body.tree import JOINT_NAMES
 from walking.command import HeadTarget, VelocityCommand
 from walking.foothold import Foothold
 from walking.odometry import Odometry
-from walking.phase import Phase
-from walking.state import Balance, HeadCameraPose, WalkingState
+from walking.state import Balance, HeadCameraPose, Phase, WalkingState
 
 NQ = 33
 READY = np.concatenate([[0.0, 0.0, 0.245, 1.0, 0.0, 0.0, 0.0], np.zeros(NQ - 7)])

@@ -21,7 +21,7 @@ from walking.engine import WalkingEngine
 from walking.odometry import LegOdometry
 from walking.parameters import CONTROL_PERIOD, GRAVITY, WalkingParameters
 from walking.scaling import parameters_for
-from walking.sensing import BodySensors
+from walking.signals import BodySensors
 
 FAST = {"robot.body": "kinematic", "camera.source": "analytic", "duration": 2.0}
 SOURCE = """

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from scipy.stats import qmc
 
-from walking.body.joints import JOINT_NAMES
+from walking.body.tree import JOINT_NAMES
 
 HERE = Path(__file__).parents[2] / "models" / "hsr8"
 COUNTS = {

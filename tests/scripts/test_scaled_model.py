@@ -8,7 +8,7 @@ import pytest
 from scaled_model import scale_robot, scaled_robot
 
 from hsr8.robots.files import models_dir
-from walking.robot_measures import HSR_VIII
+from walking.dimension import HSR_VIII
 
 ROBOT = models_dir() / "hsr8" / "hsr8.xml"
 LENGTHS = ("body_pos", "body_ipos", "geom_pos", "site_pos", "site_size", "cam_pos")

@@ -12,10 +12,10 @@ from hsr8.robots.loaded import load_robot
 from hsr8.scenario.loader import load_scenario
 from hsr8.world.field.generator import draw_layout
 from hsr8.world.model.index import ModelIndex
-from walking.get_up.get_up import GetUp, Outcome
-from walking.get_up.key_posture import STRAIGHT
+from walking.get_up import GetUp, Outcome
+from walking.get_up_motions import STRAIGHT
 from walking.parameters import CONTROL_PERIOD, GetUpParameters
-from walking.phase import Phase
+from walking.state import Phase
 
 ROBOT = models_dir() / "hsr8" / "hsr8.xml"
 PUSH = 'fault=[{kind="push",start=0.8,magnitude=4.0,direction_deg=0}]'

@@ -24,7 +24,7 @@ from walking.records import (
     WALK,
     parameters_record,
 )
-from walking.sensing import BodySensors
+from walking.signals import BodySensors
 from walking.swing import rest_at
 
 

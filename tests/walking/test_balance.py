@@ -19,7 +19,7 @@ from walking.balance import (
     place_foot,
     zmp_shift,
 )
-from walking.command_limits import BALANCE, LANDING_FROZEN
+from walking.command import BALANCE, LANDING_FROZEN
 from walking.foothold import Foothold, foothold
 from walking.footsteps import STILL, is_same, landing_of, reachable
 from walking.gait import advance, retime, start, support_foot, swing_foot, swing_of

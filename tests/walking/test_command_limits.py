@@ -2,8 +2,7 @@
 
 import pytest
 
-from walking.command import CommandState, HeadTarget, VelocityCommand
-from walking.command_limits import Limit
+from walking.command import CommandState, HeadTarget, Limit, VelocityCommand
 from walking.engine import WalkingEngine
 from walking.parameters import CONTROL_PERIOD, WalkingParameters
 

@@ -10,6 +10,7 @@ from walking.dimension import (
     ACCELERATION,
     DECAY_PER_TICK,
     GAIN_PER_TICK,
+    HSR_VIII,
     LENGTH,
     NUMBER,
     RATE,
@@ -17,8 +18,8 @@ from walking.dimension import (
     STANCE,
     TIME,
     Dimension,
+    RobotMeasures,
 )
-from walking.robot_measures import HSR_VIII, RobotMeasures
 
 SIZE = st.floats(0.3, 4.0)
 ROBOT = st.builds(RobotMeasures, SIZE, SIZE, SIZE, SIZE, SIZE, SIZE)

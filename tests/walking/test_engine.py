@@ -6,12 +6,12 @@ import numpy as np
 import pytest
 from scipy.spatial import ConvexHull
 
-from walking.body.joints import HEAD
+from walking.body.tree import HEAD
 from walking.command import HeadTarget, VelocityCommand
 from walking.engine import WalkingEngine
 from walking.footsteps import STANCE_YAW_TOLERANCE
 from walking.parameters import CONTROL_PERIOD, HeadParameters, WalkingParameters
-from walking.phase import Phase
+from walking.state import Phase
 
 AHEAD = HeadTarget()
 GENERATORS = ["dcm", "preview", "paper", "robust"]

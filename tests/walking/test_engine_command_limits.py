@@ -7,8 +7,7 @@ import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
 
-from walking.command import CommandState, HeadTarget, VelocityCommand
-from walking.command_limits import Limit
+from walking.command import CommandState, HeadTarget, Limit, VelocityCommand
 from walking.engine import WalkingEngine
 from walking.foothold import foothold
 from walking.footsteps import (

@@ -8,7 +8,7 @@ import pytest
 from walking.command import CommandState, HeadTarget, VelocityCommand
 from walking.engine import WalkingEngine
 from walking.parameters import CONTROL_PERIOD, WalkingParameters
-from walking.phase import Phase
+from walking.state import Phase
 
 AHEAD = HeadTarget()
 PARAMETERS = WalkingParameters()

@@ -8,8 +8,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from walking.command import CommandState
-from walking.command_limits import CLEARANCE
+from walking.command import CLEARANCE, CommandState
 from walking.foothold import Foothold
 from walking.footsteps import (
     STILL,

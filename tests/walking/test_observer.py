@@ -11,7 +11,7 @@ from walking.engine import WalkingEngine
 from walking.observer import BodyObserver
 from walking.odometry import LegOdometry
 from walking.parameters import WalkingParameters
-from walking.phase import Phase
+from walking.state import Phase
 
 PARAMETERS = WalkingParameters()
 COMMAND = VelocityCommand(0.15, 0.03, 0.3)

@@ -8,9 +8,8 @@ from walking.foothold import Foothold, foothold
 from walking.footsteps import STILL
 from walking.gait import start, update_phase
 from walking.parameters import PatternParameters
-from walking.patterns import advance_pattern, is_feasible, rejects_infeasible
+from walking.patterns import advance_pattern, is_feasible, preview_gains, rejects_infeasible
 from walking.pendulum import dcm_of, dcm_reference
-from walking.preview import preview_gains
 from walking.records import BEST, KNOT, LIVE, PENDULUM, RAMP, ZMP_PLAN
 from walking.reference import set_ramp
 from walking.support import clip, support_region

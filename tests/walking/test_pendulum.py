@@ -6,7 +6,6 @@ from hypothesis import given
 from hypothesis import strategies as st
 from scipy.integrate import solve_ivp
 
-from walking.clamp import clamp, dead_zone
 from walking.foothold import Foothold
 from walking.parameters import CONTROL_PERIOD
 from walking.pendulum import (
@@ -19,6 +18,7 @@ from walking.pendulum import (
     track_dcm,
     track_reference,
 )
+from walking.plane import clamp, dead_zone
 from walking.records import PENDULUM, RAMP
 from walking.support import support_region
 

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from walking.body.joints import HEAD, LEFT_ARM, LEFT_LEG, RIGHT_ARM, RIGHT_LEG
+from walking.body.tree import HEAD, LEFT_ARM, LEFT_LEG, RIGHT_ARM, RIGHT_LEG
 from walking.constants import joint_records
 from walking.foothold import Foothold
 from walking.gait import advance, start

@@ -5,14 +5,14 @@ import pytest
 from scipy.spatial.transform import Rotation
 
 from walking.admission import plan_in
-from walking.body.joints import HEAD
 from walking.body.kinematics import chain_end
+from walking.body.tree import HEAD
 from walking.command import VelocityCommand
 from walking.foothold import foothold
 from walking.gait import start
-from walking.phase import Phase
 from walking.published import PUBLISHED, Publication, publish_camera, publish_plan
 from walking.records import LIVE, ODOMETRY, SENSING
+from walking.state import Phase
 
 FEET = ((0.01, 0.042, -0.22, 0.1), (-0.01, -0.042, -0.21, -0.05))  # x, y, z, yaw
 

@@ -6,8 +6,8 @@ from math import sqrt
 import pytest
 
 from walking.command import CommandState, VelocityCommand
+from walking.dimension import HSR_VIII, RobotMeasures
 from walking.parameters import CONTROL_PERIOD, GRAVITY, WalkingParameters
-from walking.robot_measures import HSR_VIII, RobotMeasures
 from walking.scaling import parameters_for, rules_of, scale_parameters
 
 SECTIONS = [type(getattr(WalkingParameters(), f.name)) for f in fields(WalkingParameters)]

@@ -5,7 +5,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from walking.command_limits import ACCELERATION, BALANCE, STRIDE_LIMITS
+from walking.command import ACCELERATION, BALANCE, STRIDE_LIMITS
 from walking.footsteps import STILL, cadence, duration, mean_velocity, put_timing
 from walking.parameters import CONTROL_PERIOD, WalkingParameters
 from walking.records import COMMAND, STEERING, STRIDES, TIMING, parameters_record

@@ -3,7 +3,7 @@
 import pickle
 
 from walking.foothold import Foothold
-from walking.value import comparable_value, value
+from walking.signals import comparable_value, value
 
 
 @value

@@ -6,12 +6,11 @@ from math import cos, pi, sin
 import numpy as np
 import pytest
 
-from walking.command import HeadTarget, VelocityCommand
-from walking.command_limits import CommandLimits, Limit
+from walking.command import CommandLimits, HeadTarget, Limit, VelocityCommand
 from walking.engine import WalkingEngine
-from walking.get_up.get_up import Outcome
+from walking.get_up import Outcome
 from walking.parameters import GetUpParameters, WalkingParameters
-from walking.phase import Phase
+from walking.state import Phase
 from walking.walker import Walker
 
 AHEAD, FORWARD = HeadTarget(), VelocityCommand(0.2, 0.0, 0.0)

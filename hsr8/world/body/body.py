@@ -12,8 +12,7 @@ from hsr8.world.model.index import ModelIndex
 from hsr8.world.truth.contacts import ContactWatch
 from hsr8.world.truth.saturation import Saturation
 from hsr8.world.truth.truth import Truth
-from walking.sensing import BodySensors
-from walking.targets import JointTargets
+from walking.signals import BodySensors, JointTargets
 
 
 class Body(Protocol):

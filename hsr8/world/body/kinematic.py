@@ -20,8 +20,7 @@ from hsr8.world.field.layout import Layout
 from hsr8.world.rotation import Quaternion, heading, product, rotate
 from hsr8.world.truth.truth import Truth
 from walking.parameters import CONTROL_PERIOD, GRAVITY
-from walking.sensing import BodySensors
-from walking.targets import JointTargets
+from walking.signals import BodySensors, JointTargets
 
 Array = NDArray[np.float64]
 

@@ -20,8 +20,7 @@ from hsr8.world.rotation import heading, quaternion_from_yaw, up_component
 from hsr8.world.truth.saturation import Saturation, SaturationWatch
 from hsr8.world.truth.truth import Truth
 from walking.parameters import CONTROL_PERIOD
-from walking.sensing import BodySensors
-from walking.targets import JointTargets
+from walking.signals import BodySensors, JointTargets
 
 Array = NDArray[np.float64]
 

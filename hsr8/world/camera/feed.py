@@ -11,7 +11,7 @@ from hsr8.scenario.section import CONTROL_PERIOD_MS
 from hsr8.scenario.sensors import Camera
 from hsr8.world.camera.faults import CameraFaults
 from vision.detection import Detection
-from walking.value import value
+from walking.signals import value
 
 Image = NDArray[np.uint8]
 

@@ -6,7 +6,7 @@ from math import degrees, hypot
 import numpy as np
 from numpy.typing import NDArray
 
-from walking.value import value
+from walking.signals import value
 
 Array = NDArray[np.float64]
 

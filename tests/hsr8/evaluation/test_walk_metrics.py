@@ -9,10 +9,9 @@ from hsr8.record import Second
 from hsr8.recorder.limit_bits import limit_bits
 from hsr8.world.truth.saturation import Saturation
 from hsr8.world.truth.truth import ActivePush
-from walking.body.joints import JOINT_NAMES
-from walking.command import VelocityCommand
-from walking.command_limits import Limit
-from walking.phase import Phase
+from walking.body.tree import JOINT_NAMES
+from walking.command import Limit, VelocityCommand
+from walking.state import Phase
 
 STEP = 0.34
 

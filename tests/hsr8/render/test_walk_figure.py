@@ -12,9 +12,8 @@ from hsr8.render.walk_figure import TIME_PANELS, draw, save
 from hsr8.rerun_log.walking import GAIT
 from hsr8.robots.loaded import load_robot
 from hsr8.world.truth.truth import ActivePush
-from walking.command import VelocityCommand
-from walking.command_limits import Limit
-from walking.phase import Phase
+from walking.command import Limit, VelocityCommand
+from walking.state import Phase
 
 STEP, SPEED, TURN = 0.34, 0.2, 0.5
 

@@ -18,8 +18,7 @@ from hsr8.scenario.loader import load_scenario
 from hsr8.world.truth.truth import ActivePush
 from navigation.belief.belief import Particles
 from tests.hsr8.rerun_log.batches import batch_of
-from walking.command import VelocityCommand
-from walking.command_limits import CommandLimits, Limit
+from walking.command import CommandLimits, Limit, VelocityCommand
 
 
 @pytest.fixture(autouse=True)

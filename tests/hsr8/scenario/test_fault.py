@@ -7,7 +7,7 @@ from hypothesis import strategies as st
 from hsr8.errors import ScenarioError
 from hsr8.scenario.fault import CameraBlack, Fault, ServoStuck
 from hsr8.scenario.loader import dump, load_scenario, loads
-from walking.body.joints import JOINT_NAMES
+from walking.body.tree import JOINT_NAMES
 
 FULL = 'robot.body="full"'
 MAGNITUDES = {

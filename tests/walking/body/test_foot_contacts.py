@@ -5,9 +5,9 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from walking.body.foot_contacts import FootContacts
+from walking.observer import FootContacts
 from walking.parameters import CONTROL_PERIOD, GRAVITY, GaitParameters
-from walking.phase import Phase
+from walking.state import Phase
 
 MASS = 5.0
 WEIGHT = MASS * GRAVITY

@@ -8,7 +8,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from walking.body.leg import FootPose, Leg
+from walking.body.kinematics import FootPose, Leg
 from walking.body.tree import LEFT_LEG, RIGHT_LEG, turn
 
 LEGS = [(0, LEFT_LEG), (1, RIGHT_LEG)]

@@ -9,7 +9,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from walking.body.kinematics import chain_end
-from walking.body.neck import Neck
+from walking.body.robot_model import Neck
 from walking.body.tree import turn
 from walking.head import head_joints
 from walking.records import JOINT, ROBOT

@@ -6,7 +6,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from scipy.spatial.transform import Rotation
 
-from walking.body.rolling_feet import RollingFeet
+from walking.observer import RollingFeet
 
 angles = st.tuples(*[st.floats(-0.5, 0.5)] * 3)
 FLAT = np.stack([np.eye(3)] * 2)

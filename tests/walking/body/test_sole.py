@@ -1,6 +1,6 @@
 import pytest
 
-from walking.body.sole import Sole
+from walking.body.tree import Sole
 
 SOLE = Sole(0.01, 0.11, 0.05)
 

@@ -5,11 +5,10 @@ from math import cos, pi, sin
 import numpy as np
 import pytest
 
-from walking.get_up.get_up import GetUp, Outcome
-from walking.get_up.get_up_motion import MOTIONS
-from walking.get_up.key_posture import STRAIGHT
+from walking.get_up import GetUp, Outcome
+from walking.get_up_motions import MOTIONS, STRAIGHT
 from walking.parameters import CONTROL_PERIOD, GetUpParameters
-from walking.sensing import BodySensors
+from walking.signals import BodySensors
 
 PARAMETERS = GetUpParameters(enabled=True)
 

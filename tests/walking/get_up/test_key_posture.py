@@ -3,8 +3,7 @@
 import numpy as np
 import pytest
 
-from walking.get_up.get_up_motion import MOTIONS
-from walking.get_up.key_posture import STRAIGHT
+from walking.get_up_motions import MOTIONS, STRAIGHT
 
 POSTURES = (*MOTIONS.rise, *MOTIONS.roll, STRAIGHT)
 

@@ -7,7 +7,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from scipy.spatial.transform import Rotation
 
-from walking.get_up.lying import Lying, RestDetector, lying_on, up_in_trunk
+from walking.get_up import Lying, RestDetector, lying_on, up_in_trunk
 from walking.parameters import GetUpParameters
 
 ANGLE = st.floats(-pi, pi)

@@ -5,7 +5,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from walking.get_up.posture_track import PostureTrack
+from walking.get_up import PostureTrack
 from walking.parameters import CONTROL_PERIOD
 
 SPEED = 8.0

@@ -8,7 +8,7 @@ from hsr8.scenario.sensors import SensorNoise
 from hsr8.world.body.kinematic import KinematicBody
 from hsr8.world.body.physics import PhysicsBody
 from hsr8.world.field.layout import Obstacle, standard_beacons
-from walking.targets import JointTargets
+from walking.signals import JointTargets
 
 pytestmark = pytest.mark.parametrize("kind", [KinematicBody, PhysicsBody])
 

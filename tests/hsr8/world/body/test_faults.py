@@ -29,9 +29,8 @@ from hsr8.world.field.motion import Shuttle
 from hsr8.world.model.assembly import Optics, assemble
 from hsr8.world.model.index import ModelIndex
 from hsr8.world.rotation import heading, quaternion_from_yaw
-from walking.body.joints import JOINT_NAMES
-from walking.sensing import BodySensors
-from walking.targets import JointTargets
+from walking.body.tree import JOINT_NAMES
+from walking.signals import BodySensors, JointTargets
 
 KNEE = 3
 

@@ -13,10 +13,10 @@ from hsr8.world.camera.rendered import RenderedCamera, angular_velocity
 from vision.camera import PinholeCamera
 from vision.detector import Detector
 from vision.parameters import VisionParameters
-from walking.body.joints import JOINT_NAMES
+from walking.body.tree import JOINT_NAMES
 from walking.parameters import CONTROL_PERIOD
+from walking.signals import JointTargets
 from walking.state import HeadCameraPose
-from walking.targets import JointTargets
 
 CLEAN = Camera(noise=CameraNoise(pixel=0.0, exposure=0.0))
 pytestmark = pytest.mark.gl

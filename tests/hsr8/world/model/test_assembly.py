@@ -12,7 +12,7 @@ from hsr8.world.body.physics import place_robot
 from hsr8.world.field.generator import draw_layout
 from hsr8.world.model.assembly import Optics, assemble
 from hsr8.world.model.index import ModelIndex
-from walking.body.joints import JOINT_NAMES
+from walking.body.tree import JOINT_NAMES
 
 
 @pytest.fixture(scope="module")

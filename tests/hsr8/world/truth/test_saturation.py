@@ -10,7 +10,7 @@ from hsr8.world.field.layout import Layout
 from hsr8.world.model.assembly import Optics, assemble
 from hsr8.world.model.index import ModelIndex
 from hsr8.world.truth.saturation import SaturationWatch
-from walking.body.joints import JOINT_NAMES
+from walking.body.tree import JOINT_NAMES
 
 EMPTY = Layout((4.0, 4.0), (), (), (0.0, 0.0, 0.0), np.zeros((0, 2)), None, endless=False)
 KNEE = JOINT_NAMES.index("l_knee")

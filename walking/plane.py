@@ -1,9 +1,16 @@
-"""Rotations and frames of the plane, SE(2)."""
+"""Types of arrays and vectors, rotations and frames of the plane SE(2), and saturation."""
 
 from math import cos, sin, sqrt
 
+import numpy as np
+from numpy.typing import NDArray
+
 from compilation import compiled
-from walking.arrays import Point
+
+Array = NDArray[np.float64]
+Indices = NDArray[np.int64]
+Point = tuple[float, float]
+Vector = tuple[float, float, float]
 
 Frame = tuple[float, float, float]
 """x, y [m] of the origin and yaw [rad]."""
@@ -35,3 +42,19 @@ def from_frame(frame: Frame, x: float, y: float) -> Point:
     ox, oy, yaw = frame
     c, s = cos(yaw), sin(yaw)
     return ox + c * x - s * y, oy + s * x + c * y
+
+
+@compiled
+def clamp(value: float, limit: float) -> float:
+    """Clip a value to ±`limit`."""
+    return min(limit, max(-limit, value))
+
+
+@compiled
+def dead_zone(value: float, zone: float) -> float:
+    """Return the excess of a value over a dead zone of ±`zone`, zero inside it."""
+    if value > zone:
+        return value - zone
+    if value < -zone:
+        return value + zone
+    return 0.0

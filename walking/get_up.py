@@ -1,19 +1,114 @@
 """Fall recovery: come to rest, detect the lying side, turn over if needed, rise, stand."""
 
-from enum import Enum, auto
-from math import atan2, cos
+from enum import Enum, StrEnum, auto
+from math import atan2, ceil, cos
 
 import numpy as np
 
-from walking.arrays import Array, Vector
 from walking.body.robot_model import RobotModel
-from walking.get_up.get_up_motion import MOTIONS, Motions
-from walking.get_up.key_posture import STRAIGHT, KeyPosture
-from walking.get_up.lying import Lying, RestDetector, lying_on, up_in_trunk
-from walking.get_up.posture_track import PostureTrack
+from walking.get_up_motions import MOTIONS, STRAIGHT, KeyPosture, Motions
 from walking.parameters import CONTROL_PERIOD, GetUpParameters
-from walking.sensing import BodySensors
-from walking.targets import JointTargets
+from walking.plane import Array, Vector
+from walking.signals import BodySensors, JointTargets
+from walking.swing import PEAK, minimum_jerk
+
+
+class Lying(StrEnum):
+    """Side of the trunk on the floor."""
+
+    FRONT = "front"
+    BACK = "back"
+    LEFT = "left"
+    RIGHT = "right"
+
+
+def up_in_trunk(quaternion: tuple[float, float, float, float]) -> Vector:
+    """Return the vertical in the trunk frame: forward, left and headward component [1].
+
+    Unlike roll and pitch it has no singularity at the pitch of a lying trunk, 90°.
+
+    Args:
+        quaternion: attitude of the trunk, w-x-y-z.
+    """
+    w, x, y, z = quaternion
+    return 2.0 * (x * z - w * y), 2.0 * (y * z + w * x), 1.0 - 2.0 * (x * x + y * y)
+
+
+def lying_on(up: Vector) -> Lying:
+    """Return the lying side of a trunk with vertical `up`."""
+    forward, left, _ = up
+    if abs(forward) >= abs(left):
+        return Lying.BACK if forward > 0.0 else Lying.FRONT
+    return Lying.RIGHT if left > 0.0 else Lying.LEFT
+
+
+class RestDetector:
+    """Detects that the trunk is at rest.
+
+    Args:
+        parameters: maximum rate and its duration.
+    """
+
+    def __init__(self, parameters: GetUpParameters) -> None:
+        self._rate = parameters.rest_rate
+        self._ticks = round(parameters.rest_time / CONTROL_PERIOD)
+        self._count = 0
+
+    def update(self, gyro: Vector) -> bool:
+        """Whether the trunk is at rest, given this tick's angular velocity [rad/s]."""
+        self._count = self._count + 1 if max(map(abs, gyro)) < self._rate else 0
+        return self._count >= self._ticks
+
+
+class PostureTrack:
+    """Minimum-jerk motion of all joints within limits of angle and rate.
+
+    Args:
+        robot: joint limits.
+        speed: maximum joint rate [rad/s].
+        angles: initial joint angles (n,) [rad].
+
+    Attributes:
+        angles: present setpoints (n,) [rad].
+    """
+
+    def __init__(self, robot: RobotModel, speed: float, angles: Array) -> None:
+        self._lower, self._upper = robot.lower, robot.upper
+        self._speed = speed
+        self.angles = self._within(angles)
+        self._origin = self._goal = self.angles
+        self._ticks, self._tick, self._last = 1, 1, 1
+
+    @property
+    def done(self) -> bool:
+        """Whether the posture has been reached and held."""
+        return self._tick >= self._last
+
+    def aim(self, angles: Array, time: float, hold: float = 0.0) -> None:
+        """Start a motion to a posture.
+
+        Args:
+            angles: of the posture, clipped to the joint limits (n,) [rad].
+            time: of the motion, extended if a joint would be too fast [s].
+            hold: time in the posture [s].
+        """
+        self._origin, self._goal = self.angles, self._within(angles)
+        max_change = float(np.abs(self._goal - self._origin).max())
+        time = max(time, PEAK * max_change / self._speed, CONTROL_PERIOD)
+        self._ticks, self._tick = ceil(time / CONTROL_PERIOD), 0
+        self._last = self._ticks + round(hold / CONTROL_PERIOD)
+
+    def advance(self) -> Array:
+        """Return the setpoints of the next tick (n,) [rad]."""
+        self._tick += 1
+        fraction = minimum_jerk(self._tick / self._ticks)
+        self.angles = self._origin + fraction * (self._goal - self._origin)
+        return self.angles
+
+    def _within(self, angles: Array) -> Array:
+        within: Array = np.clip(angles, self._lower, self._upper)
+        return within
+
 
 STAND_TIME = 0.8  # from the squat to the ready posture [s]
 MAX_REST = 3.0  # timeout of waiting for rest [s]

@@ -1,1 +1,0 @@
-"""Getting up after a fall."""
