@@ -49,7 +49,7 @@ class Body(Protocol):
 
 Array = NDArray[np.float64]
 
-BLOCK = 256  # physics steps per computation of mover positions
+BLOCK = 256  # physics steps per computation of the motion of the movers
 
 
 class Surroundings:
@@ -76,6 +76,7 @@ class Surroundings:
         self.watch = ContactWatch(model, self.index, layout)
         self._timestep = float(model.opt.timestep)
         self._first, self._block = -BLOCK, np.zeros((BLOCK, model.nmocap, 3))
+        self._row, self._ends, self._velocities = 0, np.full(BLOCK, np.nan), np.zeros((BLOCK, 0, 2))
 
     def move(self, data: mujoco.MjData, time: float) -> None:
         """Move every mover to its position at `time` [s]."""
@@ -88,10 +89,12 @@ class Surroundings:
             return
         if not 0 <= number - self._first < BLOCK:
             self._first = number
-            ends = np.arange(number + 1.0, number + 1.0 + BLOCK) * self._timestep
+            self._ends = np.arange(number + 1.0, number + 1.0 + BLOCK) * self._timestep
             self._block[:] = data.mocap_pos
-            self._block[:, self.index.mover_mocap, :2] = self._movers.positions(ends)
-        data.mocap_pos[:] = self._block[number - self._first]
+            self._block[:, self.index.mover_mocap, :2] = self._movers.positions(self._ends)
+            self._velocities = self._movers.velocities(self._ends)
+        self._row = number - self._first
+        data.mocap_pos[:] = self._block[self._row]
 
     def positions(self, data: mujoco.MjData) -> Array:
         """Return the axes of all obstacles in `data`, layout order (n, 2) [m]."""
@@ -100,7 +103,9 @@ class Surroundings:
 
     def velocities(self, time: float) -> Array:
         """Return the velocities of all obstacles at `time` [s], layout order (n, 2) [m/s]."""
-        return self._with(self._zeros, self._movers.velocities(time))
+        stepped = self._ends[self._row] == time
+        movers = self._velocities[self._row] if stepped else self._movers.velocities(time)
+        return self._with(self._zeros, movers)
 
     def _with(self, static: Array, movers: Array) -> Array:
         """Return rows of static obstacles, then those of the movers."""

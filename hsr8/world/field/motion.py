@@ -204,14 +204,14 @@ class Movers:
             positions[..., self._appearing, 0] += np.where(self._present(times), 0.0, self._away)
         return positions
 
-    def velocities(self, time: float) -> Array:
-        """Return the velocities at `time` [s], in layout order (n, 2) [m/s]."""
+    def velocities(self, time: float | Array) -> Array:
+        """Return the velocities at `time` [s] (...), in layout order (..., n, 2) [m/s]."""
         times = np.asarray(time, dtype=float)
-        velocities = np.empty((len(self.motions), 2))
+        velocities = np.empty((*times.shape, len(self.motions), 2))
         for chosen, kind in self._kinds:
-            velocities[chosen] = kind.velocities(times)
+            velocities[..., chosen, :] = kind.velocities(times)
         if len(self._appearing):
-            velocities[self._appearing] *= self._present(times)[..., None]
+            velocities[..., self._appearing, :] *= self._present(times)[..., None]
         return velocities
 
     def top_speeds(self) -> Array:

@@ -71,8 +71,9 @@ def test_all_together_are_each_alone(chosen, time):
 @given(st.lists(motions, max_size=6), st.lists(times, min_size=1, max_size=4))
 def test_many_times_at_once_are_each_alone(chosen, instants):
     movers = Movers(tuple(chosen))
-    together = movers.positions(np.array(instants))
-    assert np.array_equal(together, np.array([movers.positions(time) for time in instants]))
+    for values in (movers.positions, movers.velocities):
+        together = values(np.array(instants))
+        assert np.array_equal(together, np.array([values(time) for time in instants]))
 
 
 TRACK = Track(
