@@ -36,10 +36,3 @@ plt.show = lambda: print("figure", len(plt.gcf().axes))
     assert done.returncode == 0, done.stderr
     assert done.stdout.count("figure") == 2
     assert len(list(tmp_path.glob("runs/quick/*/manifest.json"))) == 3
-
-
-@pytest.mark.parametrize("path", NOTEBOOKS, ids=lambda path: path.stem)
-def test_the_notebook_is_kept_without_outputs(path):
-    notebook = json.loads(path.read_text(encoding="utf-8"))
-    assert not any(cell.get("outputs") for cell in notebook["cells"])
-    assert notebook["nbformat"] == 4
