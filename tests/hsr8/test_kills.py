@@ -15,7 +15,7 @@ from walking.parameters import CONTROL_PERIOD
 COUNT = struct.Struct("<q")
 LIGHT = ("--body", "kinematic", "--camera", "analytic")
 MAX_LOSS = 1.0  # time that a killed run may lack [s]
-WAIT = 60.0  # wall time until the first tick [s]
+WAIT = 300.0  # wall time until the first tick, with compilation [s]
 PROGRAM = """
 import mmap, struct, sys
 from hsr8.cli.main import entry
