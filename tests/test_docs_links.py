@@ -1,4 +1,4 @@
-"""Every link, anchor and picture of every Markdown file leads somewhere."""
+"""Links, anchors, images and named files of every Markdown file exist."""
 
 import re
 from functools import cache
@@ -71,10 +71,13 @@ def test_every_table_of_results_is_in_its_index():
     assert {page.name for page in index.parent.glob("*.md")} - {"README.md"} <= listed
 
 
-@pytest.mark.parametrize("page", ["architecture.md"])
+# The changelog is history; the names in equations.md are relative to other folders and have a test.
+PRESENT = [page for page in PAGES if page.name not in ("CHANGELOG.md", "equations.md")]
+
+
+@pytest.mark.parametrize("page", PRESENT, ids=str)
 def test_names_of_the_code_exist(page):
-    named = re.findall(r"`([\w/]+\.py)(?:::(\w+))?`", (ROOT / "docs" / page).read_text())
-    assert named
+    named = re.findall(r"`(\w[\w/]*/\w+\.py)(?:::(\w+))?`", (ROOT / page).read_text())
     for file, name in named:
         defined = rf"^(class|def) {name}\b" if name else ""
         assert re.search(defined, (ROOT / file).read_text(), re.M), f"{file}::{name}"
