@@ -28,12 +28,7 @@ DEFAULT = "default"  # name of an entry without settings
 
 
 def main(options: Bench) -> int:
-    """Run the worlds of the suite that have no result, write the entry and print its table.
-
-    Raises:
-        UsageError: the suite, a setting, a plugin, an option or the folder is invalid.
-        RenderingUnavailable: the camera needs OpenGL and there is none.
-    """
+    """Run the worlds of the suite that have no result, write the entry and print its table."""
     file = options.suite or SHIPPED
     suite = read_suite(file)
     seeds = "quick" if options.quick else "full"

@@ -26,12 +26,7 @@ from hsr8.world.field.motion import pace
 
 
 def main(options: Check) -> int:
-    """Check the settings, draw the world, and show both.
-
-    Raises:
-        ScenarioError: the scenario is invalid or its world cannot be drawn.
-        UsageError: a plugin is invalid, or the image cannot be written.
-    """
+    """Check the settings, draw the world, and show both."""
     scenario = load_scenario(
         options.scenario, settings(options), options.seed, options=option_tables(options)
     )

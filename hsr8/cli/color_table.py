@@ -32,11 +32,7 @@ def mask_colors() -> dict[str, tuple[int, int, int]]:
 
 
 def main(options: cli.ColorTable) -> int:
-    """Learn and write the table; report its recall on the images it was learned from.
-
-    Raises:
-        UsageError: an image or a mask is missing or invalid, or the table cannot be written.
-    """
+    """Learn and write the table; report its recall on the images it was learned from."""
     require_file_name("--out", options.out, (SUFFIX,))
     if not options.images:
         raise UsageError("IMAGE: missing; expected images with masks NAME.mask.png")

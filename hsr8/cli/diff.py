@@ -24,9 +24,6 @@ def main(options: Diff) -> int:
 
     Returns:
         0 where every bit of the recorded motion is equal, else 1.
-
-    Raises:
-        UsageError: there is no such run, or its records cannot be read.
     """
     a, b = open_run(options.a), open_run(options.b)
     motion = run_difference.motion(a, b)

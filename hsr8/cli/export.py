@@ -23,10 +23,6 @@ def main(options: Export) -> int:
     """Write the exports and print their paths.
 
     Every export is a draft until all are complete.
-
-    Raises:
-        UsageError: an option is invalid, a target exists, or a run cannot be read.
-        ModelError: the robot is unknown or invalid.
     """
     given = {
         "--urdf": options.urdf,

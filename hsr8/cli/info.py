@@ -16,11 +16,7 @@ MAX_EVENTS = 30  # in the table; --json has all of them
 
 
 def main(options: Info) -> int:
-    """Show results, events, versions and files of a run.
-
-    Raises:
-        UsageError: there is no such run, or it is damaged.
-    """
+    """Show results, events, versions and files of a run."""
     run = open_run(options.run)
     manifest, results, criteria = run.manifest, run.metrics(), _criteria(run)
     table = run.events

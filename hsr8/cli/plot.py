@@ -12,11 +12,7 @@ SUFFIXES = (".png", ".svg", ".pdf")
 
 
 def main(options: Plot) -> int:
-    """Draw the plot and print its path.
-
-    Raises:
-        UsageError: there is no such run or no record of its walking, or an option is invalid.
-    """
+    """Draw the plot and print its path."""
     run = open_run(options.run)
     out = options.out or run.path / f"{options.what}.png"
     require_file_name("--out", out, SUFFIXES)

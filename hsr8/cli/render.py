@@ -23,12 +23,7 @@ SUFFIXES = (*FORMATS, ".png")
 
 
 def main(options: Render) -> int:
-    """Render the video and print its path.
-
-    Raises:
-        UsageError: there is no such run, or an option is invalid.
-        RenderingUnavailable: no OpenGL draws here.
-    """
+    """Render the video and print its path."""
     if options.follow and options.out and options.out.suffix.lower() == ".png":
         raise UsageError(f"--follow: not for an image, got --out {options.out}; expected a video")
     if not 1 <= options.fps <= 120:

@@ -16,11 +16,7 @@ from hsr8.render.live_view import live_view
 
 
 def main(options: Replay) -> int:
-    """Open the viewer, or write a screenshot of it.
-
-    Raises:
-        UsageError: there is no such run or log, or no display.
-    """
+    """Open the viewer, or write a screenshot of it."""
     run = open_run(options.run)
     log = (None if options.full else run.log_file) or _made(run, full=options.full)
     if options.screenshot is not None:

@@ -6,12 +6,7 @@ from hsr8.cli.options import Robot
 
 
 def main(options: Robot) -> int:
-    """Run one of the commands.
-
-    Raises:
-        UsageError: an argument is invalid.
-        ModelError: the robot is invalid or its model is missing.
-    """
+    """Run one of the commands."""
     kind = type(options.action).__name__.removeprefix("Robot").lower()
     code: int = import_module(f"hsr8.cli.robot_{kind}").main(options.action)
     return code

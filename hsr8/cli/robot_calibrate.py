@@ -33,12 +33,7 @@ UNITS = {
 
 
 def main(options: RobotCalibrate) -> int:
-    """Measure, print the results and write them into the description.
-
-    Raises:
-        UsageError: the description cannot be written.
-        ModelError: the robot is invalid or its model is missing.
-    """
+    """Measure, print the results and write them into the description."""
     source = find_description(options.robot).resolve()
     description = read_description(source)
     target = _target(options, source)

@@ -17,11 +17,7 @@ SHOWN = 12  # joints in the table; --json has all of them
 
 
 def main(options: RobotCheck) -> int:
-    """Print the results; 0 where the robot stands and walks, else 1.
-
-    Raises:
-        ModelError: the robot is invalid or its model is missing.
-    """
+    """Print the results; 0 where the robot stands and walks, else 1."""
     robot = load_robot(options.robot)
 
     def report(result: WalkResult) -> None:

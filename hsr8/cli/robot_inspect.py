@@ -21,11 +21,6 @@ def main(options: RobotInspect) -> int:
     """Print roles and derived numbers; write the description and draw the robot.
 
     A description is also written for a robot that is refused, to be corrected.
-
-    Raises:
-        UsageError: an output file is invalid.
-        ModelError: a file is wrong, no legs were found, or the robot is refused.
-        RenderingUnavailable: an image is to be drawn and there is no OpenGL.
     """
     _require_outputs(options)
     inspection = inspect(options.file)

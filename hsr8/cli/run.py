@@ -10,12 +10,7 @@ from hsr8.scenario.loader import load_scenario
 
 
 def main(options: Run) -> int:
-    """Run the scenario and report.
-
-    Raises:
-        UsageError: the scenario, a setting or the output folder is invalid.
-        RenderingUnavailable: the camera needs OpenGL and there is none.
-    """
+    """Run the scenario and report."""
     scenario = load_scenario(
         options.scenario,
         settings(options),

@@ -9,11 +9,7 @@ DIALECT = "https://json-schema.org/draft/2020-12/schema"
 
 
 def main(options: Schema) -> int:
-    """Print or write the schema.
-
-    Raises:
-        UsageError: the file cannot be written.
-    """
+    """Print or write the schema."""
     schema = {"$schema": DIALECT, **json_schema(), "title": "hsr8 scenario"}
     if options.out is None:
         print(atomic.dumps(schema, indent=2))

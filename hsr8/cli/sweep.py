@@ -29,12 +29,7 @@ INTERRUPTED = 130
 
 
 def main(options: Sweep) -> int:
-    """Run the seeds without a result, write the results and report them.
-
-    Raises:
-        UsageError: the scenario, a plugin, an option or the folder is invalid.
-        RenderingUnavailable: the camera needs OpenGL and there is none.
-    """
+    """Run the seeds without a result, write the results and report them."""
     execution = Execution(
         command=shlex.join(command_words(options)),
         seeds=parse_seeds(options.seeds),

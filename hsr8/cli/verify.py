@@ -17,11 +17,7 @@ DIFFERENT = 1
 
 
 def main(options: Verify) -> int:
-    """Recompute physics, belief and decisions and compare them bit for bit.
-
-    Raises:
-        UsageError: there is no such run, or its records cannot be read.
-    """
+    """Recompute physics, belief and decisions and compare them bit for bit."""
     run = open_run(options.run, trust=options.trust)
     if not options.json:
         print(f"run         {run.path}", flush=True)

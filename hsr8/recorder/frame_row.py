@@ -1,5 +1,6 @@
 """Row of a camera frame: detections, belief and decisions, with the objects in its columns."""
 
+from collections.abc import Sequence
 from math import inf
 from typing import Any
 
@@ -35,10 +36,23 @@ def camera_columns(path: str, when: str, camera: str, head: str) -> tuple[Column
 
 def _nearest_track(recorded: Any) -> float:
     """Return the distance of a `RecordedFrame`."""
-    belief = recorded.frame.belief
-    position = belief.pose[:2]
-    distances = (float(np.hypot(*(t.position - position))) - t.radius for t in belief.tracks)
-    return min(distances, default=inf)
+    tracks, position = recorded.tracks, recorded.frame.belief.pose[:2]
+    distances = np.hypot(*(tracks.position - position).T) - tracks.radius
+    return float(distances.min(initial=inf))
+
+
+def _track_arrays(sets: Sequence[Any]) -> dict[str, Any]:
+    """Return the tracks of several `navigation.belief.tracks.Tracks` by column of `TRACK`."""
+    from navigation.belief.tracks import MOTIONS  # noqa: PLC0415  reading a run needs no robot
+
+    rows = np.concatenate([tracks.rows for tracks in sets])
+    labels = [tracks.labels[k] for tracks in sets for k in tracks.rows["label"].tolist()]
+    names = (column.name for column in TRACK.columns if column.name != "lost")
+    return {name: rows[name] for name in names} | {
+        "label": labels,
+        "motion": [MOTIONS[k] for k in rows["motion"].tolist()],
+        "lost": rows["cloud"] >= 0,
+    }
 
 
 DETECTION = Row(
@@ -91,12 +105,7 @@ TRACK = Row(
     Column("age", "age", "time from its last detection to the capture", "s"),
     Column("last_seen", "last_seen", "position of its last detection in W", "m", (2,)),
     Column("visible", "visible", "whether it was detected in this frame", type=BOOL),
-    Column(
-        "lost",
-        lambda track: track.particles is not None,
-        "whether particles represent it",
-        type=BOOL,
-    ),
+    Column("lost", "lost", "whether particles represent it", type=BOOL),
     Column("reach", "reach", "radius of the disc around `last_seen` that it can have reached", "m"),
     Column("turn_rate", "turn_rate", "turn rate, left positive", "rad/s"),
 )
@@ -177,7 +186,7 @@ FRAME = Row(
         shape=(VARYING,),
         type=TEXT,
     ),
-    Column("tracks", f"{BELIEF}.tracks", "believed obstacles", items=TRACK),
+    Column("tracks", "tracks", "believed obstacles", items=TRACK, arrays=_track_arrays),
     Column(
         "nearest_track",
         _nearest_track,

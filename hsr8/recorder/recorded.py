@@ -13,6 +13,7 @@ from hsr8.record import Tick
 from hsr8.recorder.sampled_field import NO_FIELD, SampledField, sampled
 from hsr8.recorder.throttle import Throttle
 from navigation.belief.belief import Belief
+from navigation.belief.tracks import Tracks
 from navigation.decision import GazeDecision, MotionDecision
 from walking.signals import value
 
@@ -43,6 +44,7 @@ class RecordedFrame:
 
     Attributes:
         frame: detections, belief and decisions.
+        tracks: believed obstacles as one structured array.
         planned: whether the motion is new.
         gaze_map, local_map: in shades; None if it is not recorded in this frame.
         map_hash: of the whole local map.
@@ -51,6 +53,7 @@ class RecordedFrame:
     """
 
     frame: FrameRecord
+    tracks: Tracks
     planned: bool
     gaze_map: NDArray[np.uint8] | None
     local_map: NDArray[np.uint8] | None
@@ -96,11 +99,12 @@ class FrameSampler:
         maps = self._maps.due(frame.time)
         return RecordedFrame(
             frame=frame,
+            tracks=Tracks.of(belief.tracks),
             planned=planned,
             gaze_map=self._shades(frame.gaze),
             local_map=confidence_shades(belief) if maps else None,
             map_hash=_map_hash(belief) if maps else None,
-            particles=_particles(belief) if maps else (),
+            particles=_particles(Tracks.of(belief.tracks)) if maps else (),
             field=self._field(frame) if planned else NO_FIELD,
         )
 
@@ -154,10 +158,10 @@ def _map_hash(belief: Belief) -> bytes:
     return state.digest()
 
 
-def _particles(belief: Belief) -> tuple[RecordedParticle, ...]:
+def _particles(tracks: Tracks) -> tuple[RecordedParticle, ...]:
     return tuple(
         RecordedParticle(track.label, position, len(cloud.weights) * weight)
-        for track in belief.tracks
+        for track in tracks.where(tracks.lost)
         if (cloud := track.particles) is not None
         for position, weight in zip(cloud.positions, cloud.weights.tolist(), strict=True)
     )
