@@ -63,6 +63,7 @@ class WalkingEngine:
         self._ramps = np.zeros((PLANS, 2 * steps + 2), RAMP)
         self._steps = np.zeros((PLANS, steps), FOOTHOLD)
         self._knots = np.zeros((PLANS, max_knots(_longest(parameters), SUPPORTS)), KNOT)
+        self._publication = Publication(steps)
         self._legs = robot.chains
         self._axes, self._origins = np.zeros((2, 6, 3)), np.zeros((2, 6, 3))
         self._walk, self._plan = self._walks[0], self._plans[LIVE]
@@ -74,10 +75,9 @@ class WalkingEngine:
     @property
     def command_limits(self) -> CommandLimits:
         """How the last command was limited."""
-        publication = Publication(0)
         rest = (self._plans, self._robots, self._parameters)
-        report(publication.records, self._walks, *rest)
-        return publication.report(self._command)
+        report(self._publication.records, self._walks, *rest)
+        return self._publication.report(self._command)
 
     @property
     def limits(self) -> tuple[Limit, ...]:
@@ -204,7 +204,7 @@ class WalkingEngine:
         sensors = self._sensors
         if sensors is None:
             raise RuntimeError("the walking engine has no state before its first tick")
-        publication = Publication(self._steps.shape[1])
+        publication = self._publication
         count = publish(
             publication.records,
             publication.footsteps,

@@ -56,17 +56,18 @@ PUBLISHED = record(
 _WORDS = PUBLISHED.itemsize // WORD
 _FIELDS: Any = PUBLISHED.fields
 _SCALARS = sum(not kind.shape for kind, *_ in _FIELDS.values())
-_PARTS = {
-    name: (slice(offset // WORD, (offset + kind.itemsize) // WORD), kind.shape)
-    for name, (kind, offset, *_) in _FIELDS.items()
-}
+_ARRAYS = [
+    (slice(offset // WORD, (offset + kind.itemsize) // WORD), kind.shape)
+    for kind, offset, *_ in _FIELDS.values()
+    if kind.shape
+]
 
 PlanFrame = tuple[float, float, float, float, float]
 """Origin x, y [m], cosine and sine of the direction, and the direction [rad] of the plan frame."""
 
 
 class Publication:
-    """Published numbers of a tick, in one array that the arrays of the state share.
+    """Buffer that `publish` and `report` fill, and the states made of it.
 
     Args:
         steps: maximum number of planned footsteps after the support foot.
@@ -76,65 +77,73 @@ class Publication:
         footsteps: planned footholds, the support foot first (n,).
     """
 
-    __slots__ = ("_numbers", "footsteps", "records")
-
     def __init__(self, steps: int) -> None:
         self._numbers = np.zeros(_WORDS)
         self.records: Record = self._numbers.view(PUBLISHED)
         self.footsteps: Record = np.zeros(1 + steps, FOOTHOLD)
 
     def state(self, count: int, commanded: Command, *, fallen: bool) -> WalkingState:
-        """Return the state.
+        """Return the state; its arrays are parts of a copy of the buffer.
 
         Args:
             count: number of footsteps.
             commanded: last command.
             fallen: whether the robot believes that it has fallen.
         """
-        phase, x, y, yaw, roll, pitch, step_count, zmp_depth, corners, *rest = self._scalars()
-        _, _, *camera = rest
+        numbers = self._numbers.copy()
+        phase, x, y, yaw, roll, pitch, step_count, zmp_depth, corner_count, _, _, *camera = numbers[
+            :_SCALARS
+        ].tolist()
+        (
+            _,
+            covariance,
+            rotation,
+            position,
+            applied_velocity,
+            zmp,
+            dcm,
+            com,
+            planned_com,
+            measured_dcm,
+            corners,
+            feet,
+            capture,
+        ) = [
+            numbers[part] if len(shape) == 1 else numbers[part].reshape(shape)
+            for part, shape in _ARRAYS
+        ]
         return WalkingState(
             phase=PHASES[int(phase)],
-            odometry=Odometry(x, y, yaw, self._part("covariance")),
-            camera=HeadCameraPose(self._part("rotation"), self._part("position"), *camera),
-            applied_velocity=self._part("applied_velocity"),
+            odometry=Odometry(x, y, yaw, covariance),
+            camera=HeadCameraPose(rotation, position, *camera),
+            applied_velocity=applied_velocity,
             footsteps=tuple(map(Foothold._make, self.footsteps[:count].tolist())),
-            zmp=self._part("zmp"),
-            dcm=self._part("dcm"),
-            com=self._part("com"),
+            zmp=zmp,
+            dcm=dcm,
+            com=com,
             roll=roll,
             pitch=pitch,
             step_count=int(step_count),
             fallen=fallen,
             balance=Balance(
-                com=self._part("planned_com"),
-                dcm=self._part("measured_dcm"),
-                support=self._part("corners")[: int(corners)],
+                com=planned_com,
+                dcm=measured_dcm,
+                support=corners[: int(corner_count)],
                 zmp_depth=zmp_depth,
-                feet=self._part("feet"),
-                capture=self._part("capture"),
+                feet=feet,
+                capture=capture,
             ),
             command_limits=self.report(commanded),
         )
 
     def report(self, commanded: Command) -> CommandLimits:
         """Return the report of how a command is limited."""
-        *_, bound, explicit, _, _, _, _, _ = self._scalars()
+        *_, bound, explicit, _, _, _, _, _ = self._numbers[:_SCALARS].tolist()
         if bound == 0.0:
             return CommandLimits(commanded, commanded, ())
-        values = self._part("applied").tolist()
+        values = self._numbers[_ARRAYS[0][0]].tolist()  # the applied command
         command = CommandState(*values) if explicit else VelocityCommand(*values[:3])
         return CommandLimits(commanded, command, limits_of(int(bound)))
-
-    def _scalars(self) -> list[float]:
-        """Return the numbers of `PUBLISHED` that are not arrays, in order."""
-        scalars: list[float] = self._numbers[:_SCALARS].tolist()
-        return scalars
-
-    def _part(self, name: str) -> Array:
-        """Return an array of `PUBLISHED`."""
-        part, shape = _PARTS[name]
-        return self._numbers[part].reshape(shape)
 
 
 @compiled
