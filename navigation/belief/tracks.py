@@ -42,6 +42,10 @@ TRACK = record_type(
 )
 """Record of a track: the fields of `Track`, speed and major standard deviations [m/s, m, m/s]."""
 
+NUMBERS = ("id", "radius", "radius_sigma", "hits", "age", "visible", "reach", "turn_rate")
+VECTORS = ("position", "velocity", "covariance", "last_seen")
+"""Fields of `Track` that are those of its record."""
+
 
 @compiled
 def deviation(xx: float, xy: float, yy: float) -> float:
@@ -175,27 +179,22 @@ class Tracks(Sequence[Track]):
     def _views(self) -> list[Track]:
         """Return the tracks one by one, made at the first call."""
         if self._tracks is None:
-            self._tracks = [self._track(row) for row in self.rows]
+            columns = [self.rows[name].tolist() for name in NUMBERS]
+            columns += [list(self.rows[name]) for name in VECTORS]
+            self._tracks = [
+                Track(
+                    label=self.labels[label],
+                    motion=MOTIONS[motion],
+                    particles=_particles(self.clouds[cloud]) if cloud >= 0 else None,
+                    **dict(zip((*NUMBERS, *VECTORS), values, strict=True)),
+                )
+                for label, motion, cloud, *values in zip(
+                    *(self.rows[name].tolist() for name in ("label", "motion", "cloud")),
+                    *columns,
+                    strict=True,
+                )
+            ]
         return self._tracks
-
-    def _track(self, row: np.record) -> Track:
-        return Track(
-            id=int(row.id),
-            label=self.labels[row.label],
-            position=row.position,
-            velocity=row.velocity,
-            covariance=row.covariance,
-            radius=float(row.radius),
-            radius_sigma=float(row.radius_sigma),
-            motion=MOTIONS[row.motion],
-            hits=int(row.hits),
-            age=float(row.age),
-            last_seen=row.last_seen,
-            visible=bool(row.visible),
-            particles=_particles(self.clouds[row.cloud]) if row.cloud >= 0 else None,
-            reach=float(row.reach),
-            turn_rate=float(row.turn_rate),
-        )
 
 
 def join(first: Sequence[Track], second: Sequence[Track]) -> Tracks:

@@ -99,13 +99,14 @@ def head(path):
 def damage(folder, names, outside, kind, choice, place, content):
     """Damage one file of a folder."""
     path = folder / names[choice % len(names)]
+    if path.parent != folder and (path.parent.is_symlink() or not path.parent.is_dir()):
+        return  # an earlier damage took the folder of the file
     old = head(path)
     other = folder / names[(choice // len(names)) % len(names)]
     swapped = head(other)
     if path.is_dir() and not path.is_symlink():
         shutil.rmtree(path)
     path.unlink(missing_ok=True)
-    path.parent.mkdir(parents=True, exist_ok=True)
     at = int(place * len(old))
     links = {"zero": "/dev/zero", "null": "/dev/null", "full": "/dev/full", "loop": path.name}
     links |= {"link": outside / "kept.txt", "dangling": outside / "new"}

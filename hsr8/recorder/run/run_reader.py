@@ -159,9 +159,8 @@ def run_folders(path: Path) -> list[Path]:
 
 def _subfolders(path: Path) -> list[Path]:
     """Return the folders in a folder, without drafts, whose names begin with a dot."""
-    with os.scandir(path) as entries:
-        names = [e.name for e in entries if e.is_dir() and not e.name.startswith(".")]
-    return [path / name for name in sorted(names)]
+    folders = [path / name for name in sorted(os.listdir(path)) if not name.startswith(".")]
+    return [folder for folder in folders if os.path.isdir(folder)]  # a looping link is none
 
 
 def _run(path: Path, trust: bool) -> StoredRun:
