@@ -66,14 +66,21 @@ def command_of(axis: str, speed: float) -> VelocityCommand:
 
 
 def random_commands(
-    speed: dict[str, float], scale: float, seed: int
+    speed: dict[str, float],
+    scale: float,
+    seed: int,
+    *,
+    stops: float = STOPS,
+    corners: float = CORNERS,
 ) -> Callable[[float], VelocityCommand]:
     """Return random commands within an envelope, by time.
 
     Args:
         speed: envelope.
         scale: of the time between changes, 0.5 to 2 s for HSR-VIII [1].
-        seed: of the commands.
+        seed: seed of the commands.
+        stops: fraction of commands to stand [1].
+        corners: fraction of commands with the maximum speed along every axis [1].
     """
     rng = np.random.default_rng([seed, 5])
     low = np.array([-speed["vx_backward"], -speed["vy"], -speed["wz"]])
@@ -82,9 +89,9 @@ def random_commands(
     while ends[-1] < 3600.0:
         ends.append(ends[-1] + scale * float(rng.uniform(0.5, 2.0)))
         kind, drawn = float(rng.uniform()), rng.uniform(low, high)
-        if kind < STOPS:
+        if kind < stops:
             drawn = np.zeros(3)
-        elif kind < STOPS + CORNERS:
+        elif kind < stops + corners:
             drawn = np.where(rng.uniform(size=3) < 0.5, low, high)
         commands.append(VelocityCommand(*drawn.tolist()))
     return lambda time: commands[int(np.searchsorted(ends, time, side="right")) - 1]

@@ -10,7 +10,7 @@ from hsr8.robots.defaults import navigation_speed
 from hsr8.robots.loaded import LoadedRobot
 from hsr8.robots.rules import one_leg_load
 from hsr8.robots.servos import OWN_SERVOS
-from hsr8.trials.calibration import random_commands, random_head, time_scale
+from hsr8.trials.calibration import MAX_TILT, random_commands, random_head, time_scale
 from hsr8.trials.walk import Trial, Walked
 from walking.body.robot_model import RobotModel
 from walking.command import VelocityCommand
@@ -44,7 +44,7 @@ class WalkResult:
         fell: whether the robot fell.
         error: maximum velocity error of an axis over the commanded speed [1]; None where the robot
             stands or fell before a stride.
-        tilt: 99th percentile of the tilt of the trunk [deg].
+        tilt: 99th percentile of the tilt of the trunk, its maximum under random commands [deg].
         drift: distance from the start while standing [m].
         limit: leg joint that was longest at a limit, and the limit.
     """
@@ -61,6 +61,8 @@ class WalkResult:
         """Return why the robot failed; None if it did not."""
         if self.fell:
             return f"{self.direction}: fell, {self.limit}"
+        if self.tilt > MAX_TILT:
+            return f"{self.direction}: tilt {self.tilt:.0f} deg, {self.limit}"
         if self.error is not None and self.error > MAX_ERROR:
             return f"{self.direction}: velocity error {self.error:.0%}, {self.limit}"
         return None
@@ -101,7 +103,8 @@ def check_robot(
     """Return the result of each walk, and the use of each joint, the worst first.
 
     A robot that falls while standing does not walk. One that walks in every direction also walks
-    under random commands within the speed limits of navigation, with a moving head.
+    under random commands within the speed limits of navigation, with a moving head; every second
+    walk has the maximum speed along all axes at once.
 
     Args:
         robot: to check.
@@ -121,7 +124,8 @@ def check_robot(
             break  # a robot that cannot stand cannot walk
     scale = time_scale(robot.parameters)
     for seed in () if any(result.fell for result in results) else RANDOM_SEEDS:
-        commands = random_commands(navigation_speed(robot), scale, seed)
+        mixture = {} if seed % 2 else {"stops": 0.0, "corners": 1.0}
+        commands = random_commands(navigation_speed(robot), scale, seed, **mixture)
         length = RANDOM_WALKS * duration
         walk = trial.walk(commands, length, seed, head=random_head(robot, seed))
         result = _result(f"random {seed + 1}", None, walk, robot)
@@ -141,10 +145,10 @@ def reasons(
         f"{j.joint}: {j.one_leg:.0%} of its torque to carry the robot on one leg" for j in weak
     ]
     remedies = []
-    fallen = [result.direction for result in results if result.fell]
-    if "stand" in fallen and OWN_SERVOS in robot.notes:
+    failed = [result.direction for result in results if result.fell or result.tilt > MAX_TILT]
+    if "stand" in failed and OWN_SERVOS in robot.notes:
         remedies.append('the servos of the model do not hold it: state servo = "rule"')
-    elif fallen and robot.description.calibration is None:
+    elif failed and robot.description.calibration is None:
         remedies.append("`hsr8 robot calibrate` finds speeds at which it does not fall")
     return [reason for result in results if (reason := result.reason())] + texts + remedies
 
@@ -172,7 +176,7 @@ def _result(
         speed=speed,
         fell=bool(walk.falls),
         error=error,
-        tilt=float(np.percentile(walk.tilt, 99.0)),
+        tilt=float(np.percentile(walk.tilt, 100.0 if command is None else 99.0)),
         drift=drift,
         limit=walk.limiting_joint(robot.model),
     )

@@ -1,8 +1,18 @@
 from dataclasses import asdict
+from itertools import product
+
+import numpy as np
 
 from hsr8.robots.description import Calibration
 from hsr8.robots.loaded import load_robot
 from hsr8.trials import calibration
+
+
+def test_commands_at_the_corners_use_the_whole_envelope():
+    envelope = {"vx": 0.2, "vx_backward": 0.1, "vy": 0.08, "wz": 0.8}
+    commands = calibration.random_commands(envelope, 1.0, 3, stops=0.0, corners=1.0)
+    velocities = np.array([commands(0.5 * k).velocity for k in range(200)])
+    assert {*map(tuple, velocities.tolist())} == {*product((0.2, -0.1), (0.08, -0.08), (0.8, -0.8))}
 
 
 def test_a_short_calibration_of_the_default_robot(monkeypatch):

@@ -63,12 +63,14 @@ def test_the_joints_are_sorted_by_their_use(checked):
         ({"fell": True}, "left: fell, l_knee weak"),
         ({"error": 0.3}, "left: velocity error 30%, l_knee weak"),
         ({"error": None}, None),
+        ({"tilt": 12.0}, "left: tilt 12 deg, l_knee weak"),
     ],
 )
 def test_falls_and_wrong_velocities_are_reasons(change, reason):
     assert replace(GOOD, **change).reason() == reason
     robot = load_robot("hsr8")
-    others = ["`hsr8 robot calibrate` finds speeds at which it does not fall"] * ("fell" in change)
+    remedy = "`hsr8 robot calibrate` finds speeds at which it does not fall"
+    others = [remedy] * bool({"fell", "tilt"} & {*change})
     found = reasons(robot, [replace(GOOD, **change)], [JOINT])
     assert found == ([reason, *others] if reason else [])
 
