@@ -43,8 +43,8 @@ class Model(NamedTuple):
     """Constants of the walk.
 
     Attributes:
-        robot: of the robot.
-        parameters: of the walk.
+        robot: constants of the robot.
+        parameters: parameters of the walk.
         still: strides of stepping in place.
         sums: sums of the gains of preview control.
     """
@@ -102,7 +102,7 @@ def admit(
     Args:
         admission: admitted plan, changed.
         plans: the one in force is changed.
-        pendulum: of the plan.
+        pendulum: pendulum of the plan.
         region: admissible ZMP in this tick.
         wanted: strides of the wanted plan.
         moving: whether the walk goes on in the wanted plan.

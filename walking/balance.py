@@ -136,7 +136,7 @@ def capture_step(
         ahead: planned DCM minus ZMP of the support foot [m].
         ticks_left: control ticks until the end of single support [1].
         robot: constants.
-        parameters: of the walk.
+        parameters: parameters of the walk.
     """
     p, omega, yaw = parameters.stabilizer, robot.omega, support.yaw
     length, width = sole_margins(robot, parameters)

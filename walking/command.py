@@ -13,8 +13,8 @@ class VelocityCommand:
     """Desired velocity of the robot frame R, expressed in R.
 
     Attributes:
-        vx: forward [m/s].
-        vy: to the left [m/s].
+        vx: velocity forward [m/s].
+        vy: velocity to the left [m/s].
         wz: yaw rate, counter-clockwise positive [rad/s].
     """
 
@@ -43,7 +43,7 @@ class CommandState:
         forward: advance of the stance's middle per footstep [m].
         side: distance between the feet at touchdown, for either foot [m].
         direction: yaw of the landing foot in the frame of the support foot [rad].
-        swing_height: of the swing foot at mid-swing [m].
+        swing_height: height of the swing foot at mid-swing [m].
     """
 
     single_support: Annotated[float, dimension.TIME] = 0.27

@@ -22,7 +22,7 @@ def robot_record(robot: RobotModel, parameters: WalkingParameters) -> tuple[Reco
 
     Args:
         robot: model of the robot.
-        parameters: of its walk.
+        parameters: parameters of its walk.
     """
     records = np.zeros(1, ROBOT)
     r, p, leg = records[0], parameters, robot.legs[0]

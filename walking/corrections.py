@@ -56,7 +56,7 @@ def heading_rate(corrections: Record, ahead: float, renew: bool, parameters: Rec
         ahead: planned minus measured heading [rad].
         renew: whether to update the rate: at the begin of a gait cycle, and in every tick while
             balance changes the footsteps.
-        parameters: of the walk.
+        parameters: parameters of the walk.
     """
     if renew:
         p = parameters.stabilizer
@@ -94,7 +94,7 @@ def speed_correction(
         velocity: wanted (vx, vy, wz) [m/s, m/s, rad/s].
         begins: whether a gait cycle begins.
         disturbed: whether balance changes the footsteps.
-        parameters: of the walk.
+        parameters: parameters of the walk.
     """
     c = corrections
     if not c.steady or velocity != (c.command[0], c.command[1], c.command[2]):
@@ -151,7 +151,7 @@ def correct_offset(
         error: centre of pressure minus planned ZMP, forward and left [m].
         begins: whether a gait cycle begins.
         disturbed: whether balance changes the footsteps.
-        parameters: of the walk.
+        parameters: parameters of the walk.
     """
     c, p = corrections, parameters.stabilizer
     if begins:

@@ -20,7 +20,7 @@ class RobotMeasures:
         hip: half the distance between the hips [m].
         sole: half the width of a sole [m].
         time: √(height / g) of the equivalent pendulum, see `RobotModel.pendulum_height` [s].
-        weight: of the robot [N].
+        weight: weight of the robot [N].
         ankle: relative compliance of an ankle servo, weight times pendulum height over
             stiffness [rad/rad].
     """

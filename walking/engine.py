@@ -43,7 +43,7 @@ class WalkingEngine:
 
     Args:
         robot: model of the robot.
-        parameters: of the engine.
+        parameters: parameters of the engine.
         odometry: dead reckoning to continue; starts at the origin by default.
     """
 

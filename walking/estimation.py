@@ -53,7 +53,7 @@ def measure(
         gyro: angular velocity (3,) [rad/s].
         pads: load on front left, front right, back left and back right of each sole (2, 4) [N].
         robot: constants.
-        parameters: of the walk.
+        parameters: parameters of the walk.
     """
     w, x, y, z = orientation[0], orientation[1], orientation[2], orientation[3]
     roll, pitch, sensing.heading = roll_pitch_yaw(w, x, y, z)

@@ -34,7 +34,7 @@ def set_motion(
         a: acceleration of the dynamic model, set.
         yaw: heading of the pelvis in the plan frame [rad].
         acceleration: planned acceleration of the base in the plan frame [m/s²].
-        parameters: of the walk.
+        parameters: parameters of the walk.
     """
     p = parameters.stabilizer
     a[0], a[1] = rotate_back(yaw, acceleration[0], acceleration[1])
@@ -72,7 +72,7 @@ def set_offsets(
         gyro: angular velocity of the trunk (3,) [rad/s].
         foot_zmps: planned ZMP under each foot, in the plan frame [m].
         robot: constants.
-        parameters: of the walk.
+        parameters: parameters of the walk.
     """
     limbs, height = walk.limbs, robot.height
     right_load = limbs.load
@@ -138,7 +138,7 @@ def ankle_offset(
         gyro: angular velocity of the trunk to damp (3,) [rad/s].
         compliance: compliance of the servo [rad/(N m)].
         robot: constants.
-        parameters: of the walk.
+        parameters: parameters of the walk.
     """
     moved = robot.weight * compliance * (axis[1] * shift[0] - axis[0] * shift[1])
     damping = parameters.stabilizer.gyro_gain * (axis[0] * gyro[0] + axis[1] * gyro[1])
@@ -153,7 +153,7 @@ def set_setpoints(
     """Set the setpoints of the servos within the ranges of the joints.
 
     Args:
-        joints: of the robot, with their offsets (n,).
+        joints: joints of the robot, with their offsets (n,).
         angles: planned angles (n,) [rad].
         measured: measured angles (n,) [rad].
         setpoint: set (n,) [rad].

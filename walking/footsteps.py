@@ -183,7 +183,7 @@ def velocity_strides(
         velocity: velocity of the middle of the stance (vx, vy, wz) [m/s, m/s, rad/s].
         time: duration of a footstep [s].
         robot: constants.
-        parameters: of the walk.
+        parameters: parameters of the walk.
 
     Returns:
         whether one is shifted to clear the other foot.
@@ -266,7 +266,7 @@ def stride_limits(
         velocity: velocity (vx, vy, wz) [m/s, m/s, rad/s].
         time: duration of a footstep [s].
         robot: constants.
-        parameters: of the walk.
+        parameters: parameters of the walk.
     """
     (vx, vy, wz), limits, bound = velocity, parameters.limits, 0
     if abs(vx) * time > limits.step_forward:

@@ -197,7 +197,7 @@ def start(
         at_once: whether to skip the long first double support.
         still: strides of stepping in place.
         robot: constants.
-        parameters: of the walk.
+        parameters: parameters of the walk.
     """
     ticks = max(1, ticks_of(parameters.gait.start_time))
     if at_once:
@@ -268,7 +268,7 @@ def shorten(
         ticks: wanted ticks until the end of single support, as far as the foot can be down by then.
         landing: foothold of the swing foot.
         robot: constants.
-        parameters: of the walk.
+        parameters: parameters of the walk.
 
     Returns:
         whether the footstep ends earlier.
@@ -346,7 +346,7 @@ def advance(
         moving: whether the walk goes on.
         still: strides of stepping in place.
         robot: constants.
-        parameters: of the walk.
+        parameters: parameters of the walk.
     """
     gait.tick += 1
     update_phase(gait, parameters)
@@ -413,7 +413,7 @@ def plan_walk(
     """Set footholds and ZMP reference of a plan from now on.
 
     Args:
-        plan: its gait is read, the numbers of ramps and footholds are set.
+        plan: plan whose gait is read, and whose numbers of ramps and footholds are set.
         ramps: set (n,).
         steps: set (n,).
         landing: foothold of the swing foot.
@@ -421,7 +421,7 @@ def plan_walk(
         moving: whether the walk goes on.
         still: strides of stepping in place.
         robot: constants.
-        parameters: of the walk.
+        parameters: parameters of the walk.
     """
     gait = plan.gait
     support, swing = support_foot(gait), swing_foot(gait)

@@ -88,8 +88,8 @@ class PostureTrack:
         """Start a motion to a posture.
 
         Args:
-            angles: of the posture, clipped to the joint limits (n,) [rad].
-            time: of the motion, extended if a joint would be too fast [s].
+            angles: angles of the posture, clipped to the joint limits (n,) [rad].
+            time: time of the motion, extended if a joint would be too fast [s].
             hold: time in the posture [s].
         """
         self._origin, self._goal = self.angles, self._within(angles)

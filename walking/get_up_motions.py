@@ -38,10 +38,10 @@ class KeyPosture:
     """Key posture with its timing and required attitude.
 
     Attributes:
-        name: of the posture.
+        name: name of the posture.
         legs: left and right leg, each (6,), outward angles positive [rad].
         arms: left and right arm, each (6,), outward angles positive [rad].
-        time: of the motion to it [s].
+        time: time of the motion to it [s].
         hold: time in the posture [s].
         until: pitch of the trunk below which the next posture starts at once [rad].
         pitch: required range of the trunk's pitch at the end [rad].
@@ -95,8 +95,8 @@ class Motions:
     """Sequences of key postures.
 
     Attributes:
-        rise: from the front to a squat.
-        roll: from the back over the left side to the front.
+        rise: motion from the front to a squat.
+        roll: motion from the back over the left side to the front.
         from_side: index of the first posture of `roll` when lying on the left side.
     """
 

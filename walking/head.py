@@ -58,7 +58,7 @@ def advance_head(limbs: Record, target: Point, robot: Record, parameters: Record
         limbs: pan and tilt and their rates, changed.
         target: pan and tilt [rad].
         robot: constants.
-        parameters: of the walk.
+        parameters: parameters of the walk.
     """
     p, neck = parameters.head, robot.neck
     step = p.max_acceleration * CONTROL_PERIOD

@@ -35,7 +35,7 @@ class FootContacts:
     when both feet have been on the floor for longer than a footstep; it starts standing.
 
     Args:
-        mass: of the robot [kg].
+        mass: mass of the robot [kg].
         gait: duration of a footstep and minimum time of a foot in the air.
 
     Attributes:
@@ -100,10 +100,10 @@ class RollingFeet:
         """Run one tick.
 
         Args:
-            position: of each foot relative to the base, level axes (2, 3) [m].
-            rotation: of each foot, level axes (2, 3, 3).
+            position: position of each foot relative to the base, level axes (2, 3) [m].
+            rotation: rotation of each foot, level axes (2, 3, 3).
             pressure: centre of pressure of each foot in its frame, x, y (2, 2) [m].
-            yaw: of the IMU [rad].
+            yaw: yaw of the IMU [rad].
             loaded: whether the left and the right foot are on the floor.
         """
         c, s = np.cos(yaw), np.sin(yaw)
@@ -137,9 +137,9 @@ class BodyEstimate:
 
     Attributes:
         pose: x, y and heading of the robot frame R by leg odometry (3,) [m, m, rad].
-        height: of the base above the floor [m].
+        height: height of the base above the floor [m].
         roll, pitch: tilt of the trunk [rad].
-        velocity: of the base in its own axes, forward, left and up (3,) [m/s].
+        velocity: velocity of the base in its own axes, forward, left and up (3,) [m/s].
         on_floor: whether the left and the right foot are on the floor.
     """
 
@@ -156,7 +156,7 @@ class BodyObserver:
 
     Args:
         robot: model of the robot.
-        parameters: of the estimation.
+        parameters: parameters of the estimation.
         odometry: dead reckoning to continue, updated in place.
     """
 

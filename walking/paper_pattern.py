@@ -167,7 +167,7 @@ def advance_functions(
         count: number of its ramps.
         region: admissible ZMP.
         robot: constants.
-        parameters: of the walk.
+        parameters: parameters of the walk.
     """
     if not is_single(ramps[0]):
         forget_target(live)

@@ -148,7 +148,7 @@ def is_feasible(
         count: number of its ramps.
         region: admissible ZMP in this tick.
         robot: constants.
-        parameters: of the walk.
+        parameters: parameters of the walk.
     """
     pattern = parameters.pattern
     if pattern.generator == ROBUST:
@@ -196,16 +196,16 @@ def advance_pattern(
 
     Args:
         live: ZMP plan in force, changed.
-        knots: its knots.
+        knots: knots of `live`.
         trial: ZMP plan admitted in this tick, if `accepted`.
-        tried: its knots.
+        tried: knots of `trial`.
         accepted: whether the reference was admitted.
         pendulum: changed.
         ramps: reference from now on.
         count: number of its ramps.
         region: admissible ZMP.
         robot: constants.
-        parameters: of the walk.
+        parameters: parameters of the walk.
         sums: sums of the gains of preview control.
     """
     generator = parameters.pattern.generator

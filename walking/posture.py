@@ -46,15 +46,15 @@ def set_posture(
     Args:
         angles: set (n,) [rad].
         walk: state; pelvis, tilts of the feet and solution of the legs are changed.
-        gait: in force.
+        gait: gait in force.
         com: planned centre of mass in the plan frame, x, y [m].
         head: angles of pan and tilt joint [rad].
-        joints: of the robot (n,).
+        joints: joints of the robot (n,).
         legs: chains of the legs, see `walking.body.kinematics` (2, 7, 15).
         axes: axes of the leg joints in the base frame, set (2, 6, 3).
         origins: origins of the leg joints in the base frame, set (2, 6, 3) [m].
         robot: constants.
-        parameters: of the walk.
+        parameters: parameters of the walk.
     """
     limbs, neck = walk.limbs, robot.neck
     for k in range(angles.size):
@@ -103,7 +103,7 @@ def level_feet(limbs: Record, airborne: int, tilt: Point, parameters: Record) ->
         limbs: tilts are changed.
         airborne: index of the foot in the air, -1 for none.
         tilt: roll and pitch of the trunk [rad].
-        parameters: of the walk.
+        parameters: parameters of the walk.
     """
     for side in range(2):
         in_air = side == airborne

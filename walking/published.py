@@ -172,11 +172,11 @@ def publish(
         steps: footholds of the plans (3, m).
         odometry: dead reckoning (1,).
         robots: constants (1,).
-        parameters: of the walk (1,).
+        parameters: parameters of the walk (1,).
         angles: measured angles of all joints (n,) [rad].
         rates: measured rates of all joints (n,) [rad/s].
         gyro: angular velocity of the trunk (3,) [rad/s].
-        chain: from the base to the camera, see `walking.body.kinematics`.
+        chain: chain from the base to the camera, see `walking.body.kinematics`.
         moving: joints of the chain.
     """
     published, walk, robot = records[0], walks[0], robots[0]
@@ -217,11 +217,11 @@ def publish_plan(
         published: set.
         footsteps: planned footholds, support foot first, set (n,).
         walk: state of the walk.
-        plan: in force.
-        steps: its footholds.
+        plan: plan in force.
+        steps: footholds of the plan.
         odometry: dead reckoning.
         robot: constants.
-        parameters: of the walk.
+        parameters: parameters of the walk.
     """
     out, gait, sensing, o = published, plan.gait, walk.sensing, odometry
     out.phase = _phase(gait)
@@ -316,7 +316,7 @@ def publish_camera(
         angles: measured angles of all joints (n,) [rad].
         rates: measured rates of all joints (n,) [rad/s].
         gyro: angular velocity of the trunk (3,) [rad/s].
-        chain: from the base to the camera, see `walking.body.kinematics`.
+        chain: chain from the base to the camera, see `walking.body.kinematics`.
         moving: joints of the chain.
         robot: constants.
     """

@@ -44,7 +44,7 @@ def chain_footholds(
         following: strides of the footsteps after it.
         still: strides of stepping in place.
         moving: whether the walk goes on; if not, it ends as soon as the stance is parallel.
-        parameters: of the walk.
+        parameters: parameters of the walk.
 
     Returns:
         number of footholds, and whether the walk ends after the last.
@@ -86,7 +86,7 @@ def reference_ramps(
             single support after it; ticks of later double and single supports; of the last
             double support.
         robot: constants.
-        parameters: of the walk.
+        parameters: parameters of the walk.
     """
     shift, carry, double, single, stop = ticks
     px, py = zmp_under(support, robot, parameters)

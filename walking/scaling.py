@@ -27,7 +27,7 @@ def scale_parameters(parameters: Section, old: RobotMeasures, new: RobotMeasures
     """Scale parameters from a robot with measures `old` to one with measures `new`.
 
     Args:
-        parameters: of the engine, a section of them, or a command.
+        parameters: parameters of the engine, a section of them, or a command.
         old: measures of the robot of the parameters.
         new: measures of the other robot.
     """

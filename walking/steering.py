@@ -105,7 +105,7 @@ def follow_command(
         steering: changed.
         scratch: strides, changed.
         robot: constants.
-        parameters: of the walk.
+        parameters: parameters of the walk.
         speed_ratio: ratio of a velocity command to walk at [1].
         settled: whether the robot may start to move.
         balanced: whether the motion may change.
@@ -134,7 +134,7 @@ def use_next_timing(timing: Record, steering: Record, before: Record, stepping: 
 
     Args:
         timing: set.
-        steering: of the walk.
+        steering: steering of the walk.
         before: timing of the present footstep.
         stepping: whether a footstep is under way.
     """
@@ -152,11 +152,11 @@ def wanted_strides(
 
     Args:
         strides: set.
-        steering: of the walk.
+        steering: steering of the walk.
         correction: correction of the velocity (vx, vy, wz) [m/s, m/s, rad/s]; command states use
             only wz.
         robot: constants.
-        parameters: of the walk.
+        parameters: parameters of the walk.
     """
     time = duration(steering.timing)
     if steering.state.explicit:
@@ -184,7 +184,7 @@ def report_applied(
 
     Args:
         applied: command, set.
-        steering: of the walk.
+        steering: steering of the walk.
         scratch: strides, changed.
         bound: all limits that bind.
         velocity: velocity that the footsteps follow.
@@ -192,7 +192,7 @@ def report_applied(
         following: strides of the plan.
         timing: timing of the footsteps.
         robot: constants.
-        parameters: of the walk.
+        parameters: parameters of the walk.
     """
     applied.explicit = steering.command.explicit
     for k in range(6):

@@ -142,10 +142,10 @@ def compensate(
 
     Args:
         limbs: offset of the pelvis and its acceleration, changed.
-        plan: in force.
-        steps: its footholds.
+        plan: plan in force.
+        steps: footholds of the plan.
         robot: constants.
-        parameters: of the walk.
+        parameters: parameters of the walk.
     """
     w = robot.omega
     ahead_x, ahead_y, now_x, now_y = _previewed_shift(plan, steps, robot, parameters)

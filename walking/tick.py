@@ -126,7 +126,7 @@ def watch(
         feet_chains: see `walking.body.kinematics.feet_poses`.
         feet_joints: joints of these chains.
         robots: constants (1,).
-        parameters: of the walk (1,).
+        parameters: parameters of the walk (1,).
 
     Returns:
         whether the tilt of the trunk is that of a fallen robot.
@@ -171,9 +171,9 @@ def begin(
         ramps: ZMP references of the plans (3, n), changed.
         steps: footholds of the plans (3, m), changed.
         knots: knots of the plans (3, k), changed.
-        joints: of the robot (n,), changed.
+        joints: joints of the robot (n,), changed.
         robots: constants (1,).
-        parameter_records: of the walk (1,).
+        parameter_records: parameters of the walk (1,).
         sums: sums of the gains of preview control.
         legs: chains of the legs (2, 7, 15).
         axes: axes of the leg joints in the base frame, set (2, 6, 3).
@@ -256,9 +256,9 @@ def finish(
     Args:
         walks: state (1,), changed.
         plan_records: plans (3,).
-        joints: of the robot (n,), changed.
+        joints: joints of the robot (n,), changed.
         robots: constants (1,).
-        parameter_records: of the walk (1,).
+        parameter_records: parameters of the walk (1,).
         axes: axes of the leg joints in the base frame (2, 6, 3).
         origins: origins of the leg joints in the base frame (2, 6, 3) [m].
         forces: generalised forces of the motion without contact, those of the base first.

@@ -76,8 +76,8 @@ class Walker:
 
     Args:
         robot: model of the robot.
-        parameters: of walking and getting up.
-        engine: makes the engine that continues an odometry; by default a `WalkingEngine`.
+        parameters: parameters of walking and getting up.
+        engine: factory of the engine that continues an odometry; by default a `WalkingEngine`.
 
     Attributes:
         get_up: recovery from the present fall, None while walking.

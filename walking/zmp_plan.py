@@ -60,7 +60,7 @@ class Program(NamedTuple):
     """Quadratic program of a plan.
 
     Attributes:
-        cells: of the knots, see `CELL` (n,).
+        cells: cells of the knots, see `CELL` (n,).
         weights: weights of the knots in the DCM (m,) [1].
         knots: knots (m + 1,), the last one the end of the plan.
         dcm: right side of the equation [m].
@@ -167,16 +167,16 @@ def advance_knots(
 
     Args:
         live: ZMP plan in force, replaced.
-        knots: its knots.
+        knots: knots of `live`.
         trial: admitted plan if `accepted`, else scratch.
-        tried: its knots.
+        tried: knots of `trial`.
         accepted: whether `trial` is the plan of this tick.
         pendulum: changed.
         ramps: reference.
         count: number of its ramps.
         region: admissible ZMP.
         robot: constants.
-        parameters: of the walk.
+        parameters: parameters of the walk.
     """
     pattern = parameters.pattern
     rate = pattern.zmp_rate
@@ -237,7 +237,7 @@ def lay_out(
         ramps: reference.
         count: number of its ramps.
         pendulum: present pendulum.
-        sole: of each foot.
+        sole: sole of each foot.
         robot: constants.
         reach: maximum change of the ZMP per tick in single support [m].
     """
@@ -318,7 +318,7 @@ def _lay_cells(ramps: Record, count: int, sole: Sole, cells: Record, knots: Reco
     Args:
         ramps: ramps whose ZMP is planned.
         count: number of these.
-        sole: of each foot.
+        sole: sole of each foot.
         cells: set, except for the sums of weights.
         knots: ticks since the previous knot are set.
     """
@@ -388,7 +388,7 @@ def put_between(ramp: Record, elapsed: float, sole: Sole, cell: Record) -> None:
     Args:
         ramp: double support.
         elapsed: part of its time until the knot [1].
-        sole: of each foot.
+        sole: sole of each foot.
         cell: set.
     """
     one, other, length = ramp.unloading, ramp.loading, sole.length

@@ -77,6 +77,12 @@ def test_a_change_in_an_imported_file_compiles_again(library):
     assert outer_of_three(library) == (1.0, True)
 
 
+def test_only_functions_that_python_calls_are_kept(library):
+    outer_of_three(library)
+    (file,) = library.rglob(f"*{store.SUFFIX}")
+    assert file.name.startswith("outer.outer-")
+
+
 def flip(content):
     middle = len(content) // 2
     return content[:middle] + bytes([content[middle] ^ 1]) + content[middle + 1 :]

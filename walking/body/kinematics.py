@@ -77,10 +77,10 @@ def _end(chain: Array, angles: Array, axes: Array, origins: Array) -> tuple[Matr
     """Return rotation and position [m] of the end of a chain.
 
     Args:
-        chain: of k joints (k + 1, 15).
-        angles: of the joints (k,) [rad].
-        axes: of the joints, set (k, 3).
-        origins: of the joints, set (k, 3) [m].
+        chain: chain of k joints (k + 1, 15).
+        angles: angles of the joints (k,) [rad].
+        axes: axes of the joints, set (k, 3).
+        origins: origins of the joints, set (k, 3) [m].
     """
     R = (1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0)
     px, py, pz = 0.0, 0.0, 0.0
@@ -119,7 +119,7 @@ def feet_poses(chains: Array, moving: Indices, joints: Array, feet: Array) -> No
     """Set x, y, z [m] and yaw [rad] of both feet in the base frame.
 
     Args:
-        chains: from the base to the left and the right foot (2, k + 1, 15).
+        chains: chains from the base to the left and the right foot (2, k + 1, 15).
         moving: indices of their joints: those of a leg, and of a waist above it (2, k).
         joints: joint angles (n,) [rad].
         feet: set (2, 4).
@@ -144,7 +144,7 @@ def solve(leg: Array, foot: Pose, angles: Array, length: float) -> tuple[int, fl
         leg: chain (7, 15).
         foot: pose of its end.
         angles: first guess, set to the solution (6,) [rad].
-        length: of the leg, relative to which errors of position count [m].
+        length: length of the leg, relative to which errors of position count [m].
 
     Returns:
         iterations, and remaining error [rad].

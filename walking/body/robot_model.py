@@ -90,7 +90,7 @@ class Dynamics:
     """Dynamic model with separate buffers, so that engines of the same robot share nothing.
 
     Args:
-        model: of Pinocchio.
+        model: model of Pinocchio.
         in_q: indices of the joints in its position (n,).
 
     Attributes:
@@ -134,22 +134,23 @@ class RobotModel:
 
     Attributes:
         tree: the robot.
-        names: of the joints (n,).
+        names: names of the joints (n,).
         mass: total mass [kg].
         legs: left and right leg.
-        chains: of the legs, for kernels (2, 7, 15).
-        feet_chains: from the base to the feet, with a waist above the legs, and their joints, see
-            `kinematics.feet_poses`.
+        chains: chains of the legs (2, 7, 15).
+        feet_chains: chains from the base to the feet, with a waist above the legs, and their
+            joints, see `kinematics.feet_poses`.
         neck: pan and tilt of the camera.
         sole: rectangle of each sole.
         support: part of it that the ankles can press on the floor.
         ready: joint angles of the ready posture, see `stand` (n,) [rad].
-        indices: of the joints in position and velocity of the dynamic model (n,).
+        indices: indices of the joints in position and velocity of the dynamic model (n,).
         lower, upper: joint limits (n,) [rad].
-        dynamics: of the robot; see `with_own_buffers`.
-        stiffness: of each servo, stiffened in the legs (n,) [N m/rad].
-        stiffening: of the servos of soft legs by feedback of the joint angles, see `_stiffen` [1].
-        damping: of each servo and its joint (n,) [N m s/rad].
+        dynamics: dynamics of the robot; see `with_own_buffers`.
+        stiffness: stiffness of each servo, stiffened in the legs (n,) [N m/rad].
+        stiffening: stiffening of the servos of soft legs by feedback of the joint angles, see
+            `_stiffen` [1].
+        damping: damping of each servo and its joint (n,) [N m s/rad].
     """
 
     def __init__(self, tree: RobotTree) -> None:
@@ -189,7 +190,7 @@ class RobotModel:
         """Set the ready posture: level feet below the centre of mass, legs bent.
 
         Args:
-            height: of the hips above the floor [m].
+            height: height of the hips above the floor [m].
             half_stance: foot to the middle of the stance [m].
 
         Returns:
@@ -248,8 +249,8 @@ class RobotModel:
         Args:
             position: joint angles (n,) [rad].
             velocity: joint rates (n,) [rad/s].
-            acceleration: of the joints (n,) [rad/s²].
-            base_acceleration: of the level base, forward and left [m/s²].
+            acceleration: accelerations of the joints (n,) [rad/s²].
+            base_acceleration: acceleration of the level base, forward and left [m/s²].
 
         Returns:
             torque of each joint, gravity included (n,) [N m]; force [N] and moment [N m] at the

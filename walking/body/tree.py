@@ -61,8 +61,8 @@ class Frame:
 
     Attributes:
         joint: index of the joint that moves it, -1 for the base.
-        rotation: in the frame of that joint (3, 3).
-        position: in the frame of that joint (3,) [m].
+        rotation: orientation in the frame of that joint (3, 3).
+        position: origin in the frame of that joint (3,) [m].
     """
 
     joint: int
@@ -79,23 +79,23 @@ class RobotTree:
     array they have this order. The frame of a joint is at its axis.
 
     Attributes:
-        names: of the joints (n,).
+        names: names of the joints (n,).
         parents: index of the joint that carries each joint, -1 for the base (n,).
-        rotations: of the joint frames in those of their parents at angle zero (n, 3, 3).
-        positions: of the joint frames in those of their parents (n, 3) [m].
-        axes: of rotation, in the joint frames (n, 3).
+        rotations: rotations of the joint frames in those of their parents at angle zero (n, 3, 3).
+        positions: positions of the joint frames in those of their parents (n, 3) [m].
+        axes: axes of rotation, in the joint frames (n, 3).
         bodies: frames of the centres of mass of all bodies, along their principal axes (m,).
-        masses: of the bodies (m,) [kg].
+        masses: masses of the bodies (m,) [kg].
         inertias: principal moments of inertia of the bodies (m, 3) [kg m²].
         lower, upper: joint limits (n,) [rad].
-        stiffness: of each servo (n,) [N m/rad].
-        servo_damping: of each servo (n,) [N m s/rad].
-        joint_damping: of each joint (n,) [N m s/rad].
-        armature: of each joint (n,) [kg m²].
+        stiffness: stiffness of each servo (n,) [N m/rad].
+        servo_damping: damping of each servo (n,) [N m s/rad].
+        joint_damping: damping of each joint (n,) [N m s/rad].
+        armature: armature of each joint (n,) [kg m²].
         effort: maximum torque, infinite if unknown (n,) [N m].
         speed: maximum speed, infinite if unknown (n,) [rad/s].
         posture: angles with straight legs and the other joints as while walking (n,) [rad].
-        feet: on the floor below the left and the right ankle, x forward, in that posture.
+        feet: frames on the floor below the left and the right ankle, x forward, in that posture.
         sole: rectangle of each sole in the foot frame.
         camera: right, down and forward axes of the camera.
         head: pan and tilt joint; None of a robot without a movable head.
