@@ -38,7 +38,7 @@ def run(
         seed: seed of the world and of all noise; default: that of the scenario.
         settings: override those of the scenario, as ``key=value`` or by dotted key.
         out: parent folder of the run folder; by default no files are kept.
-        log: also write the Rerun log into the run folder.
+        log: whether the Rerun log is written into the run folder.
         planner: replaces the planner of the scenario.
         gaze: replaces the gaze controller of the scenario.
         walker: replaces the walking engine of the scenario.

@@ -21,7 +21,7 @@ class BegunTick:
         sensed: sensor readings.
         targets: setpoints of the walking engine; None if its plan diverged.
         walking_time: wall time of the walking engine [s].
-        situation: that the robot decides in; None without a decision.
+        situation: situation that the robot decides in; None without a decision.
         diverged: reason why the plan diverged; empty if it did not.
         motion, gaze: decisions that replace those of the robot.
     """

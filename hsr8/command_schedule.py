@@ -40,8 +40,8 @@ def command_schedule(
     """Return the schedule of a scenario's section ``command``.
 
     Args:
-        section: of the scenario.
-        duration: of the run [s].
+        section: section of the scenario.
+        duration: duration of the run [s].
         rng: draws random commands.
     """
     if section.constant:

@@ -42,7 +42,7 @@ class Situation:
         context: state of the robot.
         motion: latest motion decision; None before the first.
         motion_due: whether a motion is decided, once per footstep.
-        image: that arrived (height, width, 3); None with an analytic camera.
+        image: image that arrived (height, width, 3); None with an analytic camera.
     """
 
     belief: Belief
@@ -93,8 +93,8 @@ class MotionPlanner(Protocol):
         """Return the motion of the next footstep.
 
         Args:
-            belief: of the robot; its tracks include nearby landmarks.
-            task: of the mission.
+            belief: belief of the robot; its tracks include nearby landmarks.
+            task: task of the mission.
             look: direction in W that the body turns to for a fixed camera, if any [rad].
         """
 
@@ -164,7 +164,7 @@ class Decisions:
         Motion is decided once per footstep, or per footstep time when standing.
 
         Args:
-            situation: to decide in.
+            situation: situation to decide in.
             motion: replaces the decision of the motion planner, if one is due.
             gaze: replaces the decision of the gaze planner.
         """

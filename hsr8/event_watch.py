@@ -15,7 +15,7 @@ class EventWatch:
     """Turns records into events.
 
     Args:
-        faults: of the scenario.
+        faults: faults of the scenario.
     """
 
     def __init__(self, faults: Sequence[Fault]) -> None:

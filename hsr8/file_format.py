@@ -13,9 +13,9 @@ def check_number(number: int, expected: int, path: Path | str, file: str) -> Non
     """Refuse a format `number` other than `expected`.
 
     Args:
-        number: of the folder.
+        number: format number of the folder.
         expected: format that this version reads.
-        path: of the folder, for messages.
+        path: path of the folder, for messages.
         file: kind of folder, for messages: ``run folder``.
 
     Raises:

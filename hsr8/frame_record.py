@@ -19,9 +19,9 @@ class FrameRecord:
 
     Attributes:
         index: number of the frame.
-        time: when it reached the robot [s].
+        time: time at which the frame reached the robot [s].
         image: (height, width, 3) RGB, or None with the analytic camera.
-        detections: of vision in the image.
+        detections: detections of vision in the image.
         measured: input of the estimator at capture, which is earlier by the latency.
         estimate: belief at capture.
         context: input of the decisions.

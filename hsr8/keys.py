@@ -40,7 +40,7 @@ def chosen(annotation: Any, value: Any = None) -> tuple[Any, list[Any]]:
     """Return the type that a value has among those of an annotation, and its marks.
 
     Args:
-        annotation: of a key or of an entry of a list.
+        annotation: annotation of a key or of an entry of a list.
         value: chooses among several types.
     """
     marks: list[Any] = []

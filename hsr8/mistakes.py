@@ -54,7 +54,7 @@ class Mistake:
     """One mistake.
 
     Attributes:
-        path: of the key.
+        path: path of the key.
         text: mistake, and expected value.
     """
 

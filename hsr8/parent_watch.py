@@ -18,7 +18,7 @@ def end_with_parent(parent: int, number: int = signal.SIGTERM) -> bool:
 
     Args:
         parent: process id.
-        number: of the signal.
+        number: number of the signal.
 
     Returns:
         Whether the parent still runs.

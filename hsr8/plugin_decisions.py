@@ -29,7 +29,7 @@ class Limits:
     """Limits that a planner or gaze may receive before a run, by its method ``start(limits)``.
 
     Attributes:
-        speed: of the built-in planners.
+        speed: speed of the built-in planners.
         neck: lower and upper limit of pan and tilt (2, 2) [rad].
     """
 
@@ -42,7 +42,7 @@ class PluginPlanner:
 
     Args:
         planner: user-defined planner.
-        limits: for its optional method `start`.
+        limits: limits for its optional method `start`.
 
     Raises:
         UsageError: `planner` has no method plan, or its start failed; from `plan`: the decision
@@ -73,7 +73,7 @@ class PluginGaze:
 
     Args:
         gaze: user-defined gaze.
-        limits: for its optional method `start`.
+        limits: limits for its optional method `start`.
 
     Raises:
         UsageError: `gaze` has no method choose, or its start failed; from `choose`: the decision

@@ -111,8 +111,8 @@ def start_plugin(plugin: object, name: str, argument: object) -> None:
 
     Args:
         plugin: user-defined object.
-        name: of the plugin, for messages.
-        argument: of the method.
+        name: name of the plugin, for messages.
+        argument: argument of the method.
 
     Raises:
         UsageError: the method failed.

@@ -19,7 +19,7 @@ class PluginMethod(Generic[Result]):
     Args:
         plugin: user-defined object.
         kind: planner, gaze or walker.
-        signature: of the method, for messages.
+        signature: signature of the method, for messages.
         result: type of the result.
 
     Attributes:

@@ -34,11 +34,11 @@ class RobotInfo:
     """Robot that a user-defined walker moves.
 
     Attributes:
-        joint_names: in the order of all joint arrays, n in all.
+        joint_names: names in the order of all joint arrays, n in all.
         ready: joint angles of the ready posture, in which a walk starts (n,) [rad].
         lower, upper: joint limits (n,) [rad].
         head: indices of the head joints, pan and tilt; empty without a movable head.
-        period: of control [s].
+        period: period of control [s].
         file: MJCF or URDF file of the robot.
     """
 
@@ -139,7 +139,7 @@ class PluginEngine:
     Args:
         walker: user-defined walker.
         robot: model of the robot.
-        parameters: of the state estimation and the head.
+        parameters: parameters of the state estimation and the head.
         odometry: dead reckoning to continue.
     """
 

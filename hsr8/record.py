@@ -54,7 +54,7 @@ class Second:
         time: simulated time [s].
         world: hash of the state of the world.
         robot: hash of the state of the world and the belief of the robot.
-        saturation: of the servos so far; None of a body without dynamics.
+        saturation: saturation of the servos so far; None of a body without dynamics.
     """
 
     tick: int
@@ -69,9 +69,9 @@ class Tick:
     """One control tick.
 
     Attributes:
-        number: of the tick.
+        number: number of the tick.
         time: simulated time at its start [s].
-        sensors: as the robot received them.
+        sensors: readings that the robot received.
         setpoint: sent to the servos; NaN in the last tick (joints,) [rad].
         limits: constraints that limited the command.
         zmp_depth: distance of the planned ZMP from the edge of the soles, negative outside [m].

@@ -146,7 +146,7 @@ class Robot:
         """Decide once after each `perceive` that returned a situation.
 
         Args:
-            situation: to decide in.
+            situation: situation to decide in.
             motion: replaces the decision of the motion planner, if one is due.
             gaze: replaces the decision of the gaze planner.
         """

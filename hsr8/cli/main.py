@@ -56,7 +56,7 @@ def entry(arguments: Sequence[str] | None = None) -> int:
     """Run one command.
 
     Args:
-        arguments: without the program's name; those of the process by default.
+        arguments: words without the program's name; those of the process by default.
 
     Returns:
         The exit code, see `DESCRIPTION`.

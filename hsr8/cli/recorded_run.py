@@ -38,8 +38,8 @@ def start(options: Run, scenario: Scenario, command: Sequence[str]) -> int:
     """Run the scenario and report.
 
     Args:
-        options: as given.
-        scenario: to run.
+        options: options of the command.
+        scenario: scenario to run.
         command: words of the command line that makes exactly this run.
 
     Raises:
@@ -94,13 +94,13 @@ class Outputs:
     """Log, bag and video of a run; their failures are reported after its results.
 
     Args:
-        options: as given.
+        options: options of the command.
         path: run folder, which has a manifest.
         after: contexts that end after the run; the video is drawn from now on.
 
     Attributes:
         failures: message of every output that is missing.
-        exit_code: of the command; 0 without a failure.
+        exit_code: exit code of the command; 0 without a failure.
     """
 
     def __init__(self, options: Run, path: Path, after: ExitStack) -> None:

@@ -54,7 +54,7 @@ class MetricDifference(PairedDifference):
 
     Attributes:
         metric: name.
-        only_a, only_b: for a proportion, the seeds on which only one side succeeded.
+        only_a, only_b: seeds on which only one side succeeded, for a proportion.
     """
 
     metric: str

@@ -24,7 +24,7 @@ def crash_report(folder: Path | None = None) -> Iterator[None]:
     """Turn unexpected exceptions into errors and keep their traceback.
 
     Args:
-        folder: of ``crash.txt``; a new temporary folder by default.
+        folder: folder of ``crash.txt``; a new temporary folder by default.
 
     Raises:
         UsageError: a plugin raised an exception.

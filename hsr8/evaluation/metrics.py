@@ -69,13 +69,13 @@ def metrics(
     Unmeasured results are None, for example the localization of a run without a camera frame.
 
     Args:
-        tables: of the run, with at least `COLUMNS`.
-        layout: of the run's world.
+        tables: tables of the run, with at least `COLUMNS`.
+        layout: layout of the run's world.
         mission: distances at which via points and goal are reached.
-        certificate: of the world.
-        exit_reason: of the run.
-        state_hash: of the last state.
-        wall_time: of the run [s].
+        certificate: certificate of the world.
+        exit_reason: exit reason of the run.
+        state_hash: hash of the last state.
+        wall_time: wall time of the run [s].
     """
     records, frames = tables["records"], tables["frames"]
     truth = truth_at(frames, records)
@@ -130,8 +130,8 @@ class _Arrival:
 
     Attributes:
         passed: via points passed according to the robot.
-        missed: of these, those that it did not come near.
-        time: when the robot believes that it is at the goal [s]; None if never.
+        missed: passed via points that the robot did not come near.
+        time: time at which the robot believes that it is at the goal [s]; None if never.
         goal_reached: whether this is true.
     """
 

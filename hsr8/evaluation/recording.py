@@ -41,7 +41,7 @@ class Result:
         metrics: every result by name, as in ``metrics.json``.
         criteria: the scenario's criteria, evaluated.
         diverged: message of the divergence; empty if the physics did not diverge.
-        arithmetic: that of NumPy: ``x86-64-v3``, the same on all processors, or ``native``.
+        arithmetic: arithmetic of NumPy: ``x86-64-v3``, the same on all processors, or ``native``.
     """
 
     run: Run

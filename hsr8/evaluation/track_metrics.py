@@ -24,9 +24,9 @@ def track_metrics(frames: Table, truth: dict[str, Array], layout: Layout) -> dic
     """Compare the tracks of every camera frame with the true obstacles.
 
     Args:
-        frames: of the run.
+        frames: camera frames of the run.
         truth: columns of the records at the frames.
-        layout: of the run's world.
+        layout: layout of the run's world.
 
     Returns:
         Results by name, with units at the end; None if nothing was measured.
@@ -97,12 +97,12 @@ def owners(
     """Assign the tracks of every frame to obstacles of their colour, the nearest pair first.
 
     Args:
-        labels: of the tracks (t,).
-        positions: of the tracks in W (t, 2) [m].
+        labels: labels of the tracks (t,).
+        positions: positions of the tracks in W (t, 2) [m].
         rows: frame of each track (t,).
-        colors: of the obstacles (n).
+        colors: colours of the obstacles (n).
         obstacles: positions in W in every frame (f, n, 2) [m].
-        scale: of the world [1].
+        scale: scale of the world [1].
 
     Returns:
         Numbers of the owning tracks (k,) and of their obstacles (k,).

@@ -39,9 +39,9 @@ class Topic:
     """Messages of one topic.
 
     Attributes:
-        name: of the topic.
+        name: name of the topic.
         kind: type of its messages.
-        times: of arrival (n,) [ns].
+        times: times of arrival (n,) [ns].
         messages: serialized (n).
         latched: whether later subscribers receive the last message.
     """
@@ -59,7 +59,7 @@ def write_bag(run: Run, folder: Path) -> int:
     The folder also holds the robot as ``robot.urdf`` with its meshes.
 
     Args:
-        run: of any length.
+        run: run of any length.
         folder: new.
 
     Raises:

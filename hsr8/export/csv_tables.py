@@ -30,7 +30,7 @@ class _Sheet:
     """Columns of a file.
 
     Attributes:
-        name: of the file, without suffix.
+        name: name of the file, without suffix.
         columns: values by name (n,).
         about: lines of `COLUMNS`.
     """
@@ -68,7 +68,7 @@ def write_csv(run: Run, folder: Path) -> int:
     """Write the tables of a run as CSV files and return their number.
 
     Args:
-        run: of any length.
+        run: run of any length.
         folder: new.
 
     Raises:
@@ -92,9 +92,9 @@ def _sheets(name: str, table: Table, times: NDArray[np.float64] | None) -> Itera
     """Yield the files of a table: its own and those of its nested columns.
 
     Args:
-        name: of the file.
+        name: name of the file.
         table: the table.
-        times: of its rows [s]; None for a table with a column of times.
+        times: times of its rows [s]; None for a table with a column of times.
     """
     own = _Sheet(name)
     if times is None:

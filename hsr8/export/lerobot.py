@@ -45,7 +45,7 @@ class _Episode:
         run: the run.
         task: its scenario.
         joints: names.
-        period: between samples [s].
+        period: interval between samples [s].
         values: numbers of each sample by feature (n, ...).
         images: JPEG of each sample; None in a run without images.
         size: height and width of the images [pixel].
@@ -69,7 +69,7 @@ def write_lerobot(runs: Sequence[Run], folder: Path) -> int:
     """Write runs as a dataset and return the number of samples.
 
     Args:
-        runs: at least one, of one robot and camera.
+        runs: one or more runs of one robot and camera.
         folder: new.
 
     Raises:

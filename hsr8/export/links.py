@@ -30,14 +30,14 @@ class Link:
     The frame of the link is that of the joint, which is on its axis.
 
     Attributes:
-        name: of the link.
+        name: name of the link.
         parent: name of the link that carries it; empty for the base.
         joint: name of its joint.
-        number: of the joint in the model; -1 for a fixed joint.
+        number: number of the joint in the model; -1 for a fixed joint.
         kind: fixed, revolute, continuous or prismatic.
-        position: in the parent at angle zero (3,) [m].
+        position: position in the parent at angle zero (3,) [m].
         orientation: quaternion w-x-y-z in the parent at angle zero (4,) [1].
-        axis: in the link (3,) [1].
+        axis: axis in the link (3,) [1].
         body: number of the body whose masses and shapes the link has, in the same frame; -1 for
             none.
     """

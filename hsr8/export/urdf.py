@@ -56,7 +56,7 @@ def urdf_of(robot: LoadedRobot, folder: str = MESHES) -> Urdf:
 
     Args:
         robot: its joints, masses and shapes.
-        folder: of the mesh files, next to the description.
+        folder: folder of the mesh files, next to the description.
 
     Raises:
         UsageError: a joint has a type that URDF lacks.
@@ -87,7 +87,7 @@ class _Writer:
 
     Attributes:
         model: compiled robot.
-        folder: of the mesh files.
+        folder: folder of the mesh files.
         meshes: so far, by name.
     """
 

@@ -24,7 +24,7 @@ class ActionMap:
     velocity of zero is 0, and the middle of the neck's range is 0.
 
     Args:
-        limits: of motion and gaze.
+        limits: limits of motion and gaze.
         normalized: whether actions are from -1 to 1; if not, in [m/s], [rad/s] and [rad].
     """
 

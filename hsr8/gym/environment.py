@@ -43,7 +43,7 @@ class Environment(gymnasium.Env[Observation, NDArray[Any]]):
         render_mode: ``rgb_array`` for images from outside; None for no images.
 
     Attributes:
-        scenario: with its settings.
+        scenario: scenario with its settings.
 
     Raises:
         ScenarioError: the scenario or a setting is invalid.
@@ -102,7 +102,7 @@ class Environment(gymnasium.Env[Observation, NDArray[Any]]):
         """Start a run.
 
         Args:
-            seed: of the run; by default drawn, reproducibly after a given seed.
+            seed: seed of the run; by default drawn, reproducibly after a given seed.
             options: must be empty; the options of a run are those of the environment.
 
         Returns:

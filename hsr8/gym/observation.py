@@ -81,9 +81,9 @@ class Observer:
         """Return the observation of a situation, in new arrays.
 
         Args:
-            belief: of the robot; tracks with negative ids, known beacons, are left out.
-            task: of the mission.
-            image: of the head camera.
+            belief: belief of the robot; tracks with negative ids, known beacons, are left out.
+            task: task of the mission.
+            image: image of the head camera.
         """
         x, y, heading = belief.pose.tolist()
         to_R = np.array([[cos(heading), sin(heading)], [-sin(heading), cos(heading)]])

@@ -18,7 +18,7 @@ class OutsideView:
     """Images of one run; close it.
 
     Args:
-        simulation: that is shown.
+        simulation: simulation to show.
         fps: images per second of simulated time.
 
     Raises:

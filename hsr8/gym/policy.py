@@ -68,7 +68,7 @@ def as_planner(
     """Return the planner plugin of a policy, decided from the observations of ``hsr8/Navigate-v0``.
 
     Args:
-        policy: as of `as_gaze`. The first three numbers of the action are vx, vy and wz.
+        policy: policy, see `as_gaze`. The first three numbers of the action are vx, vy and wz.
         observe: optional parts of the observation, without ``image``.
         max_tracks: number of observed tracks.
         normalized: whether actions are from -1 to 1, as in the environments.
@@ -175,7 +175,7 @@ class _Policy:
         """Return the action for an observation, clipped to its space.
 
         Args:
-            observation: of the belief.
+            observation: observation of the belief.
             allowed: spaces of the action.
 
         Raises:

@@ -29,8 +29,8 @@ class Reward:
     """Reward terms of one run.
 
     Args:
-        layout: of the run's world.
-        weights: of the terms.
+        layout: layout of the run's world.
+        weights: weights of the terms.
     """
 
     def __init__(self, layout: Layout, weights: Mapping[str, float]) -> None:
@@ -47,8 +47,8 @@ class Reward:
         """Return the weighted terms since the previous call; their sum is the reward.
 
         Args:
-            truth: of the world.
-            situation: of the latest decision.
+            truth: truth of the world.
+            situation: situation of the latest decision.
             outcome: 1 for success, -1 for failure, 0 otherwise.
         """
         progress, elapsed = self._travelled(truth, situation.task.index), truth.time - self._time

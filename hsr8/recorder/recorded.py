@@ -46,9 +46,9 @@ class RecordedFrame:
         frame: detections, belief and decisions.
         tracks: believed obstacles as one structured array.
         planned: whether the motion is new.
-        gaze_map, local_map: in shades; None if it is not recorded in this frame.
-        map_hash: of the whole local map.
-        particles: of lost movers.
+        gaze_map, local_map: maps in shades; None if it is not recorded in this frame.
+        map_hash: hash of the whole local map.
+        particles: particles of lost movers.
         field: samples of the direction field.
     """
 
@@ -83,7 +83,7 @@ class FrameSampler:
     """Selection of the parts of camera frames that change rarely or are large.
 
     Args:
-        scale: of the world [1].
+        scale: scale of the world [1].
     """
 
     def __init__(self, scale: float = 1.0) -> None:

@@ -20,9 +20,9 @@ class SampledField:
     """Samples of a direction field.
 
     Attributes:
-        points: in W (n, 2) [m].
+        points: sampled points in W (n, 2) [m].
         directions: unit vectors at the points, zero where the field is (n, 2).
-        path: along the field from the robot (m, 2) [m].
+        path: path along the field from the robot (m, 2) [m].
     """
 
     points: Array = field(default_factory=lambda: np.zeros((0, 2)))
@@ -40,9 +40,9 @@ def sampled(
 
     Args:
         directions: the field.
-        position: of the robot in W (2,) [m].
+        position: position of the robot in W (2,) [m].
         target: destination in W (2,) [m].
-        scale: of the world [1].
+        scale: scale of the world [1].
     """
     points = grid(position, scale)
     path = path_along(directions, position, target, scale)

@@ -23,7 +23,7 @@ class Table(Mapping[str, Any]):
     a table of all objects, see `Items`; one of lists of numbers is a list of arrays.
 
     Args:
-        name: of the table, for messages.
+        name: name of the table, for messages.
         arrow: the columns.
         chosen: indices of the rows of `arrow` that this table has; None for all.
     """
@@ -49,7 +49,7 @@ class Table(Mapping[str, Any]):
         """Return recorded objects as a table with the columns of a row.
 
         Args:
-            name: of the table.
+            name: name of the table.
             row: the columns.
             objects: recorded objects.
             labels: names of the elements of named dimensions.

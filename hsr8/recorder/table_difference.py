@@ -15,8 +15,8 @@ class Cell:
     """The first difference of two tables.
 
     Attributes:
-        row: of the tables.
-        column: of the tables.
+        row: columns of the tables.
+        column: column of the tables.
         channel: column and element, with unit.
         a, b: the two values.
     """

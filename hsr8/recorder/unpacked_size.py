@@ -20,7 +20,7 @@ def rows_and_size(message: pa.Message) -> tuple[int, int]:
     """Return the number of rows of a record batch and the size of its unpacked buffers [byte].
 
     Args:
-        message: of the batch.
+        message: message of the batch.
 
     Raises:
         ValueError: the metadata does not fit the body, for example because a buffer cannot

@@ -30,7 +30,7 @@ class Canvas:
         field_size: extent of the field along x and y, without the margin [m].
         size: width and height [pixel].
         paper: colour of the ground.
-        scale: of the world [1].
+        scale: scale of the world [1].
 
     Attributes:
         image: (height, width, 3), RGB.

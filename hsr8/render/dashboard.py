@@ -54,14 +54,14 @@ class Dashboard:
     """Composition of the images of one video.
 
     Args:
-        layout: of the run's world.
-        scenario: of the run.
+        layout: layout of the run's world.
+        scenario: scenario of the run.
         timeline: drawn under the scene.
         size: width and height, both even [pixel].
         speed: simulated seconds per second of video.
 
     Attributes:
-        scene_size, camera_size: of the images to compose [pixel].
+        scene_size, camera_size: sizes of the images to compose [pixel].
     """
 
     def __init__(

@@ -25,7 +25,7 @@ class FollowCamera:
     """Camera poses for a whole video.
 
     Args:
-        qpos: of the robot at each frame of the video (n, nq).
+        qpos: configurations of the robot at each frame of the video (n, nq).
         fps: frames per second of the video.
         speed: simulated seconds per second of video.
         size: height of the robot relative to the default robot [1].

@@ -21,7 +21,7 @@ class GazePanel:
     """Panel in a corner of an image.
 
     Args:
-        width: of the panel [pixel].
+        width: width of the panel [pixel].
         max_pan: maximum pan of the map to either side [rad].
         tilts: minimum and maximum tilt of the map [rad].
     """

@@ -45,8 +45,8 @@ def follow_run(
     the run ends early, it is drawn again.
 
     Args:
-        run: in progress.
-        options: of the video.
+        run: run in progress.
+        options: options of the video.
         out: file to write, no image.
         progress: called with the number of finished frames and of all.
         stopped: returns whether the run counts as ended although its manifest does not say so.
@@ -69,7 +69,7 @@ class _GrowingRun:
     """Run folder that another process writes.
 
     Args:
-        path: of the folder.
+        path: path of the folder.
         stopped: returns whether the other process is gone.
     """
 

@@ -15,8 +15,8 @@ class Motion:
     """Motion of robot and movers.
 
     Attributes:
-        time: of each row (n,) [s].
-        qpos: of the robot, MuJoCo order (n, nq).
+        time: time of each row (n,) [s].
+        qpos: configurations of the robot, MuJoCo order (n, nq).
         movers: positions in W (n, movers, 2) [m].
     """
 

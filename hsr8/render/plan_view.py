@@ -35,10 +35,10 @@ class PlanView:
     """Plan of a layout, x of W to the right and y up.
 
     Args:
-        layout: to draw.
-        radius: of the robot [m].
-        size: of the longer side of the image [pixel].
-        certificate: whose path is drawn, if any.
+        layout: layout to draw.
+        radius: radius of the robot [m].
+        size: size of the longer side of the image [pixel].
+        certificate: certificate whose path is drawn, if any.
     """
 
     def __init__(

@@ -26,8 +26,8 @@ class PushArrow:
     Attributes:
         begin: start of the push [s].
         impulse: [N s].
-        tip: from the base of the robot along the axes of W (3,) [m].
-        vector: from tail to tip (3,) [m].
+        tip: tip relative to the base of the robot along the axes of W (3,) [m].
+        vector: vector from tail to tip (3,) [m].
     """
 
     begin: float

@@ -51,7 +51,7 @@ class RenderedVideo:
         video: file.
         thumbnail: image of the middle of the video; None without a video.
         frames: number of frames.
-        duration: of the video [s].
+        duration: duration of the video [s].
         speed: simulated seconds per second of video.
     """
 
@@ -67,7 +67,7 @@ def render_run(run: Run, options: VideoOptions, out: Path, progress: Progress) -
 
     Args:
         run: recorded run.
-        options: of the video; an image shows the instant `start`.
+        options: options of the video; an image shows the instant `start`.
         out: file to write: ``.mp4``, ``.webp`` or ``.png``. The thumbnail of an MP4
             file has the same name with the suffix ``.png``.
         progress: called with the number of finished frames and of all.
@@ -103,7 +103,7 @@ def draw_video(
 
     Args:
         run: recorded run.
-        options: of the video.
+        options: options of the video.
         out: file to write.
         progress: called with the number of finished frames and of all.
         times: simulated time of every frame (n,) [s].

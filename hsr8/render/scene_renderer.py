@@ -31,11 +31,11 @@ class SceneRenderer:
     """Renderer of a layout with robot and movers; use it in one thread only and close it.
 
     Args:
-        robot: of the run.
-        layout: of the run's world.
+        robot: robot of the run.
+        layout: layout of the run's world.
         quality: ``show`` for people, ``vision`` for the robot's camera.
         size: width and height of the images [pixel].
-        optics: of the head camera.
+        optics: optics of the head camera.
         oversampling: factor by which images are drawn larger along each side.
         fine: sharp shadows; for ``show`` only.
 

@@ -44,11 +44,11 @@ def draw_text(
     """Draw one line of text.
 
     Args:
-        image: to draw into (height, width, 3).
+        image: image to draw into (height, width, 3).
         at: column of the line's left end, middle or right end, and row of its baseline [pixel].
-        text: to draw.
-        color: of the letters.
-        size: of the font [pixel].
+        text: text to draw.
+        color: colour of the letters.
+        size: size of the font [pixel].
         strong: bold.
         side: part of the line at that column.
     """

@@ -34,7 +34,7 @@ class Timeline:
         """Draw over the lowest rows of `image` (height, width, 3).
 
         Args:
-            image: to draw into.
+            image: image to draw into.
             time: simulated time [s].
             events: time [s] and kind of each event so far.
         """

@@ -36,7 +36,7 @@ class TopDown:
     """Map of one run.
 
     Args:
-        layout: of the run's world.
+        layout: layout of the run's world.
         size: width and height [pixel].
     """
 

@@ -29,7 +29,7 @@ class VideoWriter:
     """Writer of a video, used by ``with``; the file is complete at the end.
 
     Args:
-        path: of the file; its suffix is one of `FORMATS`.
+        path: path of the file; its suffix is one of `FORMATS`.
         size: width and height, both even [pixel].
         fps: frames per second.
     """

@@ -80,7 +80,7 @@ def draw(records: Table, robot: RobotModel, what: What, title: str) -> Figure:
         records: the rows to draw.
         robot: model of the robot.
         what: one group of panels, or all of them.
-        title: of the figure.
+        title: title of the figure.
 
     Raises:
         UsageError: too few rows.

@@ -127,7 +127,7 @@ def along(axes: Axes, walk: Walk, axis: int) -> None:
     """Draw ZMP, CoM, DCM and soles along one axis of the robot over time.
 
     Args:
-        axes: to draw into.
+        axes: axes to draw into.
         walk: walking of the run.
         axis: 0 forward, 1 left.
     """

@@ -77,7 +77,7 @@ def random_commands(
 
     Args:
         speed: envelope.
-        scale: of the time between changes, 0.5 to 2 s for HSR-VIII [1].
+        scale: scale of the time between changes, 0.5 to 2 s for HSR-VIII [1].
         seed: seed of the commands.
         stops: fraction of commands to stand [1].
         corners: fraction of commands with the maximum speed along every axis [1].
@@ -112,7 +112,7 @@ def calibrate(
     """Measure a robot; return warnings of speeds far below the rehearsed ones, too.
 
     Args:
-        robot: with its rehearsed limits.
+        robot: robot with its rehearsed limits.
         report: receives a line per result.
     """
     parameters = robot.parameters

@@ -39,7 +39,7 @@ class WalkResult:
     """Result of standing, or of walking in one direction.
 
     Attributes:
-        direction: of `DIRECTIONS`.
+        direction: direction of `DIRECTIONS`.
         speed: commanded [m/s or rad/s].
         fell: whether the robot fell.
         error: maximum velocity error of an axis over the commanded speed [1]; None where the robot
@@ -107,9 +107,9 @@ def check_robot(
     walk has the maximum speed along all axes at once.
 
     Args:
-        robot: to check.
+        robot: robot to check.
         report: receives each result.
-        duration: of each walk, in the time scale of HSR-VIII [s].
+        duration: duration of each walk, in the time scale of HSR-VIII [s].
     """
     trial, results, walks = Trial(robot), [], []
     duration *= time_scale(robot.parameters)

@@ -40,14 +40,14 @@ class Walked:
         falls: number of falls; the walk ends with the first.
         poses: x, y [m] and unwrapped heading [rad] of the robot frame (n, 3).
         odometry: the same by odometry (n, 3).
-        tilt: of the trunk (n,) [deg].
+        tilt: tilt of the trunk (n,) [deg].
         targets: joint targets (n, joints) [rad].
         angles: joint angles after each tick (n, joints) [rad].
-        camera: of the believed minus the true camera pose: tilt, roll, yaw [rad], height [m], at
+        camera: believed minus true camera pose: tilt, roll, yaw [rad], height [m], at
             every `CAMERA_TICKS` (m, 4).
         steps: completed footsteps.
-        saturation: of the joints.
-        parameters: of the walk.
+        saturation: saturation of the joints.
+        parameters: parameters of the walk.
     """
 
     falls: int
@@ -85,7 +85,7 @@ class Walked:
         """Return the leg joint that was longest at a limit, with the limit, in words.
 
         Args:
-            robot: that walked.
+            robot: robot that walked.
         """
         uses, ticks = self.saturation, len(self.poses)
         legs = slice(0, RIGHT_LEG.stop)
@@ -115,8 +115,8 @@ class Trial:
     """Walks of one robot; the model is compiled once.
 
     Args:
-        robot: that walks.
-        parameters: of its walk; default: those derived.
+        robot: robot that walks.
+        parameters: parameters of its walk; derived ones by default.
         noise: factor on the sensor noise [1].
     """
 
@@ -144,9 +144,9 @@ class Trial:
         Args:
             command: constant, or by time.
             duration: [s].
-            seed: of the sensor noise.
+            seed: seed of the sensor noise.
             head: target by time.
-            pushes: on the robot.
+            pushes: pushes on the robot.
         """
         rng = np.random.default_rng([seed, 7])
         body = PhysicsBody(self._model, self.robot, EMPTY, self._noise, rng, pushes=pushes)

@@ -36,7 +36,7 @@ def entries_table(entries: Sequence[Entry]) -> list[str]:
     """Return the lines of a table with a line per entry, and the command of each.
 
     Args:
-        entries: of one suite; the first is the reference of the paired differences.
+        entries: entries of one suite; the first is the reference of the paired differences.
 
     Raises:
         UsageError: the entries are not comparable.

@@ -70,7 +70,7 @@ class Suite(Section):
         """Return name or file of every scenario by the name of its family.
 
         Args:
-            file: of the suite.
+            file: file of the suite.
         """
         return {Path(name).stem: _path(file, name) for name in self.families}
 
@@ -78,7 +78,7 @@ class Suite(Section):
         """Return the scenario of every family by name.
 
         Args:
-            file: of the suite.
+            file: file of the suite.
             settings: KEY=VALUE, which override those of the suite.
 
         Raises:

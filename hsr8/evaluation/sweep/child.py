@@ -63,7 +63,7 @@ class Child:
         """Return the result after the end of the process.
 
         Args:
-            exit_code: of the process, negative for a signal; None if it was stopped at the limit.
+            exit_code: exit code of the process, negative for a signal; None after the limit.
         """
         while self.receive():
             pass

@@ -39,7 +39,7 @@ class SweepFolder:
     """Folder of a sweep, open for reading, and for writing after `lock`.
 
     Args:
-        path: of the folder.
+        path: path of the folder.
         definition: scenario and versions of its runs.
     """
 

@@ -40,7 +40,7 @@ class Job:
         command: command line that repeats the run.
         timeout: wall-clock limit [s].
         log: whether the run writes a Rerun log.
-        keep: which run folders are kept.
+        keep: run folders that are kept.
         attempt: 1, or 2 after a crash.
     """
 

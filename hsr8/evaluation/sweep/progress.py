@@ -34,7 +34,7 @@ class SweepProgress:
         """Count a run that ended.
 
         Args:
-            result: of the run.
+            result: result of the run.
             sweep: name of its sweep, if there are several.
         """
         self._ended += 1

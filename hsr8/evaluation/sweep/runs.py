@@ -39,7 +39,7 @@ class Execution:
         workers: parallel runs on this machine; None for the number of CPUs.
         executor: "local" or "dask://HOST:PORT".
         timeout: wall-clock limit per run [s]; None for the default.
-        keep: which run folders are kept.
+        keep: run folders that are kept.
         log: whether runs write Rerun logs.
         quiet: whether no progress is shown.
 
@@ -72,7 +72,7 @@ class SweepRuns:
     """Results of sweeps.
 
     Attributes:
-        results: of all seeds in the folder, by name of the sweep.
+        results: results of all seeds in the folder, by name of the sweep.
         interrupted: whether the runs were interrupted.
     """
 
@@ -140,7 +140,7 @@ def definitions(
     """Return the definitions of sweeps with the installed versions.
 
     Args:
-        scenarios: by name of the folder.
+        scenarios: scenarios by name of the folder.
         commands: command line of one run without its seed, by name of the folder.
 
     Raises:

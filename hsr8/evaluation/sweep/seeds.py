@@ -13,7 +13,7 @@ def parse_seeds(text: str, option: str = "--seeds") -> tuple[int, ...]:
     """Return the seeds of ``1000:1200``, ``1,5,9`` or ``0:10,42``; ranges exclude their end.
 
     Args:
-        text: as on the command line.
+        text: words of the command line.
         option: named in messages.
 
     Raises:

@@ -53,7 +53,7 @@ class Summary:
         collision, timeout, fall: runs with at least one, of the runs that did not crash.
         arrived: successes within 15 deg of the arrival heading, where there is one.
         counts: falls and collisions in all runs that did not crash.
-        collisions_per_run, collisions_per_m: of these runs [1], [1/m].
+        collisions_per_run, collisions_per_m: rates in these runs [1], [1/m].
         spl: success weighted by path length, mean of all runs [1]; None without runs.
         optimal_time_ratio: success times certified over actual time, mean of all runs [1].
         exit_reasons: number of runs by exit reason.

@@ -33,7 +33,7 @@ class Manifest:
 
     Attributes:
         scenario: name of the scenario.
-        seed: of the run.
+        seed: seed of the run.
         command: command line that repeats the run. A run with a planner or gaze object cannot be
             repeated by a command; the call, which begins with `CALL`, takes its place.
         exit_reason: how the run ended. ``running`` until then and after a kill, ``failed`` if the

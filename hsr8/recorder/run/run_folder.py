@@ -38,7 +38,7 @@ class RunFolder:
 
     Args:
         path: new folder, see `create`.
-        manifest: of the run; written immediately.
+        manifest: manifest of the run; written immediately.
         scenario: the resolved scenario as TOML.
 
     Raises:

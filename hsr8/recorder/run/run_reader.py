@@ -91,7 +91,7 @@ def open_run(path: str | Path, *, trust: bool = False) -> StoredRun:
     """Return the run at `path`, or the newest one in this folder, see `run_folders`.
 
     Args:
-        path: of a run folder, or of a folder above it.
+        path: path of a run folder, or of a folder above it.
         trust: whether the plugins that the scenario in the folder names may run.
 
     Raises:
