@@ -169,7 +169,7 @@ def main() -> None:
             shutil.rmtree(out)
         rows.append(tuple(map(str, (scenario, *count.values()))))
         print(*rows[-1], flush=True)
-    head = ("scenario", "runs", "equal hashes", "equal columns", "components of the log")
+    head = ("scenario", "runs", "equal hashes", "equal columns, sum", "components of the logs, sum")
     lines = ["# Two versions", "", f"Seeds {given.seeds}, `{' '.join(options)}`.", ""]
     lines += table((*head, "metrics and log equal from the tables of OLD"), rows)
     lines += ["## Runs repeated", ""]
