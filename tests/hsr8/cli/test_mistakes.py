@@ -180,11 +180,6 @@ def in_folder(folder, monkeypatch):
     monkeypatch.setattr("hsr8.cli.render.require_gl", lambda: "llvmpipe")
 
 
-def test_the_table_is_long():
-    assert len(LINES) >= 50
-    assert len(dict(LINES)) == len(LINES)
-
-
 @pytest.mark.parametrize(("line", "expected"), LINES, ids=[line for line, _ in LINES])
 def test_a_mistake_is_one_message(line, expected, capsys):
     before = sorted(Path.cwd().rglob("*"))
