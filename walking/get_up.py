@@ -12,6 +12,11 @@ from walking.plane import Array, Vector
 from walking.signals import BodySensors, JointTargets
 from walking.swing import PEAK, minimum_jerk
 
+STAND_TIME = 0.8  # from the squat to the ready posture [s]
+MAX_REST = 3.0  # timeout of waiting for rest [s]
+MAX_LEAN = 0.4  # sideways component of the vertical in a posture with a pitch [1]
+UPRIGHT = cos(0.2)  # minimum headward component of the vertical when standing [1]
+
 
 class Lying(StrEnum):
     """Side of the trunk on the floor."""
@@ -108,12 +113,6 @@ class PostureTrack:
     def _within(self, angles: Array) -> Array:
         within: Array = np.clip(angles, self._lower, self._upper)
         return within
-
-
-STAND_TIME = 0.8  # from the squat to the ready posture [s]
-MAX_REST = 3.0  # timeout of waiting for rest [s]
-MAX_LEAN = 0.4  # sideways component of the vertical in a posture with a pitch [1]
-UPRIGHT = cos(0.2)  # minimum headward component of the vertical when standing [1]
 
 
 class Outcome(Enum):

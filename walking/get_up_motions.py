@@ -20,6 +20,11 @@ Angles = tuple[float, ...]
 _LEG_MIRROR = (-1.0, -1.0, 1.0, 1.0, 1.0, -1.0)
 _ARM_MIRROR = (1.0, -1.0, -1.0, 1.0, -1.0, -1.0)
 
+POINTED = 0.9  # ankle with the instep on the floor [rad]
+TUCKED = -1.2  # ankle with the toes under the heel [rad]
+FLEXED = -1.7  # hip, fully flexed [rad]
+FOLDED = 2.3  # knee, fully flexed [rad]
+
 
 def leg(
     pitch: float = 0.0, knee: float = 0.0, ankle: float = 0.0, yaw: float = 0.0, roll: float = 0.0
@@ -82,12 +87,6 @@ def symmetric(
 
 
 STRAIGHT = symmetric("straight", leg(), arm(), 0.5)
-
-
-POINTED = 0.9  # ankle with the instep on the floor [rad]
-TUCKED = -1.2  # ankle with the toes under the heel [rad]
-FLEXED = -1.7  # hip, fully flexed [rad]
-FOLDED = 2.3  # knee, fully flexed [rad]
 
 
 @dataclass(frozen=True, slots=True)

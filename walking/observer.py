@@ -26,6 +26,9 @@ from walking.support import depth, polygon
 from walking.tick import watch
 
 CONTACT_LOAD = 2.0 * LIGHT_LOAD  # of the weight; a lifted foot with more of it has landed [1]
+VELOCITY_TIME = 0.05  # time constant of the legs in the velocity filter [s]
+SLIP = 0.1  # standard deviation of the slip of unknown feet, relative to the distance walked [1]
+FULL_LOAD = 0.5  # of the weight on the feet, above which the legs have their full weight [1]
 
 
 class FootContacts:
@@ -124,11 +127,6 @@ def _turned(rotations: Array, vectors: Array) -> Array:
     """Return the vectors (n, 3), each multiplied by its matrix (n, 3, 3)."""
     product: Array = np.einsum("kij,kj->ki", rotations, vectors)
     return product
-
-
-VELOCITY_TIME = 0.05  # time constant of the legs in the velocity filter [s]
-SLIP = 0.1  # standard deviation of the slip of unknown feet, relative to the distance walked [1]
-FULL_LOAD = 0.5  # of the weight on the feet, above which the legs have their full weight [1]
 
 
 @value

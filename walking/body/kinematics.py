@@ -20,12 +20,14 @@ Matrix = tuple[float, float, float, float, float, float, float, float, float]
 Pose = tuple[float, float, float, float, float, float]
 """Pose of a foot in the base frame: x, y, z [m], roll, pitch, yaw [rad]."""
 
-ROW = 15  # numbers of a joint in a chain
+MOVE, AXIS = 9, 12  # first columns of translation and axis, after those of the rotation
 CONVERGED = 1e-11  # error of a solved pose [rad], positions relative to the length of the leg
 MAX_ITERATIONS = 20
 MAX_STEP = 0.4  # change of a joint in one iteration [rad]
 MIN_DAMPING, MAX_DAMPING = 1e-14, 1e-3  # of the normal equations, near and far from the solution
 MIN_PIVOT = 1e-18  # of their Cholesky factor
+BEND = (-0.4, 0.8, -0.4)  # pitch of hip, knee and ankle of a slightly bent leg [rad]
+STRETCH = 0.985  # maximum distance of hip and ankle relative to thigh and shank [1]
 
 
 @compiled
@@ -86,12 +88,12 @@ def _end(chain: Array, angles: Array, axes: Array, origins: Array) -> tuple[Matr
     px, py, pz = 0.0, 0.0, 0.0
     for k in range(chain.shape[0]):
         row = chain[k]
-        dx, dy, dz = _turned(R, row[9], row[10], row[11])
+        dx, dy, dz = _turned(R, row[MOVE], row[MOVE + 1], row[MOVE + 2])
         px, py, pz = px + dx, py + dy, pz + dz
         fixed = (row[0], row[1], row[2], row[3], row[4], row[5], row[6], row[7], row[8])
         R = _times(R, fixed)
         if k < angles.shape[0]:
-            x, y, z = row[12], row[13], row[14]
+            x, y, z = row[AXIS], row[AXIS + 1], row[AXIS + 2]
             axes[k, 0], axes[k, 1], axes[k, 2] = _turned(R, x, y, z)
             origins[k, 0], origins[k, 1], origins[k, 2] = px, py, pz
             R = _times(R, _about(x, y, z, angles[k]))
@@ -214,10 +216,6 @@ def _least_squares(J: Array, e: Array, damping: float, A: Array, step: Array) ->
         for m in range(i + 1, 6):
             step[i] -= A[m, i] * step[m]
         step[i] /= A[i, i]
-
-
-BEND = (-0.4, 0.8, -0.4)  # pitch of hip, knee and ankle of a slightly bent leg [rad]
-STRETCH = 0.985  # maximum distance of hip and ankle relative to thigh and shank [1]
 
 
 @value
