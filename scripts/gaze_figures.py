@@ -37,6 +37,7 @@ Array = NDArray[np.float64]
 SCENARIO = ("navigation.profile=paper", "robot.body=kinematic")
 SEED, DURATION = 1, 24.0
 JUMP = np.radians(25.0)  # minimum change of a gaze worth an image [rad]
+DRIFT = 0.1  # maximum change of one gaze between frames, while the body turns [rad]
 
 
 @dataclass(frozen=True)
@@ -69,11 +70,11 @@ def looks(ran: RecordedRun) -> list[Look]:
     for k in range(1, len(ran.frames) - 6):
         before, frame = ran.frames[k - 1], ran.frames[k]
         moved = np.hypot(frame.gaze.pan - before.gaze.pan, frame.gaze.tilt - before.gaze.tilt)
-        settled = [f for f in ran.frames[k + 2 : k + 10] if f.gaze is frame.gaze and _there(f)]
-        if moved < JUMP or not settled or len(frame.belief.tracks) < 4:
+        after = _settled(ran.frames[k : k + 10])
+        if moved < JUMP or after is None or len(frame.belief.tracks) < 4:
             continue
         scene = gaze_scene(frame.belief, frame.motion, samples, np.zeros((0, 2)), p)
-        looks.append(Look(frame, scene, settled[0], p))
+        looks.append(Look(frame, scene, after, p))
     return sorted(
         looks, key=lambda x: -float(x.scene.psi_ob[x.scene.attended].sum()) - x.scene.map.psi
     )
@@ -87,6 +88,20 @@ def most_divided(looks: list[Look]) -> Look:
         return min(int(m.under_confident.sum()), int((m.counted & ~m.under_confident).sum()))
 
     return max(looks, key=divided)
+
+
+def _settled(frames: list[FrameRecord]) -> FrameRecord | None:
+    """Return the first frame, from the third on, in which the head has reached the first gaze.
+
+    Args:
+        frames: successive frames, in which the gaze drifts while the body turns.
+    """
+    for k in range(1, len(frames)):
+        if abs(frames[k].gaze.pan - frames[k - 1].gaze.pan) > DRIFT:
+            return None
+        if k >= 2 and _there(frames[k]):
+            return frames[k]
+    return None
 
 
 def _there(frame: FrameRecord) -> bool:

@@ -2,6 +2,7 @@
 
 import field_figure
 import figure_style
+import gaze_figures
 import numpy as np
 import pytest
 
@@ -54,3 +55,12 @@ def test_the_gaze_window_is_what_the_camera_sees_of_the_floor():
     turned = figure_style.window(0.8, -0.7, fov, height)
     angle = np.arctan2(*turned.mean(axis=0)[::-1])
     assert angle == pytest.approx(0.8, abs=1e-6)
+
+
+@pytest.mark.gl
+def test_the_tour_has_gazes_that_the_head_reaches(monkeypatch):
+    monkeypatch.setattr(gaze_figures, "DURATION", 5.0)
+    (look, *_) = gaze_figures.looks(gaze_figures.recorded())
+    view = look.after.belief.view
+    assert abs(view.pan - look.frame.gaze.pan) < 0.3
+    assert look.after.time > look.frame.time
