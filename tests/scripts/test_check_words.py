@@ -15,6 +15,15 @@ def test_docstrings_comments_and_messages_have_no_banned_words(package: str) -> 
     assert not findings, "\n".join(findings)
 
 
+@pytest.mark.parametrize("package", PACKAGES)
+def test_lines_of_arguments_and_attributes_are_noun_phrases(package: str) -> None:
+    sources = [file for file in files([ROOT / package]) if file.suffix == ".py"]
+    results = [fragments(file.read_text(encoding="utf-8")) for file in sources]
+    lines = [line for bad, _ in results for line in bad]
+
+    assert len(lines) <= 0.02 * sum(number for _, number in results), "\n".join(lines)
+
+
 @pytest.mark.parametrize("page", PAGES, ids=lambda page: str(page.relative_to(ROOT)))
 def test_pages_have_no_banned_words(page: Path) -> None:
     assert not check_file(page), "\n".join(check_file(page))
