@@ -76,12 +76,6 @@ def test_everything_is_named(file):
     assert [kind for kind in COUNTS if not all(names(model, kind))] == []
 
 
-def test_directory_is_complete():
-    for name in ("README.md", "CHANGELOG.md", "LICENSE", "scene.xml", "hsr8.png"):
-        assert (HERE / name).stat().st_size > 0
-    assert (HERE / "hsr8.png").stat().st_size < 300_000
-
-
 def test_actuators_follow_the_joints_in_order_and_range(robot):
     joints = robot.actuator_trnid[:, 0]
     assert tuple(robot.joint(i).name for i in joints) == JOINT_NAMES

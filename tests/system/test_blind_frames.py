@@ -57,12 +57,6 @@ def test_a_higher_threshold_blinds_fewer_frames():
     assert counts[0] > counts[1] > counts[2] == 0
 
 
-def test_the_ideal_camera_is_never_blind():
-    assert not any(
-        frame.measured.view.blind for _, frame in frames(Shaking(), "camera.preset=ideal")
-    )
-
-
 def test_a_panoramic_camera_is_never_blind():
     looks = frames(None, "camera.source=neck-reach", "navigation.gaze.mode=fixed")
     assert not any(frame.measured.view.blind for _, frame in looks)

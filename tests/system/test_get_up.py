@@ -7,7 +7,6 @@ import numpy as np
 import pytest
 
 from hsr8.body_builder import build_body, build_model
-from hsr8.robots.files import models_dir
 from hsr8.robots.loaded import load_robot
 from hsr8.scenario.loader import load_scenario
 from hsr8.world.field.generator import draw_layout
@@ -17,7 +16,6 @@ from walking.get_up_motions import STRAIGHT
 from walking.parameters import CONTROL_PERIOD, GetUpParameters
 from walking.state import Phase
 
-ROBOT = models_dir() / "hsr8" / "hsr8.xml"
 PUSH = 'fault=[{kind="push",start=0.8,magnitude=4.0,direction_deg=0}]'
 DROP = 0.08  # height from which the robot is laid down [m]
 

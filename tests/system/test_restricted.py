@@ -92,7 +92,6 @@ def test_a_run_uses_the_compiled_code_of_the_read_only_installation():
     ("command", "remedy"),
     [
         (f"hsr8 run quick {KINEMATIC}", "choose another with --out"),
-        (f"hsr8 run quick {KINEMATIC} --out /mnt/data", "expected TMPDIR=DIR"),
         (f"hsr8 sweep quick --seeds 1 {KINEMATIC} --out /mnt/data", "expected TMPDIR=DIR"),
         (
             f"hsr8 run quick {KINEMATIC} --quiet --out /mnt/data;hsr8 plot /mnt/data/quick/*",

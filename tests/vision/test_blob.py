@@ -3,7 +3,7 @@ import numpy as np
 from hypothesis import given
 from hypothesis import strategies as st
 
-from vision.blob import Blob, find_blobs, regions_of
+from vision.blob import Blob, find_blobs
 
 SMALLEST = (1,) * 7
 
@@ -66,14 +66,6 @@ def test_borders_are_flagged_one_by_one() -> None:
     }
 
 
-def test_small_blobs_are_left_out() -> None:
-    labels = np.zeros((10, 10), np.uint8)
-    labels[1, 1:4] = 1
-    labels[5:8, 5:8] = 1
-    assert [area(blob) for blob in find_blobs(labels, (4,))] == [9]
-    assert [area(blob) for blob in find_blobs(labels, (3,))] == [3, 9]
-
-
 @given(seed=st.integers(0, 10_000), share=st.floats(0.2, 1.0))
 def test_blobs_are_the_components_that_opencv_finds(seed: int, share: float) -> None:
     rng = np.random.default_rng(seed)
@@ -86,18 +78,3 @@ def test_blobs_are_the_components_that_opencv_finds(seed: int, share: float) -> 
         rows = ((x, y, x + w, y + h, n) for x, y, w, h, n in stats[1:].tolist() if n >= 2)
         result = ((*b.box, area(b)) for b in blobs if b.label == label)
         assert sorted(result) == sorted(rows)
-
-
-@given(seed=st.integers(0, 10_000), width=st.integers(1, 50))
-def test_runs_end_where_the_label_changes_for_every_width(seed: int, width: int) -> None:
-    rng = np.random.default_rng(seed)
-    labels = np.repeat(rng.integers(0, 3, (5, width)), rng.integers(1, 24, width), axis=1)
-    labels = labels.astype(np.uint8)
-    _, runs, _ = regions_of(labels, np.array([1, 1], np.int32))
-    painted = np.zeros_like(labels)
-    for row, start, stop, label in runs.tolist():
-        assert (painted[row, start:stop] == 0).all()
-        assert start == 0 or labels[row, start - 1] != label
-        assert stop == labels.shape[1] or labels[row, stop] != label
-        painted[row, start:stop] = label
-    assert np.array_equal(painted, labels)

@@ -145,10 +145,6 @@ def test_cylinders_interpenetrate_when_their_axes_are_too_close() -> None:
             assert interpenetrate(there, here, shared) is near
 
 
-def test_no_candidates_give_no_cylinders() -> None:
-    assert locate([], View(CAMERA, pose()), *NOISE) == []
-
-
 @pytest.mark.parametrize("unit", [0.3, 3.15])
 def test_a_scene_of_another_size_is_located_alike(unit: float) -> None:
     gaze, sigma = pose(tilt=-0.3), replace(EXACT, height_sigma=0.004)

@@ -55,13 +55,6 @@ def packed(made):
     return (*edges, azimuth, slope, POSE, OPTIONS, *guess(*edges, slope, HEIGHT, LIMITS))
 
 
-@pytest.mark.parametrize("seed", range(3))
-def test_compiled_and_plain_agree(seed):
-    arguments = packed(candidates(seed, 12))
-    for compiled, plain in zip(fit(*arguments), fit.py_func(*arguments), strict=True):
-        np.testing.assert_allclose(compiled, plain, rtol=1e-9, atol=1e-15)
-
-
 def test_estimates_are_consistent():
     made = candidates(5, 200, share=1.0)
     results, covariances = fit(*packed(made))

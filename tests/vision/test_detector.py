@@ -148,14 +148,6 @@ def test_overlapping_obstacles_of_one_color_are_separated(near: Cylinder, far: C
     assert first.box == second.box
 
 
-def test_three_obstacles_of_one_color_in_a_row_are_three() -> None:
-    scene = [at(0.8, 0.0, "red", 0.07), at(1.2, 5.0, "red", 0.07), at(1.9, 8.5, "red", 0.07)]
-    result = see(scene, pose(tilt=-0.3))
-    assert len(result) == 3
-    for detection, obstacle in zip(result, scene, strict=True):
-        assert_located(detection, obstacle)
-
-
 def test_beacons_are_named_top_over_bottom_and_located() -> None:
     for top, bottom in (("yellow", "cyan"), ("cyan", "yellow"), ("magenta", "cyan")):
         for x, y in ((1.5, 0.3), (3.0, -0.8), (4.5, 0.6)):
@@ -221,16 +213,6 @@ def test_an_infinite_uncertainty_gives_no_detection(unknown) -> None:
     assert len(DETECTOR.detect(image, view)) == 3
     parameters = VisionParameters(pose=PoseParameters(**unknown))
     assert Detector(CAMERA, parameters).detect(image, view) == ()
-
-
-def test_pixel_noise_moves_a_detection_by_no_more_than_its_uncertainty() -> None:
-    obstacle = at(1.4, -12.0, "violet")
-    image = paint([obstacle], pose(tilt=-0.2)).astype(float)
-    rng = np.random.default_rng(3)
-    for _ in range(5):
-        noisy = np.clip(np.round(image + rng.normal(0.0, 6.0, image.shape)), 0, 255)
-        (detection,) = DETECTOR.detect(noisy.astype(np.uint8), pose(tilt=-0.2))
-        assert_located(detection, obstacle)
 
 
 @pytest.mark.parametrize(

@@ -15,36 +15,6 @@ from vision.view import EXACT
 SHOULDER = BodyPart(np.array([[0.0, 0.09, 0.38]]), np.array([0.03]))
 
 
-def inside(polygon: np.ndarray, points: np.ndarray) -> np.ndarray:
-    """Whether points lie within half a pixel of a convex polygon given in order."""
-    edge = np.roll(polygon, -1, axis=0) - polygon
-    offset = points[:, None] - polygon
-    cross = edge[:, 0] * offset[..., 1] - edge[:, 1] * offset[..., 0]
-    length = np.hypot(edge[:, 0], edge[:, 1])
-    return (cross >= -0.5 * length).all(axis=1) | (cross <= 0.5 * length).all(axis=1)
-
-
-@given(
-    pan=st.floats(1.1, pi / 2),
-    tilt=st.floats(-0.9, -0.3),
-    roll=st.floats(-0.05, 0.05),
-    seed=st.integers(0, 1000),
-)
-def test_the_outline_contains_all_of_a_sphere(pan, tilt, roll, seed) -> None:
-    view = pose(pan, tilt, roll, position=(0.0, 0.03, 0.47))
-    direction = np.random.default_rng(seed).standard_normal((50, 3))
-    surface = (
-        SHOULDER.centres
-        + SHOULDER.radii[0] * direction / np.linalg.norm(direction, axis=1)[:, None]
-    )
-    points = SHOULDER.outline(CAMERA, view)
-    if not len(points):
-        return
-    outline = cv2.convexHull(points.astype(np.float32))[:, 0].astype(float)
-    local = (surface - view.position) @ view.rotation
-    assert inside(outline, CAMERA.project(local[local[:, 2] > 0.01])).all()
-
-
 def test_a_part_behind_the_camera_is_not_seen() -> None:
     assert not len(SHOULDER.outline(CAMERA, pose(-pi / 2, -0.3)))
     assert not len(SHOULDER.outline(CAMERA, pose(0.0, 0.0, position=(0.0, 0.09, 0.39))))
@@ -60,13 +30,6 @@ def test_only_background_is_hidden() -> None:
     shown = cv2.fillConvexPoly(np.zeros_like(labels), hull, 1)
     assert shown.any()
     assert ((labels[:, 1::2] == 255) == (shown[:, 1::2] == 1)).all()
-
-
-def test_the_mask_is_empty_if_the_body_is_outside_the_image() -> None:
-    labels = np.zeros((CAMERA.height, CAMERA.width), np.uint8)
-    view = pose(0.0, 0.0)
-    assert not apply_self_mask((SHOULDER,), labels, camera=CAMERA, pose=view, label=255)
-    assert not labels.any()
 
 
 @given(distance=st.floats(0.32, 0.42), bearing=st.floats(88.0, 92.0))

@@ -75,17 +75,6 @@ def test_a_blob_wider_than_any_obstacle_has_an_inflated_covariance() -> None:
     assert abs(blob.bearing + np.radians(2.7)) < 1.5 * sigma
 
 
-RNG = np.random.default_rng(0)
-
-
-def outline(n=40):
-    """Envelope of some objects side by side, with noise, and which columns may be used."""
-    marks = np.sort(RNG.choice(np.arange(1, n), RNG.integers(0, 5), replace=False))
-    levels = RNG.uniform(-0.9, -0.1, len(marks) + 1)
-    envelope = np.repeat(levels, np.diff([0, *marks, n])) + RNG.normal(0.0, 0.004, n)
-    return envelope, RNG.random(n) < RNG.choice([0.6, 0.95, 1.0])
-
-
 def test_a_piece_has_the_ends_and_the_distance_of_its_object():
     """Two objects: the nearer one, on the left, occludes an end of the farther one."""
     envelope, usable = np.repeat([-0.3, -0.6], [6, 8]), np.ones(14, bool)
@@ -102,4 +91,3 @@ def test_an_envelope_is_cut_at_its_steps_and_nowhere_else():
     envelope = np.repeat([-0.5, -0.3, -0.6], [5, 1, 6])
     assert borders(envelope, 0.1).tolist() == [0, 6, 12]  # one column is too narrow
     assert borders(envelope, 1.0).tolist() == [0, 12]
-    assert np.array_equal(borders(envelope, 0.1), borders.py_func(envelope, 0.1))

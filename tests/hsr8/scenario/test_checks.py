@@ -122,10 +122,3 @@ def test_a_body_without_dynamics_cannot_be_pushed():
     assert load_scenario("walk", [push]).disturbance.random.impulse == (0.2, 0.8)
     with pytest.raises(ScenarioError, match=r"requires robot\.body"):
         load_scenario("walk", [push, "robot.body=kinematic"])
-
-
-def test_a_velocity_and_a_footstep_at_once_are_refused():
-    with pytest.raises(ScenarioError, match="not both"):
-        load_scenario("walk", ["command.vx=0.1", "command.footstep={forward=0.05}"])
-    with pytest.raises(ScenarioError, match="not both"):
-        load_scenario("walk", ["command.stretch=[{duration=1, vx=0.1, footstep={forward=0.05}}]"])

@@ -57,23 +57,18 @@ def test_positions_in_the_world_are_scaled_and_moved(load):
 
 def test_the_seed_draws_the_start_of_the_recording(load):
     scenario = load(keys="latest_start = 5.0\nend = 'repeat'")
-    drawn = [draw_layout(scenario, seed).movers[0].motion.begin for seed in range(20)]
-    assert len(set(drawn)) == 20
+    drawn = [draw_layout(scenario, seed).movers[0].motion.begin for seed in range(10)]
+    assert len(set(drawn)) == 10
     assert 0.0 <= min(drawn) < 1.5
     assert 3.5 < max(drawn) <= 5.0
     assert draw_layout(scenario, 3).movers == draw_layout(loads(dump(scenario)), 3).movers
-
-
-def test_a_fixed_recording_is_equal_for_all_seeds(load):
-    scenario = load()
-    assert draw_layout(scenario, 0).movers == draw_layout(scenario, 1).movers
 
 
 def test_a_drawn_start_keeps_clear_of_the_robot(load):
     scenario = load(
         keys="latest_start = 10.0\nend = 'repeat'", more=["robot.start.position=[0.0, 0.0]"]
     )
-    for seed in range(10):
+    for seed in range(5):
         for mover in draw_layout(scenario, seed).movers:
             assert np.hypot(*mover.position) >= mover.radius + 0.9
 

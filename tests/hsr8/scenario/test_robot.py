@@ -42,11 +42,6 @@ def test_the_home_folder_is_expanded(folders, monkeypatch):
     assert table["robot"]["model"] == str(folders / "elsewhere" / "elsewhere.toml")
 
 
-@pytest.mark.parametrize("table", [{}, {"robot": 3}, {"robot": {}}, {"robot": {"model": 3}}])
-def test_other_tables_are_unchanged(table, folders):
-    assert located(table, folders) == table
-
-
 def test_a_scenario_has_the_absolute_path_of_its_robot(tmp_path, monkeypatch):
     text = 'model = "hsr8/hsr8.xml"\nfeet = ["l_foot_link", "r_foot_link"]\n'
     (tmp_path / "mine.toml").write_text(text)

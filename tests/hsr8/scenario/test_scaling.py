@@ -189,26 +189,6 @@ def test_a_wrong_robot_is_reported_with_its_place(defaults, tmp_path):
         load_scenario("course", ["robot.model=7"])
 
 
-@pytest.mark.parametrize(
-    ("words", "expected"),
-    [
-        (["constants=3"], "constants: must be a table"),
-        (["world=3"], "world: wrong value, got 3; expected a table"),
-        (["world.size=4"], "world.size: wrong value, got 4; expected a list"),
-        (["mission.kind=tours"], "did you mean 'tour'"),
-        (["camera.preset=[1]"], "camera.preset: wrong value"),
-        (["world.mover=[{motion=3}]"], "world.mover[0].motion: wrong value, got 3; expected"),
-        (["navigation=[]"], "navigation: wrong value, got []; expected a table"),
-        (["world.n_statics=1"], "did you mean 'n_static'"),
-    ],
-)
-def test_mistakes_are_reported_for_every_robot(defaults, words, expected):
-    for robot in ([], BIG):
-        with pytest.raises(ScenarioError) as error:
-            load_scenario("course", [*robot, *words])
-        assert expected in str(error.value)
-
-
 def test_nested_defaults_are_those_of_their_section():
     """A section in another one has its own defaults, so that missing tables can be completed."""
 

@@ -7,11 +7,9 @@ from typing import get_args
 import numpy as np
 import pytest
 
-from navigation.baselines.baseline_planner import BaselinePlanner
 from navigation.baselines.choice import build_planner
 from navigation.mission import Mission
 from navigation.motion.landmark_obstacles import LandmarkObstacles
-from navigation.motion.planner import Planner
 from navigation.parameters.motion import LandmarkParameters
 from navigation.parameters.navigation import MissionParameters, NavigationParameters
 from navigation.parameters.planner import Method, PlannerParameters
@@ -78,11 +76,6 @@ def scene(rng):
     places = places[np.hypot(places[:, 0], places[:, 1]) > 0.35]
     speeds = np.where(np.arange(len(places))[:, None] % 2, rng.normal(0, 0.08, places.shape), 0.0)
     return places, speeds
-
-
-def test_every_method_is_built(limits):
-    assert isinstance(planner("univector", limits), Planner)
-    assert all(isinstance(planner(m, limits), BaselinePlanner) for m in BASELINES)
 
 
 @EACH
@@ -204,15 +197,6 @@ def test_published_radii_contain_robot_obstacle_margin_and_uncertainty(
     radii = dict(planner(method, limits).plan(belief(tracks), task()).extended_radii)
     assert radii[1] == pytest.approx(0.12 + 0.08 + margin)
     assert radii[2] == pytest.approx(0.12 + 0.08 + margin + parameters.max_sigma)
-
-
-@EACH
-def test_at_the_goal_it_turns_in_place(method, walker, task):
-    walk = walker(method)
-    for _ in range(25):
-        walk.step(task((0.0, 0.0), 0.6, is_goal=True, aligning=True))
-    assert walk.pose[2] == pytest.approx(0.6, abs=0.1)
-    assert walk.distance((0.0, 0.0)) < 0.05
 
 
 def test_samples_come_from_the_generator_alone(belief, task, track, limits):

@@ -29,12 +29,6 @@ def random_planes(rng, low):
     return [plane_at(rng.uniform(-pi, pi), rng.uniform(low, 0.15)) for _ in range(n)]
 
 
-def test_depth_is_the_signed_distance():
-    p = plane_at(0.0, 0.1)
-    assert p.depth((0.15, 0.3)) == pytest.approx(0.05)
-    assert p.depth((0.0, -0.2)) == pytest.approx(-0.1)
-
-
 def test_the_program_finds_the_nearest_allowed_velocity():
     rng, grid = np.random.default_rng(0), lattice()
     for _ in range(60):

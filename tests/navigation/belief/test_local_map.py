@@ -63,42 +63,6 @@ def test_outside_the_map_is_confident_and_unknown(view):
     assert not grid.free_at(far).any()
 
 
-def test_a_mirrored_scene_gives_a_mirrored_map(view):
-    rng = np.random.default_rng(0)
-    discs = rng.uniform(-2, 2, (5, 2))
-    radii = np.full(5, 0.1)
-    grid, mirrored = LocalMap(P, (0.05, 0.0), 0.0), LocalMap(P, (0.05, 0.0), 0.0)
-    look(grid, 1.0, view(pan=0.37), obstacles=(discs, radii))
-    look(mirrored, 1.0, view(pan=-0.37), obstacles=(discs * [1, -1], radii))
-    assert grid.confidence.any()
-    assert np.array_equal(grid.confidence, mirrored.confidence[::-1])
-    assert np.array_equal(occupancy(grid), occupancy(mirrored)[::-1])
-
-
-def test_only_the_footprint_of_the_camera_is_seen(view):
-    camera = view(pan=0.8, tilt=-0.4)
-    grid = LocalMap(P, (0.0, 0.0), 0.0)
-    look(grid, 1.0, camera)
-    n = len(grid.age)
-    centres = grid.origin + (np.stack(np.meshgrid(np.arange(n), np.arange(n)), -1) + 0.5) * P.cell
-    viewpoint = Viewpoint.of(camera, np.zeros(3), P.range)
-    observed = viewpoint.in_clear_view(centres.reshape(-1, 2), *NONE)
-    assert np.array_equal(grid.confidence.ravel() == 1.0, observed)
-    assert np.array_equal(grid.confidence_at(centres.reshape(-1, 2)), grid.confidence.ravel())
-
-
-def test_an_obstacle_occludes_the_floor_and_is_occupied(view):
-    grid = LocalMap(P, (0.0, 0.0), 0.0)
-    obstacle = (np.array([[1.0, 0.0]]), np.array([0.1]))
-    for k in range(5):
-        look(grid, 0.1 * k, view(pan=0.0), obstacles=obstacle)
-    front, on, behind, beside = np.array([[0.7, 0.0], [1.0, 0.0], [1.6, 0.0], [1.6, 0.7]])
-    assert grid.confidence_at([front, behind, beside]).tolist() == [1.0, 0.0, 1.0]
-    assert occupancy_at(grid, [front])[0] < 0.2
-    assert occupancy_at(grid, [on])[0] > 0.8
-    assert occupancy_at(grid, [behind])[0] == 0.5
-
-
 def test_scrolling_keeps_cells_at_their_position_in_the_world(view):
     rolled = LocalMap(P, (0.0, 0.0), 0.0)
     look(rolled, 0.0, view(pan=0.3))
@@ -142,18 +106,6 @@ def test_a_scrolled_map_equals_a_fixed_one(view):
     assert np.array_equal(occupancy_at(rolling, points), occupancy_at(fixed, points))
     assert rolling.origin != LocalMap(LocalMapParameters(), (0.0, 0.0), 0.0).origin
     assert np.isfinite(rolling.age).mean() > 0.1
-
-
-@pytest.mark.parametrize("rate", [10, 30])
-def test_occupancy_does_not_depend_on_the_frame_rate(view, rate):
-    viewpoint = Viewpoint.of(view(), np.zeros(3), 2.5)
-    position = np.array([[1.0, 0.0]])
-    grid = LocalMap(LocalMapParameters(), (0.0, 0.0), 0.0)
-    for k in range(1, rate // 10 + 1):
-        grid.update(k / rate, viewpoint, (0.0, 0.0), position, np.array([0.08]))
-    odds = 15.0 * 0.1
-    assert occupancy_at(grid, position) == pytest.approx(1 / (1 + np.exp(-odds)))
-    assert occupancy_at(grid, [[1.5, 0.5]]) == pytest.approx(1 / (1 + np.exp(6.0 * 0.1)))
 
 
 def test_free_is_where_the_cell_and_its_four_neighbours_were_seen_empty(view):

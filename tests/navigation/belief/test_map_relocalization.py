@@ -60,17 +60,6 @@ def test_an_ambiguous_constellation_is_rejected(observe, frame):
     )
 
 
-def test_moved_world_moved_pose(observe, frame):
-    angle = -2.3
-    c, s = cos(angle), sin(angle)
-    moved = PLACES @ np.array([[c, s], [-s, c]]) + (0.7, -2.0)
-    plain = recognise(observe, frame, (0.3, 0.1, 0.4), range(5))
-    there = recognise(observe, frame, (0.3, 0.1, 0.4), range(5), positions=moved)
-    x, y = plain[:2].tolist()
-    assert np.allclose(there[:2], [c * x - s * y + 0.7, s * x + c * y - 2.0])
-    assert wrap(float(there[2] - plain[2] - angle)) == pytest.approx(0.0, abs=1e-9)
-
-
 def test_old_detections_are_dropped(observe, frame):
     relocalization = MapRelocalization(RelocalizationParameters(), 6.0)
     for k, i in enumerate((0, 1, 3)):

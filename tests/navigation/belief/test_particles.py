@@ -10,7 +10,6 @@ from navigation.record import record
 STATE = np.array([1.0, 2.0, 0.1, -0.05, 0.2])
 COVARIANCE = np.diag([1e-4, 4e-4, 1e-4, 1e-4, 1e-4])
 P = TrackingParameters()
-EACH = TrackingParameters(candidates_per_particle=1)  # one place for each particle
 
 
 def modes(still=0.0):
@@ -55,24 +54,6 @@ def test_particles_are_static_in_proportion_to_the_probability(rng):
     standing = np.hypot(*cloud[VX:TURN_RATE]) < 1e-4
     assert standing.sum() == 8
     assert np.hypot(*(cloud[:VX, standing] - 5.0)).max() < 0.1
-
-
-def test_reversals_come_at_their_rate(rng):
-    cloud = particles.spawn(*modes(), 20000, rng)
-    cloud[TURN_RATE] = 0.0
-    for _ in range(100):
-        advance(cloud, 0.05, straight(1.0 / 15.0), rng)
-    # Expected sign after time t of a process that flips at a rate: exp(-2 rate t).
-    assert np.mean(np.sign(cloud[VX])) == pytest.approx(np.exp(-2 * 5 / 15), abs=0.02)
-
-
-def test_turn_rates_drift_about_zero_with_the_spread_of_movers(rng):
-    p = TrackingParameters(turn_rate_sigma=0.3, turn_rate_time=1.0)
-    cloud = particles.spawn(*modes(), 20000, rng)
-    for _ in range(50):
-        advance(cloud, 0.1, p, rng)
-    assert np.mean(cloud[TURN_RATE]) == pytest.approx(0.0, abs=0.01)
-    assert np.std(cloud[TURN_RATE]) == pytest.approx(0.3, rel=0.02)
 
 
 def test_refutation_is_bayes_rule():
@@ -127,16 +108,6 @@ def test_half_of_the_scattered_particles_fill_the_reach_and_half_the_line(rng):
     assert np.std(offsets[line, 0]) == pytest.approx(P.position_jitter, rel=0.1)
     assert np.std(offsets[line, 1]) == pytest.approx(0.5 / np.sqrt(3), rel=0.1)
     assert np.mean(np.hypot(*offsets[~line].T) < 0.25) == pytest.approx(0.25, abs=0.03)
-
-
-def test_the_density_has_no_holes_between_few_particles(rng):
-    cloud = particles.redistribute(np.zeros(2), 1.0, np.array([0.1, 0.0]), EACH, rng)
-    z = rng.uniform(-0.5, 0.5, (50, 2))
-    R = np.tile(1e-4 * np.eye(2), (50, 1, 1))
-    certain = record(TrackingParameters(uniform_probability=0.0))[0]
-    costs = particles.costs(cloud, z, R, np.zeros(2), 1.0, certain)
-    density = np.exp(-0.5 * costs) / (2 * np.pi)
-    assert density.min() > 0.02
 
 
 @pytest.fixture

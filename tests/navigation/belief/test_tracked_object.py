@@ -143,11 +143,3 @@ def test_a_cloud_is_published_by_its_moments():
     assert track.turn_rate == pytest.approx(-0.2)
     assert track.covariance[0, 0] == pytest.approx(0.1875)
     assert np.array_equal(track.particles.positions, cloud[:2].T)
-
-
-def test_a_published_track_does_not_change_later():
-    cloud, objects = np.full((6, 2), 0.5), make(motion=Motion.MOVING, lost=True)
-    track = track_of(objects, 5.0, cloud)
-    objects["last_seen"], cloud[:] = 0.0, 0.0
-    assert track.particles.positions.tolist() == [[0.5, 0.5], [0.5, 0.5]]
-    assert track.last_seen.tolist() == [1.0, 2.0]

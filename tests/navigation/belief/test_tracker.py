@@ -160,12 +160,6 @@ def test_a_mover_survives_passing_behind_another_obstacle(stage):
     assert any(t.motion is Motion.MOVING for t in stage.tracks)
 
 
-def test_colors_are_never_mixed(stage):
-    for _ in range(50):
-        stage.show((1.2, 0.0, "red"), (1.2, 0.05, "blue"))
-    assert sorted(t.label for t in stage.tracks) == ["blue", "red"]
-
-
 def test_a_lost_mover_becomes_particles_that_go_on_or_turn_back(stage):
     stage.watch(3.0, (1.0, -0.4, 0.0, 0.12))
     stage.look_away(5.0)
@@ -304,12 +298,6 @@ def test_a_seed_determines_everything_even_after_a_copy(view, observe):
         if a.particles is not None:
             assert np.array_equal(a.particles.positions, b.particles.positions)
             assert np.array_equal(a.particles.weights, b.particles.weights)
-
-
-def test_cleared_means_forgotten(stage):
-    stage.watch(1.0, (1.0, 0.0, 0.0, 0.0))
-    stage.tracker.clear()
-    assert not stage.show()
 
 
 @pytest.mark.parametrize("seed", range(6))

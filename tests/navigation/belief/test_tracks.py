@@ -70,12 +70,6 @@ def test_tracks_move_at_constant_velocity(track):
     assert after[2].position == pytest.approx(before[2].position)
 
 
-def test_no_tracks_make_an_empty_set():
-    o = Tracks.of([])
-    assert len(o) == 0
-    assert o.position.shape == (0, 2)
-
-
 def test_selection_keeps_rows_together(track):
     tracks = [track((i, 2 * i), (0.1 * i, 0.0), id=i) for i in range(4)]
     part = Tracks.of(tracks).where(np.array([False, True, False, True]))

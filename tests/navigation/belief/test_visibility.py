@@ -1,5 +1,5 @@
 from dataclasses import replace
-from math import atan2, cos, pi, sin, tan
+from math import pi, tan
 
 import numpy as np
 import pytest
@@ -12,49 +12,8 @@ RANGE = 2.5
 NOTHING = np.empty((0, 2)), np.empty(0)
 
 
-@pytest.fixture
-def ahead(view):
-    return Viewpoint.of(view(pan=0.0, tilt=-0.5), np.zeros(3), 2.5)
-
-
-@pytest.fixture
-def around(view):
-    """Omnidirectional: points that are not in clear view are occluded."""
-    return Viewpoint.of(view(hfov=2.0 * pi, vfov=pi), np.zeros(3), 9.0)
-
-
 def contains(viewpoint, points):
     return viewpoint.in_clear_view(points, *NOTHING)
-
-
-def hidden(viewpoint, points, centres, radii):
-    return ~viewpoint.in_clear_view(points, centres, radii)
-
-
-def test_a_disc_occludes_points_behind_it_only(around):
-    centre, radius = np.array([[1.0, 0.0]]), np.array([0.1])
-    angles = np.linspace(-0.3, 0.3, 61)
-    behind = 2.0 * np.column_stack([np.cos(angles), np.sin(angles)])
-    half = atan2(radius[0], np.sqrt(1.0 - radius[0] ** 2))
-    assert np.array_equal(hidden(around, behind, centre, radius), np.abs(angles) < half)
-    assert not hidden(around, 0.4 * behind, centre, radius).any()
-    assert not hidden(around, centre, centre, radius).any()
-    assert not hidden(around, -behind, centre, radius).any()
-
-
-def test_visibility_moves_with_the_robot(view):
-    rng = np.random.default_rng(2)
-    points, discs, radii = rng.uniform(-2, 2, (300, 2)), rng.uniform(-2, 2, (4, 2)), np.full(4, 0.1)
-
-    def expected(x, y, turn):
-        c, s = cos(turn), sin(turn)
-        R = np.array([[c, -s], [s, c]])
-        viewpoint = Viewpoint.of(view(pan=0.4), np.array([x, y, turn]), 2.5, 0.05)
-        return viewpoint.in_clear_view(points @ R.T + (x, y), discs @ R.T + (x, y), radii, 0.05)
-
-    plain = expected(0.0, 0.0, 0.0)
-    assert plain.any()
-    assert np.array_equal(expected(1.0, -2.0, pi / 3), plain)
 
 
 def test_an_omnidirectional_camera_contains_everything_in_range(view):

@@ -47,36 +47,6 @@ def test_the_map_is_the_sum_of_regions_in_any_order():
     assert 0.0 <= gm.min() <= gm.max() <= 1.0
 
 
-def test_one_candidate_is_looked_at():
-    g = grid(0.4, 0.3)
-    rng = np.random.default_rng(1)
-    for pan, tilt in zip(rng.uniform(-1.0, 1.0, 50), rng.uniform(-0.7, 0.0, 50), strict=True):
-        p, t = g.highest_centre(g.gaze_map(Votes.one(pan, tilt, 1.0)), 0.0, 0.0)
-        assert abs(p - pan) <= STEP
-        assert abs(t - tilt) <= STEP
-
-
-def test_of_equal_plateaus_the_nearer_wins_and_stays():
-    g = grid(0.3, 0.3)
-    votes = Votes(np.array([-1.0, 1.0]), np.array([-0.4, -0.4]), np.ones(2))
-    gm = g.gaze_map(votes)
-    pan, tilt = g.highest_centre(gm, -0.2, -0.4)
-    assert pan < 0.0
-    for _ in range(100):
-        assert g.highest_centre(gm, pan, tilt) == (pan, tilt)
-    assert g.highest_centre(gm, 0.2, -0.4)[0] > 0.0
-
-
-def test_scaling_all_weights_changes_nothing():
-    rng = np.random.default_rng(2)
-    g = grid()
-    for _ in range(20):
-        votes = random_votes(rng, 12)
-        scaled = Votes(votes.pan, votes.tilt, 7.0 * votes.value)
-        one = g.highest_centre(g.gaze_map(votes), 0.1, -0.3)
-        assert one == g.highest_centre(g.gaze_map(scaled), 0.1, -0.3)
-
-
 def test_a_map_of_zeros_keeps_the_gaze():
     g = grid()
     assert g.highest_centre(np.zeros((17, 37)), 0.33, -0.2) == (0.33, -0.2)

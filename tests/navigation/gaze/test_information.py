@@ -65,8 +65,3 @@ def test_the_gain_of_unseen_ground_is_the_entropy_of_presence(belief):
     q = P.gaze.information.presence
     entropy = -q * np.log(q) - (1 - q) * np.log(1 - q)
     assert ground_information(scene(never), P).value == pytest.approx(entropy)
-
-
-def test_no_tracks_no_gain(belief):
-    empty = belief()
-    assert len(track_information(scene(empty), P).value) == 0

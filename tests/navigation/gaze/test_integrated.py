@@ -16,22 +16,6 @@ def votes(b, t, p=PAPER, beacons=NO_BEACONS):
     return integrated_votes(gaze_scene(b, None, SAMPLES, beacons, p), t, p)
 
 
-def test_the_printed_map_stays_within_0_and_1(belief, task, track, limits):
-    rng = np.random.default_rng(0)
-    gaze = GazePlanner(PAPER, limits, {"a/b": (2.5, 0.5)}, (1.5, 1.22), (3.0, 40.0))
-    for _ in range(10):
-        tracks = [
-            track(c, v, sigma=0.2, id=i)
-            for i, (c, v) in enumerate(
-                zip(rng.uniform(-2, 2, (9, 2)), rng.normal(0, 0.1, (9, 2)), strict=True)
-            )
-        ]
-        b = belief(tracks, sigma=0.2, confidence=lambda x, y: 0.0)
-        gm = gaze.grid.gaze_map(votes(b, task()))
-        assert gm.min() >= 0.0
-        assert gm.max() <= 1.0 + 1e-12
-
-
 def test_without_obstacles_waypoint_and_map_vote(belief, task):
     v = votes(belief(sigma=0.0), task((2.0, 2.0)))
     assert v.pan == pytest.approx([np.pi / 4])

@@ -125,10 +125,6 @@ def timing(**parameters):
     return GazeTiming(GazeParameters(**values, **parameters))
 
 
-def test_the_first_decision_is_immediate():
-    assert timing().ready(0.0, 1.0)
-
-
 def test_a_decision_waits_for_arrival_and_dwell():
     gaze = timing()
     gaze.decided(0.0, LEFT)
@@ -152,10 +148,3 @@ def test_a_head_that_never_arrives_does_not_block():
     gaze.decided(0.0, LEFT)
     assert not gaze.ready(0.5, 0.8)
     assert gaze.ready(0.6, 0.8)
-
-
-def test_a_body_has_more_time_to_arrive():
-    gaze = timing(moved_by="body")
-    gaze.decided(0.0, LEFT)
-    assert not gaze.ready(1.4, 0.8)
-    assert gaze.ready(1.5, 0.8)

@@ -4,7 +4,7 @@ from typing import get_args
 import numpy as np
 import pytest
 
-from navigation.gaze.choice import BLIND, VotingGaze, gaze_policy, single_weight
+from navigation.gaze.choice import BLIND, VotingGaze
 from navigation.gaze.gaze_map import GazeGrid, Votes
 from navigation.gaze.planner import GazePlanner
 from navigation.parameters.gaze import GazeMode, GazeParameters
@@ -13,7 +13,6 @@ from navigation.parameters.navigation import NavigationParameters
 BEACONS = {"cyan/yellow": (2.9, 0.5), "yellow/cyan": (-2.9, 0.0), "magenta/cyan": (0.5, 2.9)}
 P = NavigationParameters.extended()
 MODES = get_args(GazeMode)
-PSI = [mode for mode in MODES if mode.startswith("psi-")]
 DELIBERATE = [mode for mode in MODES if mode not in BLIND]
 FOV, NECK = (1.5, 1.22), (3.0, 40.0)
 
@@ -92,29 +91,9 @@ def test_a_single_evaluation_votes_alone(choose, belief, track):
     assert choose("psi-sf", belief(sigma=0.3)).gaze_map.max() == pytest.approx(1.0)
 
 
-@pytest.mark.parametrize("mode", PSI)
-def test_the_weight_of_a_single_evaluation_is_one(mode):
-    g = single_weight(replace(P.gaze, mode=mode))
-    weights = [g.w_lm, g.w_sf, g.w_ob, g.w_way]
-    assert sorted(weights) == [0.0, 0.0, 0.0, 1.0]
-    assert getattr(g, f"w_{mode.removeprefix('psi-')}") == 1.0
-
-
-def test_voting_gazes_and_the_fixed_one_wait_for_the_head(limits):
-    for mode in MODES:
-        p = replace(P, gaze=replace(P.gaze, mode=mode))
-        policy = gaze_policy(p, limits, planner(limits, mode).grid, np.zeros((0, 2)), NECK)
-        assert policy.steady == (mode not in ("risk", "sweep", "triangle", "steps"))
-
-
 @pytest.mark.parametrize("mode", MODES)
 def test_deliberate_gazes_and_stops_keep_their_direction_while_the_body_turns(
     mode, choose, belief, track
 ):
     decision = choose(mode, belief([track((0.5, 0.5), age=1.0)]))
     assert decision.stabilized == (mode not in ("fixed", "sweep", "triangle"))
-
-
-def test_the_fixed_gaze_ignores_the_belief(choose, belief, track):
-    urgent = belief([track((0.3, 0.6), (-0.1, 0), age=1.0)], lost=True)
-    assert choose("fixed", urgent).pan == 0.0

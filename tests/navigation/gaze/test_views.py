@@ -3,7 +3,6 @@ from math import tan
 import numpy as np
 import pytest
 
-from navigation.belief.visibility import occluded
 from navigation.gaze.views import LOOK, move_time, view_values
 
 RATE, ACCELERATION = 3.0, 40.0
@@ -94,14 +93,6 @@ def test_the_urgency_grows_during_the_saccade_up_to_its_limit():
     assert growing == pytest.approx((0.5 + 2.0 * time) ** 1.5 / (LOOK_TIME + time))
     for base in (4.0, 9.0):
         assert values(look(1.0, 0.0, base=base, rate=2.0))[0, 0] == pytest.approx(8.0 / LOOK_TIME)
-
-
-def test_a_disc_hides_the_floor_behind_it_but_not_itself():
-    disc = np.array([[0.8, 0.0, 0.8 * 0.8, 0.08 * 0.08]])
-    assert occluded(1.5, 0.0, disc, 0.14)
-    assert not occluded(1.5, 0.4, disc, 0.14)
-    assert not occluded(0.5, 0.0, disc, 0.14)
-    assert not occluded(0.82, 0.0, disc, 0.14)
 
 
 @pytest.mark.parametrize("rate", [-0.8, 0.8])

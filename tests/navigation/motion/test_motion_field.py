@@ -4,10 +4,8 @@ import numpy as np
 import pytest
 
 from navigation.belief.tracks import Tracks
-from navigation.motion.avoid_obstacle import avoid_obstacle
 from navigation.motion.motion_field import FieldScene, MotionField
-from navigation.motion.move_to_goal import move_to_goal, muf
-from navigation.motion.univector import extended_radius, normalized, weighted_sum
+from navigation.motion.univector import extended_radius, normalized
 from navigation.motion.virtual_obstacle import oval
 from navigation.parameters.navigation import NavigationParameters
 
@@ -111,17 +109,6 @@ def test_both_forms_leave_a_mover_s_path_on_the_remembered_side_of_the_arrival(t
         assert np.sin(printed.outward) * direction[1] > 0.5 * abs(direction[1]) > 0.1
 
 
-def test_many_points_agree_with_single_points(track):
-    rng = np.random.default_rng(1)
-    for p in (EXTENDED, PAPER):
-        field = MotionField(p.univector, p.moving_obstacles)
-        s = scene([track(c, id=i) for i, c in enumerate(rng.uniform(-1, 1, (6, 2)))], p)
-        points = rng.uniform(-2, 2, (30, 2))
-        all_ = field.at(points, 0.2, s, ())
-        single = np.array([field.at(x, 0.2, s, ()) for x in points])
-        assert all_ == pytest.approx(single)
-
-
 def test_mirror_symmetry(track):
     rng = np.random.default_rng(2)
     centres, points = rng.uniform(-1, 1, (6, 2)), rng.uniform(-2, 2, (100, 2))
@@ -137,21 +124,6 @@ def test_without_obstacles_the_field_leads_to_the_goal():
     field = MotionField(EXTENDED.univector, EXTENDED.moving_obstacles)
     s = scene([], target=(0.0, 3.0))
     assert field.at(np.zeros(2), 0.0, s, ()) == pytest.approx([0.0, 1.0])
-
-
-def test_against_the_printed_sign_every_start_enters_the_disc(track):
-    p = PAPER.univector
-    s = scene([track((0, 0), radius=0.15)], PAPER)
-    point = np.array([(-1.5, y) for y in np.linspace(-0.7, 0.7, 15)])
-    least = np.full(15, np.inf)
-    for _ in range(200):
-        u_muf = muf(point, s.target, move_to_goal(point, 0.0, s.target, 0.0, p))
-        u = avoid_obstacle(point, s.target, s.obstacles.position, s.s_oe, p)
-        outward = normalized(point[:, None] - s.obstacles.position)
-        other = 2.0 * (u * outward).sum(axis=-1, keepdims=True) * outward - u
-        point = point + 0.01 * normalized(weighted_sum(u_muf, other, p.w_muf, p.w_auf))
-        least = np.minimum(least, np.hypot(*point.T))
-    assert np.all(least < s.s_oe[0])
 
 
 @pytest.mark.parametrize("lateral", [0.0, 0.004, 0.02, -0.02, 0.1, -0.1])

@@ -202,14 +202,6 @@ def test_evaluation_of_the_field_changes_no_decision(p, belief, task, track, lim
         assert before.shape == points.shape
 
 
-@BOTH
-def test_the_published_velocity_is_read_only(p, belief, task, limits):
-    planner = Planner(p, limits)
-    for t in (task(), task(done=True)):
-        with pytest.raises(ValueError, match="read-only"):
-            planner.plan(belief(), t).velocity[:] = 9.0
-
-
 def test_a_robot_that_stands_has_no_field(belief, task, limits):
     assert Planner(EXTENDED, limits).plan(belief(), task(done=True)).field is None
 

@@ -134,11 +134,6 @@ def knees(faults, ticks=12):
     return [int(t.position[KNEE]) for t in applied], [int(t.position[KNEE + 6]) for t in applied]
 
 
-def test_without_a_fault_the_targets_pass_as_they_are():
-    targets = commanded(1)
-    assert ServoFaults([], JOINT_NAMES).apply_fault(targets, 1) is targets
-
-
 def test_a_stuck_servo_keeps_its_last_setpoint():
     stuck = ServoStuck(kind="servo-stuck", joint="l_knee", start=0.02, duration=0.02)
     left, right = knees([stuck])

@@ -59,16 +59,6 @@ def test_a_mover_is_solid_and_its_contact_is_reported(world, silent):
     assert body.truth().robot[0] < -0.02  # it was pushed back
 
 
-def test_truth_is_a_snapshot(world, silent):
-    body = body_in(world, silent)
-    before = body.truth()
-    qpos = before.qpos.copy()
-    targets = hold(body)
-    for _ in range(40):
-        body.apply(targets)
-    assert np.array_equal(before.qpos, qpos)
-
-
 def test_divergence_names_tick_and_body_and_command(world, silent):
     body = body_in(world, silent)
     targets = hold(body)

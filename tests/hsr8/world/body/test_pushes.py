@@ -21,12 +21,6 @@ def rng():
     return np.random.default_rng(3)
 
 
-def test_every_body_that_may_be_pushed_is_in_the_model(model):
-    robot = load_robot("hsr8")
-    for name in (robot.body_name("trunk"), *robot.body_names()):
-        assert model.body(name).mass[0] > 0.0
-
-
 @pytest.mark.parametrize("duration", [0.005, 0.05, 0.123])
 def test_the_impulse_is_kept_whatever_the_ticks_make_of_the_duration(duration):
     asked = [Push(kind="push", start=1.0, duration=duration, magnitude=0.7)]

@@ -43,14 +43,6 @@ def test_without_noise_the_reading_is_the_truth(reader):
     assert np.array_equal(sensed.foot_force, np.full((2, 4), 6.7))
 
 
-def test_the_same_seed_reads_the_same(reader):
-    first, second = (reader(SensorNoise(), seed=3) for _ in "ab")
-    for _ in range(5):
-        a, b = first(), second()
-    assert np.array_equal(a.joint_position, b.joint_position)
-    assert np.array_equal(a.orientation, b.orientation)
-
-
 @pytest.mark.parametrize(
     ("name", "field", "sigma"),
     [

@@ -94,14 +94,6 @@ def test_covariance_is_honest(see, hidden):
     assert 0.9 < np.std(off) < 1.1
 
 
-def test_what_is_seen_in_part_is_located_worse(see):
-    near, far = Obstacle((0.8, 0.0), 0.1, 0.3, "green"), Obstacle((1.4, 0.18), 0.1, 0.3, "red")
-    (whole,) = obstacles_in(see(far, frames=1))
-    (part,) = (d for d in obstacles_in(see(near, far, frames=1)) if d.label == "red")
-    assert (np.diag(part.covariance) > 2.0 * np.diag(whole.covariance)).all()
-    assert part.radius_sigma > 2.0 * whole.radius_sigma
-
-
 def test_what_is_behind_another_or_behind_the_robot_is_not_seen(see):
     frames = see(
         Obstacle((0.8, 0.0), 0.12, 0.3, "red"),
@@ -184,15 +176,6 @@ positions = st.tuples(st.floats(-3.0, 3.0), st.floats(-3.0, 3.0)).filter(
 def eye(view, omnidirectional=False):
     size = (CAMERA.width, CAMERA.height, CAMERA.focal, omnidirectional)
     return np.array([*view.position, *view.rotation.ravel(), *size])
-
-
-def cylinders(seed, n):
-    """Random positions from near to far, sizes and kinds."""
-    rng = np.random.default_rng(seed)
-    there = rng.uniform(-3.0, 3.0, (n, 2))
-    there = there[np.argsort(np.hypot(there[:, 0], there[:, 1]))]
-    sizes = np.column_stack([rng.uniform(0.05, 0.3, n), rng.uniform(0.3, 0.6, n)])
-    return there, sizes, rng.random(n) < 0.3
 
 
 @given(position=positions, pan=st.floats(-1.5, 1.5), tilt=st.floats(-0.6, 0.2))

@@ -8,7 +8,7 @@ import pytest
 from hsr8.errors import ScenarioError
 from hsr8.scenario.loader import load_scenario
 from hsr8.scenario.robot import Robot, SpeedEnvelope
-from hsr8.world.field.certificate import VIA_REACHED, certify, min_clearance, straight_length
+from hsr8.world.field.certificate import VIA_REACHED, certify, min_clearance
 from hsr8.world.field.generator import draw_layout, draw_world
 from hsr8.world.field.lattice import Lattice
 from hsr8.world.field.layout import Layout, Obstacle
@@ -44,10 +44,11 @@ def assert_walks_through(world, path, robot):
     along = np.cos(path[1:, 3]) * steps[:, 1] + np.sin(path[1:, 3]) * steps[:, 2]
     assert along[going] == pytest.approx(pace[going] * steps[going, 0])
     assert (steps[going, 3] == 0.0).all()
-    for o in world.obstacles:
-        where = o.motion.position if o.motion else lambda _, o=o: o.position
-        at = np.array([where(time) for time in times.tolist()])
-        assert np.hypot(*(poses[:, :2] - at).T).min() > o.radius + robot.radius
+    for o in world.static:
+        assert np.hypot(*(poses[:, :2] - o.position).T).min() > o.radius + robot.radius
+    positions = world.motion().positions(times)
+    for k, o in enumerate(world.movers):
+        assert np.hypot(*(poses[:, :2] - positions[:, k]).T).min() > o.radius + robot.radius
     since = 0
     for k, point in enumerate(world.waypoints.tolist()):
         reach = DIAGONAL if k == len(world.waypoints) - 1 and not world.endless else VIA_REACHED
@@ -188,7 +189,3 @@ def test_a_mover_that_sweeps_a_narrow_corridor_blocks_it():
 
 def test_a_world_without_points_is_feasible():
     assert certify(layout(waypoints=np.zeros((0, 2))), ROBOT).solvable
-
-
-def test_straight_length_adds_the_legs():
-    assert straight_length(layout(waypoints=((1.0, 0.0), (1.0, 0.5)))) == 2.5

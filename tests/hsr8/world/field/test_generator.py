@@ -196,13 +196,6 @@ def test_drawn_obstacles_keep_clear_of_those_placed_by_hand():
             assert gap >= FAIR.static_gap - 1e-9
 
 
-def test_a_walk_has_no_destination():
-    layout = draw_layout(load_scenario("walk"), 0)
-    assert layout.waypoints.shape == (0, 2)
-    assert not layout.endless
-    assert layout.goal_heading is None
-
-
 @pytest.mark.parametrize("name", ["fig4a", "fig4b", "fig4c"])
 def test_situations_of_the_paper_are_collisions_without_a_reaction(name):
     """(a), (c): walking straight on at full speed; (b): standing still."""

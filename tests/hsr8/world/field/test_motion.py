@@ -127,11 +127,6 @@ def test_circle_stays_on_its_rim(motion, time):
     assert hypot(*motion.velocity(time)) == pytest.approx(abs(motion.speed))
 
 
-def _room(motion: Shuttle, time: float) -> float:
-    """Distance to the nearer end of the lane."""
-    return min(_to_end(motion, time), motion.length - _to_end(motion, time))
-
-
 def _to_end(motion: Shuttle, time: float) -> float:
     """Distance from the start of the lane."""
     x, y = motion.position(time)
@@ -152,16 +147,3 @@ def test_a_passage_waits_moves_and_stays():
     assert PASSAGE.position(4.0 + 10.0) == pytest.approx(PASSAGE.end)
     assert PASSAGE.position(50.0) == PASSAGE.end
     assert PASSAGE.velocity(50.0) == (0.0, 0.0)
-
-
-@given(st.floats(0.0, 60.0), st.floats(0.0, 60.0))
-def test_a_passage_never_exceeds_its_speed(one, other):
-    distance = hypot(
-        *(b - a for a, b in zip(PASSAGE.position(one), PASSAGE.position(other), strict=True))
-    )
-    assert distance <= PASSAGE.speed * abs(other - one) + 1e-12
-
-
-@given(st.floats(4.0, 13.99))
-def test_a_moving_passage_has_its_speed(time):
-    assert hypot(*PASSAGE.velocity(time)) == pytest.approx(PASSAGE.speed)

@@ -43,19 +43,5 @@ def test_the_track_bends_gently(motion):
     assert turns.max() <= 1.3 * motion.side / MIN_BEND_RADIUS
 
 
-def test_tracks_bend_to_both_sides():
-    for motion in LAWS:
-        sides = np.diff(np.array([*motion.track, *motion.track[:2]]), axis=0)
-        cross = sides[:-1, 0] * sides[1:, 1] - sides[:-1, 1] * sides[1:, 0]
-        if (cross > 0).any() and (cross < 0).any():
-            return
-    pytest.fail("every track is convex")
-
-
 def test_an_extent_too_small_for_the_bends_has_no_track():
     assert draw_wander(np.random.default_rng(0), (0.0, 0.0), 0.1, 0.1) is None
-
-
-def test_the_same_seed_gives_the_same_track():
-    again = draw_wander(np.random.default_rng(3), (0.5, -0.2), EXTENT, 0.12)
-    assert again == LAWS[3]

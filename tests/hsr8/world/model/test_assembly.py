@@ -4,7 +4,6 @@ import mujoco
 import numpy as np
 import pytest
 
-from hsr8.robots.files import models_dir
 from hsr8.robots.loaded import load_robot
 from hsr8.robots.normal_form import SOLES
 from hsr8.scenario.loader import load_scenario
@@ -148,22 +147,3 @@ def test_optics_change_the_head_camera_and_the_lights(layout):
     assert dim.cam_resolution[camera.id].tolist() == [200, 100]
     assert (dim.vis.global_.offwidth, dim.vis.global_.offheight) == (200, 100)
     np.testing.assert_allclose(dim.light_diffuse, 0.5 * normal.light_diffuse)
-
-
-@pytest.mark.gl
-def test_the_head_camera_sees_a_bright_field_and_no_empty_space(models, layout):
-    model = models["vision"]
-    data = ready(model, layout)
-    mujoco.mj_forward(model, data)
-    with mujoco.Renderer(model, height=120, width=160) as renderer:
-        renderer.update_scene(data, camera="egocentric")
-        image = renderer.render()
-    assert 90 < image[80:].astype(int).mean() < 220
-    assert image.max() < 255
-
-
-@pytest.mark.parametrize("quality", ["vision", "show"])
-def test_field_models_compile_without_a_robot(quality):
-    model = mujoco.MjModel.from_xml_path(str(models_dir() / "field" / f"{quality}.xml"))
-    assert model.nq == model.nu == 0
-    assert model.geom("field/floor").contype[0] == 3

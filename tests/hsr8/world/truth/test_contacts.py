@@ -61,16 +61,6 @@ def test_movers_are_reported_as_moving(watched):
     assert {(c.obstacle, c.name, c.moving) for c in watch.take()} == {(1, "mover 1", True)}
 
 
-def test_clearance_decreases_towards_an_obstacle(watched):
-    gaps = []
-    for x in (2.0, 0.8, 0.5, 0.4):
-        watch, data, _, _ = watched(Obstacle((x, 0.0), 0.10, 0.40, "red"))
-        assert watch.take() == ()
-        gaps.append(watch.clearance(data))
-    assert -np.diff(gaps) == pytest.approx([1.2, 0.3, 0.1], abs=1e-3)
-    assert gaps[3] < 0.3  # the body is wider than its axis
-
-
 @pytest.mark.parametrize("number", range(6))
 def test_contact_with_a_beacon_has_its_number_and_name(watched, number):
     x, y = BEACONS[number].position
