@@ -9,7 +9,7 @@ from typing import Any, SupportsIndex
 from hsr8.decisions import GazeController, MotionPlanner
 from hsr8.errors import UsageError
 from hsr8.evaluation.recording import Result, record, renderer_of, started_folder
-from hsr8.files.temporary import require_temporary
+from hsr8.files.writing import require_temporary
 from hsr8.loop import Simulation
 from hsr8.plugin_walker import CustomWalker
 from hsr8.recorder.run.manifest import CALL

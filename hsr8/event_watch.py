@@ -2,7 +2,7 @@
 
 from collections.abc import Iterator, Sequence
 
-from hsr8.frame_record import FrameRecord
+from hsr8.decisions import FrameRecord
 from hsr8.record import Event
 from hsr8.scenario.fault import Fault
 from hsr8.world.truth.counters import CollisionCounter, Falls

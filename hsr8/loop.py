@@ -3,18 +3,18 @@
 import hashlib
 from collections.abc import Iterator
 from contextlib import contextmanager, suppress
+from dataclasses import dataclass
 from time import perf_counter
 from typing import Self, SupportsIndex
 
 import cv2
 import numpy as np
 
-from hsr8.begun_tick import BegunTick
 from hsr8.body_builder import build_body, build_model
-from hsr8.decisions import GazeController, MotionPlanner, Situation
+from hsr8.decisions import FrameRecord, GazeController, MotionPlanner, Situation
 from hsr8.errors import ScenarioError, SimulationDiverged
 from hsr8.event_watch import EventWatch
-from hsr8.frame_record import FrameRecord
+from hsr8.plugin_method import number
 from hsr8.plugin_walker import CustomWalker
 from hsr8.record import Event, RunOutcome, Second, Tick, TickRecord
 from hsr8.robot import Robot, SensorFrame
@@ -36,6 +36,7 @@ from hsr8.world.camera.rendered import RenderedCamera
 from hsr8.world.field.generator import draw_world
 from hsr8.world.model.index import ModelIndex
 from hsr8.world.truth.truth import Truth
+from navigation.decision import GazeDecision, MotionDecision
 from walking.engine import PlanDiverged
 from walking.parameters import CONTROL_PERIOD
 from walking.signals import JointTargets
@@ -45,6 +46,30 @@ GOAL_DWELL = 1.0  # simulated time after the goal is reached [s]
 FALL_DWELL = 0.6  # simulated time after the final fall, so that it is visible [s]
 HASH = 16  # bytes of a hash
 TICKS_PER_SECOND = round(1.0 / CONTROL_PERIOD)
+
+
+@dataclass(slots=True)
+class _BegunTick:
+    """Control tick in which the robot has walked and perceived, but not yet decided.
+
+    Attributes:
+        seconds: states with hashes at its start.
+        sensed: sensor readings.
+        targets: setpoints of the walking engine; None if its plan diverged.
+        walking_time: wall time of the walking engine [s].
+        situation: situation that the robot decides in; None without a decision.
+        diverged: reason why the plan diverged; empty if it did not.
+        motion, gaze: decisions that replace those of the robot.
+    """
+
+    seconds: list[Second]
+    sensed: SensorFrame
+    targets: JointTargets | None
+    walking_time: float
+    situation: Situation | None
+    diverged: str = ""
+    motion: MotionDecision | None = None
+    gaze: GazeDecision | None = None
 
 
 class Simulation:
@@ -100,7 +125,7 @@ class Simulation:
         self.exit_reason: str | None = None
         self.tick = 0
         self.truth: Truth | None = None
-        self._begun: BegunTick | None = None
+        self._begun: _BegunTick | None = None
         self._body = build_body(scenario, self.seed, self.layout, self.model)
         self._robot = self._build_robot(planner, gaze, walker)
         self._watch = EventWatch(scenario.fault)
@@ -242,7 +267,8 @@ class Simulation:
             RuntimeError: `perceive` returned no situation.
             UsageError: an angle is not a finite number.
         """
-        self._require_begun("look").look(pan, tilt)
+        begun, _ = self._undecided("look")
+        begun.gaze = GazeDecision(number(pan, "pan", "look"), number(tilt, "tilt", "look"))
 
     def command(self, vx: float, vy: float, wz: float) -> None:
         """Replace the motion of this footstep, after `perceive` and before `step`.
@@ -257,12 +283,23 @@ class Simulation:
             UsageError: a velocity is not a finite number, or the mission is a walk.
         """
         require_planner(self.scenario)
-        self._require_begun("command").command(vx, vy, wz)
+        begun, situation = self._undecided("command")
+        if not situation.motion_due:
+            raise RuntimeError("command: no motion is due; expected situation.motion_due")
+        values = {"vx": vx, "vy": vy, "wz": wz}
+        velocity = [number(value, key, "command") for key, value in values.items()]
+        begun.motion = MotionDecision(velocity=np.array(velocity))
 
-    def _require_begun(self, method: str) -> BegunTick:
-        if self._begun is None:
+    def _undecided(self, method: str) -> tuple[_BegunTick, Situation]:
+        begun = self._begun
+        if begun is None:
             raise RuntimeError(f"{method}: the tick has not begun; expected perceive() before")
-        return self._begun
+        if begun.situation is None:
+            raise RuntimeError(
+                f"{method}: no decision is pending; expected a tick in which perceive() returned "
+                "a situation"
+            )
+        return begun, begun.situation
 
     @contextmanager
     def _running(self, method: str) -> Iterator[None]:
@@ -288,7 +325,7 @@ class Simulation:
         state.update(belief)
         return Second(self.tick, self._body.time, digest, state.digest(), self._body.saturation())
 
-    def _begin(self) -> BegunTick:
+    def _begin(self) -> _BegunTick:
         number, robot = self.tick, self._robot
         seconds = [self._mark()] if number % TICKS_PER_SECOND == 0 else []
         sensed = self._sense(number)
@@ -302,9 +339,9 @@ class Simulation:
         situation = None if diverged else robot.perceive(sensed)
         if number % self._record_ticks == 0:
             self.truth = self._body.truth()
-        return BegunTick(seconds, sensed, targets, walking_time, situation, diverged)
+        return _BegunTick(seconds, sensed, targets, walking_time, situation, diverged)
 
-    def _complete(self, begun: BegunTick) -> Tick:
+    def _complete(self, begun: _BegunTick) -> Tick:
         number, seconds, targets = self.tick, begun.seconds, begun.targets
         if begun.situation is not None:
             self._robot.decide(begun.situation, begun.motion, begun.gaze)

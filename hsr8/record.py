@@ -6,7 +6,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from hsr8.frame_record import FrameRecord
+from hsr8.decisions import FrameRecord
 from hsr8.world.truth.saturation import Saturation
 from hsr8.world.truth.truth import Truth
 from walking.command import Command, HeadTarget, Limit

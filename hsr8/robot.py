@@ -8,8 +8,7 @@ from typing import Protocol
 
 import numpy as np
 
-from hsr8.decisions import Decision, DecisionContext, Decisions, Situation
-from hsr8.frame_record import FrameRecord, Image
+from hsr8.decisions import Decision, DecisionContext, Decisions, FrameRecord, Image, Situation
 from navigation.angles import wrap
 from navigation.belief.belief import Belief
 from navigation.decision import GazeDecision, MotionDecision

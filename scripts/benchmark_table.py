@@ -5,9 +5,7 @@ from math import hypot
 from statistics import median
 from typing import Any
 
-from hsr8.evaluation.efficiency import spl
-from hsr8.evaluation.paired import compare_successes
-from hsr8.evaluation.proportion import Proportion
+from hsr8.evaluation.statistics import Proportion, compare_successes, spl
 
 Run = dict[str, Any]
 NUMBERS = (

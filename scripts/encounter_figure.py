@@ -3,7 +3,7 @@
 from dataclasses import dataclass
 from math import atan2, cos, hypot, inf, isfinite, sin
 
-from hsr8.frame_record import FrameRecord
+from hsr8.decisions import FrameRecord
 from hsr8.render.walk_panels import INK
 from navigation.motion.collision_band import Encounter, free_intervals
 from navigation.motion.virtual_obstacle import PathPoint, path_point

@@ -3,7 +3,7 @@
 from dataclasses import dataclass
 from math import cos, degrees, sin
 
-from hsr8.frame_record import FrameRecord
+from hsr8.decisions import FrameRecord
 from hsr8.render.walk_panels import INK
 from navigation.gaze.scene import GazeScene, gaze_scene
 from navigation.motion.univector import extended_radius

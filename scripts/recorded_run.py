@@ -2,7 +2,7 @@
 
 from dataclasses import dataclass, field
 
-from hsr8.frame_record import FrameRecord
+from hsr8.decisions import FrameRecord
 from hsr8.loop import Simulation
 from hsr8.record import TickRecord
 from hsr8.scenario.loader import load_scenario

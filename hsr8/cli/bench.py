@@ -9,8 +9,7 @@ from hsr8.cli.options import Bench, Run
 from hsr8.cli.sweep import INTERRUPTED, folder_name, report_lost_runs, require_no_seed
 from hsr8.cli.termination import like_ctrl_c
 from hsr8.errors import Hsr8Error, UsageError
-from hsr8.evaluation.bench.entry import FILE, Entry, row
-from hsr8.evaluation.bench.page import entry_page
+from hsr8.evaluation.bench.entry import FILE, Entry, entry_page, row
 from hsr8.evaluation.bench.suite import (
     SHIPPED,
     changed_settings,

@@ -5,8 +5,7 @@ import shlex
 from hsr8.cli.options import BenchCompare, Compare
 from hsr8.evaluation.bench.comparison import compare_entries
 from hsr8.evaluation.bench.entry import read_entry
-from hsr8.evaluation.comparison import compare, open_side
-from hsr8.evaluation.comparison_page import page, to_json
+from hsr8.evaluation.comparison import compare, open_side, page, to_json
 from hsr8.files import atomic
 
 

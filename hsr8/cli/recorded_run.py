@@ -21,12 +21,12 @@ from hsr8.evaluation.verdict import exit_code
 from hsr8.export.bag import require_rosbags, write_bag
 from hsr8.files import atomic
 from hsr8.files.atomic import draft
-from hsr8.files.temporary import require_temporary
+from hsr8.files.writing import require_temporary
 from hsr8.gl import require_gl
 from hsr8.loop import Simulation
 from hsr8.recorder.run.run_folder import new_run_folder
 from hsr8.recorder.run.run_reader import open_run
-from hsr8.render.live_view import LiveView, live_view
+from hsr8.render.viewer import LiveView, live_view
 from hsr8.rerun_log.run_log import write_log
 from hsr8.scenario.schema import Scenario
 

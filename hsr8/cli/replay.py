@@ -12,7 +12,7 @@ from hsr8.files import atomic
 from hsr8.recorder.run.manifest import versions
 from hsr8.recorder.run.run_reader import StoredRun, open_run
 from hsr8.render import viewer
-from hsr8.render.live_view import live_view
+from hsr8.render.viewer import live_view
 
 
 def main(options: Replay) -> int:

@@ -12,7 +12,7 @@ from math import degrees, hypot, inf, isfinite, sqrt
 import numpy as np
 from numpy.typing import NDArray
 
-from hsr8.evaluation.sums import mean, root_mean, total
+from hsr8.evaluation.statistics import mean, root_mean, total
 from hsr8.evaluation.track_metrics import track_metrics
 from hsr8.evaluation.walk_metrics import walk_metrics
 from hsr8.recorder.derived import truth_at

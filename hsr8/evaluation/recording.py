@@ -18,8 +18,7 @@ from hsr8.gl import require_gl
 from hsr8.loop import Simulation
 from hsr8.plugin_file import digests
 from hsr8.record import Tick
-from hsr8.recorder.memory import Memory
-from hsr8.recorder.recorder import IMAGES, PERIOD, Recorder, Sink
+from hsr8.recorder.recorder import IMAGES, PERIOD, Memory, Recorder, Sink
 from hsr8.recorder.run.manifest import CALL, Manifest
 from hsr8.recorder.run.run import MemoryRun, Run
 from hsr8.recorder.run.run_folder import RunFolder

@@ -8,9 +8,8 @@ from itertools import islice
 import numpy as np
 
 from hsr8.body_builder import build_body, build_model
-from hsr8.decisions import DecisionContext
+from hsr8.decisions import DecisionContext, FrameRecord
 from hsr8.errors import SimulationDiverged
-from hsr8.frame_record import FrameRecord
 from hsr8.loop import HASH
 from hsr8.recorder.columns import attributes
 from hsr8.recorder.frame_row import CONTEXT, DETECTION, FRAME, MEASURED

@@ -6,7 +6,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from hsr8.evaluation.sums import mean, root_mean
+from hsr8.evaluation.statistics import mean, root_mean
 from hsr8.recorder.table import Table
 from hsr8.world.field.layout import Layout
 from navigation.belief.belief import Motion

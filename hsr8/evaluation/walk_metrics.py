@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from hsr8.recorder.derived import mean_velocity, strides
-from hsr8.recorder.limit_bits import BITS
+from hsr8.recorder.rows import BITS
 from hsr8.recorder.table import Table
 from navigation.angles import wrap
 from walking.state import Phase

@@ -1,4 +1,4 @@
-"""Quantities derived from the tables of a run: world frame, strides, velocities, pushes, truth."""
+"""Quantities derived from the tables of a run: world frame, strides, pushes, truth, ellipses."""
 
 from collections import deque
 from collections.abc import Iterator
@@ -123,6 +123,22 @@ def truth_at(frames: Table, records: Table) -> dict[str, Array]:
     rows = np.searchsorted(records["time"], frames["time"] - 1e-9)
     columns = ("time", "robot", "obstacle_positions", "obstacle_velocities")
     return {name: records[name][rows] for name in columns}
+
+
+def ellipse_axes(covariance: Array) -> tuple[Array, Array]:
+    """Return the ellipses of one standard deviation.
+
+    Args:
+        covariance: (n, 2, 2) [m²].
+
+    Returns:
+        Half axes, the longer first (n, 2) [m], and the direction of the longer (n,) [rad].
+    """
+    xx, xy, yy = covariance[:, 0, 0], covariance[:, 0, 1], covariance[:, 1, 1]
+    middle, half = 0.5 * (xx + yy), np.hypot(0.5 * (xx - yy), xy)
+    direction: Array = 0.5 * np.arctan2(2.0 * xy, xx - yy)
+    squares = np.stack([middle + half, middle - half], axis=1)
+    return np.sqrt(np.maximum(squares, 0.0)), direction
 
 
 @dataclass(frozen=True, slots=True)

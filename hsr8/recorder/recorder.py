@@ -1,15 +1,16 @@
 """Recorder: passes the tables of a run to its sinks as it happens, one batch per second."""
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from contextlib import ExitStack
 from dataclasses import dataclass
 from functools import partial
+from types import MappingProxyType
 from typing import Any, Protocol
 
 import pyarrow as pa
 
-from hsr8.frame_record import FrameRecord
+from hsr8.decisions import FrameRecord
 from hsr8.record import Tick
 from hsr8.recorder.columns import batch_of, schema_of
 from hsr8.recorder.recorded import FrameSampler, RecordedImage, image_row, objects_of
@@ -122,3 +123,35 @@ class Recorder:
             return ()
         due = [f for f in frames if f.image is not None and self._throttle.due(f.time)]
         return self._encoder.map(partial(image_row, quality=self._images.quality), due)
+
+
+ALL = MappingProxyType({name: [c.name for c in row.columns] for name, row in TABLES.items()})
+
+
+class Memory:
+    """Sink of a recorder that keeps columns of its batches.
+
+    Args:
+        columns: names of the kept columns by table; by default all of all tables.
+    """
+
+    def __init__(self, columns: Mapping[str, Sequence[str]] = ALL) -> None:
+        self._columns = columns
+        self._batches: dict[str, list[pa.Table]] = {name: [] for name in columns}
+
+    def add(self, tables: Mapping[str, Table]) -> None:
+        """Keep the columns of new rows."""
+        for name in self._columns.keys() & tables.keys():
+            self._batches[name].append(tables[name].arrow.select(self._columns[name]))
+
+    def close(self, exit_reason: str) -> None:
+        """Do nothing: the rows stay."""
+
+    def tables(self) -> dict[str, Table]:
+        """Return the kept columns of all batches by table."""
+        return {
+            name: Table(name, pa.concat_tables(batches))
+            if batches
+            else Table.from_objects(name, TABLES[name], ())
+            for name, batches in self._batches.items()
+        }

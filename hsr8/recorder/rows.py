@@ -10,16 +10,27 @@ import numpy as np
 
 from hsr8.recorder.columns import BOOL, BYTES, INT, TEXT, VARYING, Column, Row
 from hsr8.recorder.frame_row import FRAME, POSE, POSE_COVARIANCE, VELOCITY, camera_columns
-from hsr8.recorder.limit_bits import limit_bits
+from walking.command import Limit
 from walking.plane import Array
 
 if TYPE_CHECKING:  # reading a run needs no robot
     from hsr8.record import Tick, TickRecord
 
 JOINTS = ("joints",)
-LIMITS = "active limits of the command, bit k for limit k of `walking.command.Limit`"
+LIMIT_TEXT = "active limits of the command, bit k for limit k of `walking.command.Limit`"
 DEPTH = "distance of the planned ZMP from the edge of the soles, negative outside"
 PADS = "front-left, front-right, back-left and back-right"
+LIMITS = tuple(Limit)
+"""Limits in the order of their bits."""
+BITS = {limit: 1 << k for k, limit in enumerate(LIMITS)}
+
+
+def limit_bits(limits: tuple[Limit, ...]) -> int:
+    """Return the bits of active limits."""
+    bits = 0
+    for limit in limits:
+        bits |= BITS[limit]
+    return bits
 
 
 def _tick_limits(tick: "Tick") -> int:
@@ -65,7 +76,7 @@ TICK = Row(
         "rad",
         JOINTS,
     ),
-    Column("limits", _tick_limits, LIMITS, type=INT),
+    Column("limits", _tick_limits, LIMIT_TEXT, type=INT),
     Column("zmp_depth", "zmp_depth", DEPTH, "m"),
     Column("down", "down", "whether the robot lies or gets up", type=BOOL),
     Column(
@@ -192,7 +203,7 @@ RECORD = Row(
         VELOCITY,
         (3,),
     ),
-    Column("limits", _limits, LIMITS, type=INT),
+    Column("limits", _limits, LIMIT_TEXT, type=INT),
     Column(
         "footsteps",
         "walking.footsteps",

@@ -58,11 +58,6 @@ class Table(Mapping[str, Any]):
         batches = [batch_of(row, objects, schema)] if objects else []
         return Table(name, pa.Table.from_batches(batches, schema))
 
-    @staticmethod
-    def joined(tables: Sequence["Table"]) -> "Table":
-        """Return the rows of tables with the same columns, at least one, in one table."""
-        return Table(tables[0].name, pa.concat_tables([table.arrow for table in tables]))
-
     def __len__(self) -> int:
         """Return the number of rows."""
         return self._whole.num_rows if self._chosen is None else len(self._chosen)

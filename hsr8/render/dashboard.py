@@ -1,19 +1,20 @@
 """Dashboard of a video: scene, camera image, belief and gaze."""
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from math import hypot
 from types import SimpleNamespace
 
+import cv2
 import numpy as np
 from numpy.typing import NDArray
 
+from hsr8.recorder import palette
 from hsr8.render.camera_overlay import CameraOverlay
 from hsr8.render.gaze_panel import GazePanel
-from hsr8.render.legend import Legend
-from hsr8.render.text import Image, draw_text, font_size, text_width
-from hsr8.render.timeline import Timeline
-from hsr8.render.top_down import PAPER, TopDown
+from hsr8.render.text import Color, Image, draw_text, font_size, text_width
+from hsr8.render.top_down import INK as DARK
+from hsr8.render.top_down import PAPER, TopDown, pale
 from hsr8.scenario.schema import Scenario
 from hsr8.world.field.layout import Layout
 
@@ -27,6 +28,121 @@ FRAME, BAND = (18, 19, 22), (28, 30, 34)
 INK, FAINT, ALARM = (238, 239, 241), (150, 155, 164), (255, 130, 90)
 MIN_PANEL = 120  # width of a legible gaze map [pixel]
 MIN_NAMED = 33  # height of a band with room for names above its values [pixel]
+
+HEIGHT = 0.1  # fraction of the image drawn into
+MARK = 3  # width of an event [pixel]
+AHEAD, DONE = (62, 65, 71), (138, 142, 150)
+MARKS: dict[str, Color] = {  # colour by kind of event; later kinds cover earlier ones
+    "via_point": (240, 180, 60),
+    "goal": (76, 200, 110),
+    "push": (230, 70, 130),
+    "fault": (120, 170, 230),
+    "lost": (150, 110, 220),
+    "collision": (240, 120, 30),
+    "fall": (230, 40, 40),
+}
+
+
+class Timeline:
+    """Timeline of one video.
+
+    Args:
+        start, stop: simulated time of the first and the last image [s].
+    """
+
+    def __init__(self, start: float, stop: float) -> None:
+        self._start, self._length = start, max(stop - start, 1e-9)
+
+    def draw(self, image: Image, time: float, events: Sequence[tuple[float, str]]) -> None:
+        """Draw over the lowest rows of `image` (height, width, 3).
+
+        Args:
+            image: image to draw into.
+            time: simulated time [s].
+            events: time [s] and kind of each event so far.
+        """
+        height, width, _ = image.shape
+        strip = image[-max(2, round(HEIGHT * height)) :]
+        strip[:] = AHEAD
+        strip[:, : self._column(time, width)] = DONE
+        for kind, color in MARKS.items():
+            for when, of_kind in events:
+                if of_kind == kind and when >= self._start:
+                    column = self._column(when, width)
+                    strip[:, max(0, column - MARK // 2) : column + MARK // 2 + 1] = color
+
+    def _column(self, time: float, width: int) -> int:
+        return round((time - self._start) / self._length * width)
+
+
+STRONG = palette.LABELS["red"]
+Mark = Callable[[Image, tuple[int, int], int], None]
+"""Draws the symbol of an entry at a pixel with a radius [pixel]."""
+
+
+def _disc(fill: Color, rim: Color) -> Mark:
+    def draw(image: Image, at: tuple[int, int], radius: int) -> None:
+        cv2.circle(image, at, radius, fill, -1, cv2.LINE_AA)
+        cv2.circle(image, at, radius, rim, 1, cv2.LINE_AA)
+
+    return draw
+
+
+def _ring(color: Color) -> Mark:
+    def draw(image: Image, at: tuple[int, int], radius: int) -> None:
+        cv2.circle(image, at, radius, color, 1, cv2.LINE_AA)
+
+    return draw
+
+
+def _square(color: Color) -> Mark:
+    def draw(image: Image, at: tuple[int, int], radius: int) -> None:
+        (u, v), r = at, radius
+        cv2.rectangle(image, (u - r, v - r), (u + r, v + r), color, -1)
+
+    return draw
+
+
+ENTRIES: tuple[tuple[str, Mark], ...] = (
+    ("believed", _disc(STRONG, STRONG)),
+    ("out of view", _disc(pale(STRONG), STRONG)),
+    ("true", _ring(DARK)),
+    ("2σ, velocity", _ring(palette.BELIEF)),
+    ("next points", _disc(palette.TARGET, palette.TARGET)),
+    ("view", _square(palette.VIEW)),
+)
+"""Text and symbol of every entry, in rows of three."""
+COLUMNS = 3
+LINE = 1.7  # height of a row relative to the letters [1]
+
+
+class Legend:
+    """Legend in rows of three entries.
+
+    Args:
+        width: width of the image to draw into [pixel].
+        letters: font size [pixel].
+
+    Attributes:
+        height: height of the rows [pixel].
+    """
+
+    def __init__(self, width: int, letters: float) -> None:
+        self._letters = font_size(letters)
+        self._step = width // COLUMNS
+        self._line = round(LINE * self._letters)
+        self.height = -(-len(ENTRIES) // COLUMNS) * self._line + self._letters // 2
+
+    def draw(self, image: Image) -> None:
+        """Draw into the lowest rows of `image` (height, width, 3)."""
+        top = image.shape[0] - self.height
+        radius = max(2, round(0.36 * self._letters))
+        for k, (text, mark) in enumerate(ENTRIES):
+            row, column = divmod(k, COLUMNS)
+            base = top + row * self._line + self._letters
+            left = column * self._step + self._letters
+            mark(image, (left, base - round(0.38 * self._letters)), radius)
+            draw_text(image, (left + self._letters, base), text, DARK, self._letters)
 
 
 @dataclass(frozen=True, slots=True)

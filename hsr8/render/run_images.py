@@ -13,13 +13,11 @@ from hsr8.errors import UsageError
 from hsr8.recorder.derived import pushes_of
 from hsr8.recorder.run.run import Run
 from hsr8.render.camera_overlay import CameraOverlay
-from hsr8.render.dashboard import Dashboard, DashboardFrame
+from hsr8.render.dashboard import Dashboard, DashboardFrame, Timeline
 from hsr8.render.follow import FollowCamera
-from hsr8.render.motion import motion_of, rows_at
-from hsr8.render.push_arrows import SHOWN, Arrow, PushArrow, arrows_at, push_arrows
+from hsr8.render.motion import SHOWN, Arrow, PushArrow, arrows_at, motion_of, push_arrows, rows_at
 from hsr8.render.scene_renderer import Image, SceneRenderer
 from hsr8.render.shown_frame import shown_frames
-from hsr8.render.timeline import Timeline
 from hsr8.render.top_down import TRAIL
 from hsr8.robots.loaded import load_robot
 from hsr8.robots.normal_form import HEAD_CAMERA

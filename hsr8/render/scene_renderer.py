@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from hsr8.errors import UsageError
 from hsr8.gl import require_gl
-from hsr8.render.push_arrows import Arrow
+from hsr8.render.motion import Arrow
 from hsr8.robots.loaded import LoadedRobot
 from hsr8.suggestion import suggestion
 from hsr8.world.camera.offscreen import camera_option

@@ -10,11 +10,7 @@ from types import SimpleNamespace
 import numpy as np
 from numpy.typing import NDArray
 
-from hsr8.frame_record import FrameRecord
-from hsr8.recorder.frame_row import FRAME
-from hsr8.recorder.recorded import FrameSampler
 from hsr8.recorder.run.run import Run
-from hsr8.recorder.table import Table
 
 Array = NDArray[np.float64]
 
@@ -37,22 +33,10 @@ def shown_frames(run: Run, times: Array) -> tuple[SimpleNamespace, ...]:
         return ()
     rows, index = np.unique(frames.at(times), return_inverse=True)
     truth = records["robot"][records.at(frames["time"][rows])]
-    shown = _shown(frames, rows, truth)
-    return tuple(shown[k] for k in index.tolist())
-
-
-def shown_frame(frame: FrameRecord, robot: Array) -> SimpleNamespace:
-    """Return one camera frame with the true pose (3,) of the robot."""
-    frames = Table.from_objects("frames", FRAME, [FrameSampler().sample(frame)])
-    return _shown(frames, np.array([0]), robot[None])[0]
-
-
-def _shown(frames: Table, rows: NDArray[np.intp], truth: Array) -> list[SimpleNamespace]:
-    """Return camera frames, each with the true pose of the robot (n, 3)."""
     made, maps = frames.present("gaze_map")
     latest = np.searchsorted(made, rows, side="right") - 1
     shown = frames.take(rows).objects(*COLUMNS)
     for frame, robot, k in zip(shown, truth.tolist(), latest.tolist(), strict=True):
         frame.truth = robot
         frame.gaze_map = maps[k][::-1, ::-1] if k >= 0 else None
-    return shown
+    return tuple(shown[k] for k in index.tolist())

@@ -8,7 +8,8 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-from hsr8.recorder import ellipse, palette
+from hsr8.recorder import palette
+from hsr8.recorder.derived import ellipse_axes
 from hsr8.render.canvas import Canvas
 from hsr8.render.text import Color, Image, draw_text, font_size
 from hsr8.world.field.layout import Layout
@@ -116,7 +117,7 @@ class TopDown:
         """Draw the position part of a covariance (k, k)."""
         (xx, xy), (_, yy) = covariance[0][:2], covariance[1][:2]
         if xx + yy < (MAX_SIGMA * self._scale) ** 2:
-            half, direction = ellipse.axes(np.array([[[xx, xy], [xy, yy]]]))
+            half, direction = ellipse_axes(np.array([[[xx, xy], [xy, yy]]]))
             canvas.ellipse(at, SIGMAS * half[0], float(direction[0]), palette.BELIEF, self._width)
 
 

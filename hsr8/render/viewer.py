@@ -7,14 +7,16 @@ import socket
 import subprocess
 import tempfile
 import time as clock
-from collections.abc import Callable, Sequence
-from contextlib import suppress
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager, suppress
+from dataclasses import dataclass
 from importlib.util import find_spec
 from pathlib import Path
-from typing import Self
+from typing import Literal, Self
+from urllib.parse import quote
 
 from hsr8.errors import UsageError
-from hsr8.files.temporary import require_temporary
+from hsr8.files.writing import require_temporary
 from hsr8.gl import VULKAN_LINE
 from hsr8.parent_watch import with_parent_watch
 
@@ -193,3 +195,63 @@ def _message(stderr: str) -> str:
     """Return the line of an output that reports an error, without colours."""
     lines = re.sub(r"\x1b\[[0-9;]*m", "", stderr).splitlines()
     return next((line.strip() for line in lines if re.search(r"panicked|\berror", line, re.I)), "")
+
+
+Kind = Literal["native", "web"]
+
+
+@dataclass(frozen=True, slots=True)
+class LiveView:
+    """A running viewer.
+
+    Attributes:
+        address: destination of the log.
+        page: address to open in a browser; empty for a native window.
+        process: the viewer.
+    """
+
+    address: str
+    page: str
+    process: Viewer
+
+    def wait(self) -> None:
+        """Wait until the window is closed, or for Ctrl-C."""
+        with suppress(KeyboardInterrupt):
+            self.process.wait()
+
+
+@contextmanager
+def live_view(kind: Kind, log: Path | None = None) -> Iterator[LiveView]:
+    """Start a viewer and end it with the context.
+
+    Args:
+        kind: native or web.
+        log: finished log to show; None for a run that goes on.
+
+    Raises:
+        UsageError: it cannot be started, for example without a display.
+    """
+    require_display(kind)
+    port, web_port = free_port(), free_port()
+    words = command(port, "--expect-data-soon" if log is None else str(log))
+    if kind == "web":
+        words += ["--serve-web", "--web-viewer-port", str(web_port)]
+    with Viewer(words) as process:
+        process.wait_for_port(port)
+        address = f"rerun+http://{LOOPBACK}:{port}/proxy"
+        page = f"http://{LOOPBACK}:{web_port}?url={quote(address, safe='')}"
+        yield LiveView(address, page if kind == "web" else "", process)
+
+
+def require_display(kind: Kind) -> None:
+    """Require a display for a native window.
+
+    Raises:
+        UsageError: there is none.
+    """
+    if kind == "native" and not has_display():
+        raise UsageError(
+            "--view native: no display"
+            "\n  in a browser, also through `ssh -L`:  --view web"
+            "\n  after the run:                        hsr8 replay RUN --screenshot log.png"
+        )

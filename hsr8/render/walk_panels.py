@@ -10,7 +10,7 @@ from matplotlib.patches import Patch
 from numpy.typing import NDArray
 
 from hsr8.recorder.derived import STRIDE, Speedometer, Walk, pushes_of
-from hsr8.recorder.limit_bits import LIMITS
+from hsr8.recorder.rows import LIMITS
 from walking.command import Limit
 from walking.state import Phase
 

@@ -6,7 +6,8 @@ import numpy as np
 import rerun as rr
 from numpy.typing import NDArray
 
-from hsr8.recorder import ellipse, palette
+from hsr8.recorder import palette
+from hsr8.recorder.derived import ellipse_axes
 from hsr8.recorder.table import Items, Table
 from hsr8.rerun_log.shapes import raised
 from hsr8.rerun_log.stream import LogStream
@@ -210,7 +211,7 @@ def _seen_ground(cells: NDArray[np.uint8]) -> NDArray[np.uint8]:
 
 def _ellipses(centres: Array, covariances: Array) -> dict[str, Array]:
     """Return Rerun's components of the ellipses of covariances (n, 2, 2) [m²]."""
-    half, direction = ellipse.axes(covariances)
+    half, direction = ellipse_axes(covariances)
     quaternions = np.zeros((len(half), 4))
     quaternions[:, 2], quaternions[:, 3] = np.sin(direction / 2), np.cos(direction / 2)
     half_sizes = np.column_stack([SIGMAS * half, np.full(len(half), FLAT)])

@@ -6,7 +6,8 @@ import numpy as np
 import rerun as rr
 from numpy.typing import NDArray
 
-from hsr8.recorder import ellipse, palette
+from hsr8.recorder import palette
+from hsr8.recorder.derived import ellipse_axes
 from hsr8.recorder.table import Table
 from hsr8.rerun_log.stream import LogStream
 from navigation.angles import wrap
@@ -69,7 +70,7 @@ def log_decisions(log: LogStream, frames: Table, truth: Array) -> None:
         shown = np.where(np.isfinite(nearest), nearest, np.nan)
         log.curves("/plots/clearance/believed", times, shown)
     dx, dy, turn = (frames["pose"] - truth).T
-    spread = 2.0 * ellipse.axes(frames["pose_covariance"][:, :2, :2])[0][:, 0]
+    spread = 2.0 * ellipse_axes(frames["pose_covariance"][:, :2, :2])[0][:, 0]
     turned = [abs(wrap(angle)) for angle in turn.tolist()]
     errors = np.column_stack([np.hypot(dx, dy), spread, turned])
     log.curves("/plots/pose_error", times, errors)

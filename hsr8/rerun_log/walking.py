@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 
 from hsr8.recorder import palette
 from hsr8.recorder.derived import Speedometer, WorldFrame, loaded_cop
-from hsr8.recorder.limit_bits import LIMITS, limit_bits
+from hsr8.recorder.rows import LIMITS, limit_bits
 from hsr8.recorder.table import Table
 from hsr8.rerun_log.decisions import (
     BLUE,

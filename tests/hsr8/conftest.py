@@ -9,8 +9,7 @@ import numpy as np
 import pyarrow as pa
 import pytest
 
-from hsr8.decisions import Decision, DecisionContext
-from hsr8.frame_record import FrameRecord
+from hsr8.decisions import Decision, DecisionContext, FrameRecord
 from hsr8.record import TickRecord
 from hsr8.recorder.recorded import FrameSampler
 from hsr8.recorder.rows import TABLES

@@ -18,7 +18,7 @@ def compare_entries(a: Entry, b: Entry) -> Comparison:
     Raises:
         UsageError: the suites differ, or no world is common.
     """
-    require_same_suite(a, b)
+    _require_same_suite(a, b)
     one, other = _side(a), _side(b)
     worlds = tuple(sorted(one.runs.keys() & other.runs.keys()))
     if not worlds:
@@ -53,7 +53,7 @@ def compare_entries(a: Entry, b: Entry) -> Comparison:
     )
 
 
-def require_same_suite(a: Entry, b: Entry) -> None:
+def _require_same_suite(a: Entry, b: Entry) -> None:
     """Check that two entries are comparable.
 
     Raises:

@@ -9,6 +9,9 @@ from annotated_types import Interval
 from pydantic import TypeAdapter, ValidationError
 
 from hsr8.errors import UsageError
+from hsr8.evaluation.markdown import table
+from hsr8.evaluation.registry import METRICS
+from hsr8.evaluation.statistics import Proportion
 from hsr8.evaluation.sweep.definition import Differences
 from hsr8.evaluation.sweep.folder import DEFINITION
 from hsr8.evaluation.sweep.job import RunResult
@@ -163,3 +166,55 @@ def row(result: RunResult) -> RunResult:
     """Return what an entry keeps of the result of a run."""
     values = {key: result.get(key) for key in Run.model_fields}
     return {k: round(v, DIGITS) if isinstance(v, float) else v for k, v in values.items()}
+
+
+MEDIANS = {"min_clearance_m": 3, "head_travel_radps": 2, "time_to_goal_s": 1}
+"""Digits of the medians of a score."""
+SCORES = [
+    METRICS[name].head
+    for name in ("collision", "timeout", "fall", "spl", "optimal_time_ratio", *MEDIANS)
+]
+SHOWN = ("hsr8", "code", "mujoco", "numpy", "scipy", "pin", "processor", "arithmetic")
+
+
+def entry_page(entry: Entry) -> str:
+    """Return the page of one entry: a line per family."""
+    lines = [f"# {entry.name} in {_suite(entry)}, {entry.seeds} seeds", "", f"    {entry.command}"]
+    lines += ["", f"{_versions(entry)}.", "", *_settings(entry)]
+    head = ("family", "runs", "success", "95 % interval", *SCORES)
+    rows = [
+        (name, str(part.runs), *_success(part.success), *_cells(part))
+        for name, part in entry.scores().items()
+    ]
+    return "\n".join([*lines, *table(head, rows)])
+
+
+def _suite(entry: Entry) -> str:
+    return f"suite {entry.suite} {entry.suite_version} ({entry.suite_hash})"
+
+
+def _versions(entry: Entry) -> str:
+    known = [f"{name} {entry.versions[name]}" for name in SHOWN if entry.versions.get(name)]
+    return ", ".join(known)
+
+
+def _settings(entry: Entry) -> list[str]:
+    if not entry.settings:
+        return ["All settings are those of the standard.", ""]
+    rows = [(f"`{key}`", old, new) for key, (old, new) in entry.settings.items()]
+    return table(("setting", "standard", "entry"), rows)
+
+
+def _success(success: Proportion) -> tuple[str, str]:
+    interval = f"{100 * success.low:.1f} to {100 * success.high:.1f} %"
+    return f"{100 * success.fraction:.1f} %", interval
+
+
+def _cells(part: Summary) -> list[str]:
+    rates = [f"{100 * p.fraction:.1f}" for p in (part.collision, part.timeout, part.fall)]
+    ratios = ["" if v is None else f"{v:.3f}" for v in (part.spl, part.optimal_time_ratio)]
+    medians = [
+        f"{part.quantities[key].median:.{digits}f}" if key in part.quantities else ""
+        for key, digits in MEDIANS.items()
+    ]
+    return [*rates, *ratios, *medians]

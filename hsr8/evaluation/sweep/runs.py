@@ -16,7 +16,7 @@ from hsr8.evaluation.sweep.job import Job, Keep, RunResult
 from hsr8.evaluation.sweep.local_executor import LocalExecutor
 from hsr8.evaluation.sweep.progress import SweepProgress
 from hsr8.evaluation.sweep.report import report
-from hsr8.files.temporary import require_temporary
+from hsr8.files.writing import require_temporary
 from hsr8.gl import require_gl
 from hsr8.plugin_file import digests, require_plugins
 from hsr8.robots.locate import digest

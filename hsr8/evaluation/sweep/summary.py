@@ -8,10 +8,8 @@ from typing import Any
 
 import numpy as np
 
-from hsr8.evaluation.efficiency import optimal_time_ratio, spl
-from hsr8.evaluation.proportion import Proportion
 from hsr8.evaluation.registry import Shown, shown_in
-from hsr8.evaluation.sums import mean
+from hsr8.evaluation.statistics import Proportion, mean, optimal_time_ratio, spl
 from hsr8.evaluation.sweep.job import CRASHED, REFUSED, RunResult
 
 MAX_ARRIVAL_ERROR = 15.0  # heading error of an arrival [deg]

@@ -8,7 +8,6 @@ from pathlib import Path
 from typing import Any
 
 from hsr8.errors import ScenarioError, UsageError
-from hsr8.file_format import check_number
 from hsr8.files.regular import read_text
 from hsr8.recorder.rows import TABLES
 from hsr8.recorder.run import run_folder
@@ -171,7 +170,11 @@ def _run(path: Path, trust: bool) -> StoredRun:
         raise UsageError(f"cannot read {file}: seed: expected an integer, got {seed!r}")
     if not isinstance(number, int):
         raise UsageError(f"cannot read {file}: format: expected an integer, got {number!r}")
-    check_number(number, FORMAT, path, "run folder")
+    if number != FORMAT:
+        raise UsageError(
+            f"{path}: run folder of format {number}, hsr8 {VERSION} reads format {FORMAT}: "
+            "run the scenario again, or use the version of hsr8 that wrote it"
+        )
     rows = manifest.get("rows", {})
     if not isinstance(rows, dict) or not all(isinstance(count, int) for count in rows.values()):
         raise UsageError(f"cannot read {file}: rows: expected numbers by table, got {rows!r}")

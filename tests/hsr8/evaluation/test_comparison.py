@@ -5,8 +5,7 @@ import pytest
 
 import hsr8
 from hsr8.errors import UsageError
-from hsr8.evaluation.comparison import Side, compare, open_side
-from hsr8.evaluation.comparison_page import page, to_json
+from hsr8.evaluation.comparison import Side, compare, open_side, page, to_json
 from hsr8.evaluation.sweep.definition import Definition
 from hsr8.evaluation.sweep.folder import SweepFolder
 from navigation.decision import MotionDecision

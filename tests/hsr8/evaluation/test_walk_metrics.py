@@ -6,7 +6,7 @@ import pytest
 
 from hsr8.evaluation.walk_metrics import walk_metrics
 from hsr8.record import Second
-from hsr8.recorder.limit_bits import limit_bits
+from hsr8.recorder.rows import limit_bits
 from hsr8.world.truth.saturation import Saturation
 from hsr8.world.truth.truth import ActivePush
 from walking.body.tree import JOINT_NAMES

@@ -10,6 +10,7 @@ from hypothesis import strategies as st
 from hsr8.recorder.derived import (
     Speedometer,
     WorldFrame,
+    ellipse_axes,
     loaded_cop,
     mean_velocity,
     pushes_of,
@@ -118,3 +119,24 @@ def test_the_velocity_over_every_stride_is_that_of_a_straight_walk(fake, tables_
     assert whole
     assert all(steps[b] - steps[a] == 2 for a, b in whole)
     assert all(a == b for (_, a), (b, _) in pairwise(whole))
+
+
+lengths = st.floats(1e-3, 3.0)
+
+
+@given(a=lengths, b=lengths, turn=st.floats(-1.5, 1.5))
+def test_the_axes_reproduce_the_covariance(a, b, turn):
+    c, s = np.cos(turn), np.sin(turn)
+    rotation = np.array([[c, -s], [s, c]])
+    covariance = rotation @ np.diag([a * a, b * b]) @ rotation.T
+    half, direction = ellipse_axes(covariance[None])
+    assert half[0, 0] >= half[0, 1]
+    c, s = np.cos(direction[0]), np.sin(direction[0])
+    back = np.array([[c, -s], [s, c]])
+    np.testing.assert_allclose(back @ np.diag(half[0] ** 2) @ back.T, covariance, atol=1e-9)
+
+
+def test_no_covariance_gives_no_ellipse():
+    half, direction = ellipse_axes(np.zeros((0, 2, 2)))
+    assert half.shape == (0, 2)
+    assert direction.shape == (0,)

@@ -1,4 +1,4 @@
-from hsr8.recorder.memory import Memory
+from hsr8.recorder.recorder import Memory
 from hsr8.recorder.table import Table
 
 

@@ -1,8 +1,8 @@
 import numpy as np
 import pytest
 
-from hsr8.recorder import sampled_field
-from hsr8.recorder.sampled_field import grid, path_along
+from hsr8.recorder import recorded
+from hsr8.recorder.recorded import grid, path_along
 
 
 class Whirl:
@@ -15,9 +15,9 @@ class Whirl:
 @pytest.mark.parametrize("position", [(0.0, 0.0), (0.11, -2.07)])
 def test_the_grid_surrounds_the_robot_and_does_not_move(position):
     points = grid(np.array(position))
-    assert np.hypot(*(points - position).T).max() <= sampled_field.REACH
-    assert points / sampled_field.SPACING == pytest.approx(np.round(points / sampled_field.SPACING))
-    assert np.abs(points.mean(axis=0) - position).max() < sampled_field.SPACING
+    assert np.hypot(*(points - position).T).max() <= recorded.REACH
+    assert points / recorded.SPACING == pytest.approx(np.round(points / recorded.SPACING))
+    assert np.abs(points.mean(axis=0) - position).max() < recorded.SPACING
     moved = grid(np.add(position, (0.02, 0.0)))
     common = {tuple(p) for p in points.round(6)} & {tuple(p) for p in moved.round(6)}
     assert len(common) > 0.8 * len(points)
@@ -25,8 +25,8 @@ def test_the_grid_surrounds_the_robot_and_does_not_move(position):
 
 def test_the_path_follows_the_field():
     path = path_along(Whirl(), np.array([1.0, 0.0]), np.array([9.0, 9.0]))
-    assert len(path) == sampled_field.STEPS + 1
-    assert np.hypot(*np.diff(path, axis=0).T) == pytest.approx(sampled_field.STEP)
+    assert len(path) == recorded.STEPS + 1
+    assert np.hypot(*np.diff(path, axis=0).T) == pytest.approx(recorded.STEP)
     assert np.hypot(*path.T) == pytest.approx(1.0, abs=0.1)
     angles = np.unwrap(np.arctan2(path[:, 1], path[:, 0]))
     assert (np.diff(angles) > 0.0).all()

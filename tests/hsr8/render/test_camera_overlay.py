@@ -6,7 +6,6 @@ import pytest
 from hsr8.recorder import palette
 from hsr8.render import camera_overlay
 from hsr8.render.camera_overlay import CameraOverlay
-from hsr8.render.shown_frame import shown_frame
 
 FOV = np.radians(60.0)
 FOCAL = 120.0 / np.tan(FOV / 2)  # of a image 240 pixels high
@@ -14,12 +13,11 @@ AWAY = {"head": (1.5, 0.0), "gaze": (-1.5, 0.0)}  # chosen behind the camera: no
 
 
 @pytest.fixture
-def summary(fake):
-    frame = fake.frame(0.6, (0.0, 0.0, 0.0))
-    shown = shown_frame(frame, np.zeros(3))
+def summary(shown):
+    frame = vars(shown())
 
     def changed(**change):
-        return SimpleNamespace(**vars(shown) | change)
+        return SimpleNamespace(**frame | change)
 
     return changed
 

@@ -1,22 +1,20 @@
 import numpy as np
 import pytest
 
-from hsr8.render.dashboard import Dashboard, DashboardFrame
+from hsr8.render.dashboard import AHEAD, DONE, HEIGHT, MARKS, Dashboard, DashboardFrame, Timeline
 from hsr8.render.run_video import VideoOptions
-from hsr8.render.shown_frame import shown_frame
-from hsr8.render.timeline import Timeline
 from hsr8.scenario.loader import load_scenario
 
 
 @pytest.fixture
-def drawn(fake, layout):
-    frame = shown_frame(fake.frame(0.6, (0.0, 0.0, 0.0)), np.zeros(3))
+def drawn(shown, layout):
+    frame = shown()
 
     def draw(size, collisions=0, state="free"):
         board = Dashboard(layout, load_scenario("quick"), Timeline(0.0, 1.0), size, 1.0)
         scene = np.full((*board.scene_size[::-1], 3), (200, 0, 0), np.uint8)
         camera = np.full((*board.camera_size[::-1], 3), (0, 200, 0), np.uint8)
-        shown = DashboardFrame(
+        content = DashboardFrame(
             time=0.6,
             frame=frame,
             movers=np.array([[1.0, 1.0]]),
@@ -24,7 +22,7 @@ def drawn(fake, layout):
             events=[(0.1, "collision")] * collisions,
             state=state,
         )
-        return board.draw(scene, camera, shown), board
+        return board.draw(scene, camera, content), board
 
     return draw
 
@@ -60,3 +58,31 @@ def test_values_have_names_from_the_default_size_on(drawn, size):
     names = band[: round(0.4 * len(band))].max(axis=2) > 100
     assert names.any(axis=0).sum() > width // 10
     assert names[:, width // 2 :].any()
+
+
+def strip_at(time, events=()):
+    image = np.zeros((40, 101, 3), np.uint8)
+    Timeline(10.0, 20.0).draw(image, time, events)
+    assert not image[: -round(HEIGHT * 40)].any()
+    return [tuple(pixel) for pixel in image[-1].tolist()]
+
+
+def test_elapsed_time_is_bright():
+    strip = strip_at(15.0)
+    assert strip[:50] == [DONE] * 50
+    assert strip[51:] == [AHEAD] * 50
+
+
+def test_events_are_marked_at_their_time_and_falls_on_top():
+    events = [
+        (12.0, "push"),
+        (12.0, "fall"),
+        (18.0, "push"),
+        (19.0, "unheard of"),
+        (5.0, "push"),
+    ]
+    strip = strip_at(10.0, events)
+    assert strip[20] == MARKS["fall"]
+    assert strip[82] == MARKS["push"]
+    assert MARKS["push"] not in strip[:70]
+    assert set(strip) == {AHEAD, MARKS["fall"], MARKS["push"]}

@@ -5,14 +5,13 @@ import pytest
 
 from hsr8.recorder import palette
 from hsr8.render.gaze_panel import GazePanel
-from hsr8.render.shown_frame import shown_frame
 
 PAN, TILTS = np.radians(90.0), (np.radians(-60.0), np.radians(20.0))
 
 
 @pytest.fixture
-def frame(fake):
-    return shown_frame(fake.frame(0.6, (0.0, 0.0, 0.0)), np.zeros(3))
+def frame(shown):
+    return shown()
 
 
 def _drawn(frame):

@@ -6,7 +6,7 @@ from hypothesis import strategies as st
 
 from hsr8.errors import UsageError
 from hsr8.evaluation.bench.comparison import compare_entries
-from hsr8.evaluation.comparison_page import page, to_json
+from hsr8.evaluation.comparison import page, to_json
 
 OUTCOMES = st.lists(
     st.sampled_from(["success", "timeout", "collision", "crashed"]), min_size=4, max_size=4

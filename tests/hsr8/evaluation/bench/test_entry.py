@@ -1,11 +1,12 @@
 import json
+import re
 
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
 from hsr8.errors import UsageError
-from hsr8.evaluation.bench.entry import Entry, read_entry
+from hsr8.evaluation.bench.entry import Entry, entry_page, read_entry
 
 OUTCOMES = st.lists(
     st.sampled_from(["success", "timeout", "collision", "fall", "crashed", "refused"])
@@ -96,3 +97,24 @@ def test_the_file_and_the_mistake_are_named(tmp_path, text, reason):
         f"{file}: not an entry of hsr8 bench: {reason}; "
         "expected a folder of hsr8 bench or its bench.json"
     )
+
+
+def row_of(name, lines):
+    """Cells of the line of a table that begins with `name`."""
+    (line,) = [line for line in lines if line.startswith(f"| {name} ")]
+    return [cell.strip() for cell in re.split(r"(?<!\\)\|", line.strip("| "))]
+
+
+def test_the_page_of_an_entry_has_a_line_per_family(make_entry):
+    lines = entry_page(make_entry(course=("success", "timeout"))).splitlines()
+    cells = row_of("course", lines)
+    assert cells[:3] == ["course", "2", "50.0 %"]
+    assert cells[4:] == ["0.0", "50.0", "0.0", "0.400", "0.375", "0.200", "0.50", "80.0"]
+    assert row_of("all", lines)[1] == "6"
+    assert "All settings are those of the standard." in lines
+    assert "    hsr8 bench --quick --name default" in lines
+
+
+def test_settings_of_an_entry_are_listed(make_entry):
+    entry = make_entry("mine", settings={"robot.body": ('"kinematic"', '"full"')})
+    assert '| `robot.body` | "kinematic" | "full" |' in entry_page(entry)

@@ -1,17 +1,35 @@
-"""Paired comparison of a quantity measured twice on the same seeds."""
+"""Statistics: sums in a fixed order, proportions, efficiency, differences on common seeds."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
 from math import sqrt
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
 Array = NDArray[np.float64]
 
 RESAMPLES = 10_000
 BATCH = 2_000_000  # numbers resampled at a time, which bounds the memory
 Z = 1.959963984540054  # quantile of a two-sided 95 % interval
+
+
+def total(values: ArrayLike) -> float:
+    """Return the sum of values (n,), added one after the other."""
+    sums = np.cumsum(np.asarray(values, dtype=np.float64))
+    return float(sums[-1]) if len(sums) else 0.0
+
+
+def mean(values: ArrayLike) -> float | None:
+    """Return the mean of values (n,); None without values."""
+    n = np.size(values)
+    return total(values) / n if n else None
+
+
+def root_mean(squares: ArrayLike) -> float | None:
+    """Return the root of the mean of squares (n,); None without values."""
+    square = mean(squares)
+    return None if square is None else sqrt(square)
 
 
 @dataclass(frozen=True, slots=True)
@@ -89,3 +107,57 @@ def compare_successes(a: Sequence[bool], b: Sequence[bool]) -> PairedDifference:
     low, high = max(-1.0, y - x - half), min(1.0, y - x + half)
     difference = (only_b - only_a) / n
     return PairedDifference("McNemar", n, sum(a) / n, sum(b) / n, difference, low, high, p)
+
+
+@dataclass(frozen=True, slots=True)
+class Proportion:
+    """Proportion of `count` in `n` with its 95 % Wilson score interval."""
+
+    count: int
+    n: int
+    fraction: float
+    low: float
+    high: float
+
+    @classmethod
+    def counted(cls, count: int, n: int) -> "Proportion":
+        """Return the proportion; without any run the interval is 0 to 1."""
+        if n == 0:
+            return cls(0, 0, 0.0, 0.0, 1.0)
+        from scipy.stats import binomtest  # noqa: PLC0415  takes a second
+
+        interval = binomtest(count, n).proportion_ci(method="wilson")
+        return cls(count, n, count / n, float(interval.low), float(interval.high))
+
+    def __str__(self) -> str:
+        """Return for example ``19 of 20, 95.0 % (76.4 to 99.1 %)``."""
+        if self.n == 0:
+            return "none"
+        interval = f"{100 * self.low:.1f} to {100 * self.high:.1f} %"
+        return f"{self.count} of {self.n}, {100 * self.fraction:.1f} % ({interval})"
+
+
+def spl(success: bool, shortest: float, actual: float) -> float:
+    """Return success weighted by the path length (Anderson et al. 2018), from 0 to 1.
+
+    With times in place of lengths it is success weighted by time (SPT).
+
+    Args:
+        success: whether the run succeeded.
+        shortest: length of the shortest path, positive.
+        actual: length of the path of the run, in the same unit.
+    """
+    return shortest / max(shortest, actual) if success else 0.0
+
+
+def optimal_time_ratio(success: bool, shortest: float, actual: float) -> float:
+    """Return success times shortest over actual time, without an upper bound.
+
+    It is the metric of the BARN challenge without its clipping.
+
+    Args:
+        success: whether the run succeeded.
+        shortest: shortest time [s].
+        actual: time of the run, positive if it succeeded [s].
+    """
+    return shortest / actual if success else 0.0

@@ -3,7 +3,13 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from hsr8.evaluation.paired import compare_successes, compare_values
+from hsr8.evaluation.statistics import (
+    Proportion,
+    compare_successes,
+    compare_values,
+    optimal_time_ratio,
+    spl,
+)
 
 SUCCESSES = st.lists(st.tuples(st.booleans(), st.booleans()), min_size=1, max_size=60)
 VALUES = st.lists(st.floats(-100, 100).map(lambda v: round(v, 3)), min_size=2, max_size=12)
@@ -76,3 +82,38 @@ def test_discordant_pairs_are_a_binomial_test():
     assert successes([*equal, *better]).p_value == pytest.approx(2 * 0.5**5)
     assert successes([(True, False), (False, True)]).p_value == 1.0
     assert successes(equal).p_value == 1.0
+
+
+def test_the_interval_is_wilson_s():
+    some = Proportion.counted(19, 20)
+    assert (some.low, some.high) == pytest.approx((0.7639, 0.9911), abs=1e-4)
+    assert str(some) == "19 of 20, 95.0 % (76.4 to 99.1 %)"
+    assert Proportion.counted(0, 5).low == 0.0
+    assert Proportion.counted(5, 5).high == 1.0
+
+
+def test_without_runs_the_interval_is_everything():
+    assert Proportion.counted(0, 0) == Proportion(0, 0, 0.0, 0.0, 1.0)
+    assert str(Proportion.counted(0, 0)) == "none"
+
+
+POSITIVE = st.floats(0.1, 1000.0)
+
+
+@given(st.booleans(), POSITIVE, POSITIVE)
+def test_spl_is_between_0_and_success(success, shortest, actual):
+    assert 0.0 <= spl(success, shortest, actual) <= success
+
+
+@given(st.booleans(), POSITIVE)
+def test_the_shortest_path_and_time_score_the_success(success, shortest):
+    assert spl(success, shortest, shortest) == success
+    assert optimal_time_ratio(success, shortest, shortest) == success
+
+
+@given(POSITIVE, POSITIVE, POSITIVE)
+def test_detours_cost_in_proportion_and_shortcuts_count_in_the_time_ratio_only(a, b, factor):
+    shortest, longest = sorted((a, b))
+    assert spl(True, shortest, longest) == pytest.approx(shortest / longest)
+    assert spl(True, longest, shortest) == 1.0
+    assert optimal_time_ratio(True, a, factor * a) == pytest.approx(1.0 / factor)
