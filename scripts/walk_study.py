@@ -15,7 +15,7 @@ import pstats
 
 from hsr8.robots.loaded import LoadedRobot, load_robot
 from hsr8.scenario.loader import load_scenario
-from hsr8.trials.calibration import random_commands, random_head, time_scale
+from hsr8.trials.commands import random_commands, random_head, time_scale
 from hsr8.trials.walk import Trial, Walked
 from walking.command import VelocityCommand
 from walking.parameters import CONTROL_PERIOD

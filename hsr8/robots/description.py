@@ -22,6 +22,8 @@ from hsr8.files.toml import TomlError, parse_toml
 from hsr8.mistakes import NAME, NAMES, TABLE, form, mistake_lines
 
 MODEL_SUFFIXES = (".xml", ".mjcf", ".urdf")
+MIN_SPEED = 0.012
+"""Minimum speed of a robot along every axis, for navigation [m/s or rad/s]."""
 
 
 def _different(names: tuple[str, str]) -> tuple[str, str]:
@@ -45,7 +47,7 @@ Length = Annotated[float, Interval(ge=-5.0, le=5.0)]
 Size = Annotated[float, Interval(gt=0.0, le=5.0)]
 Limits = Annotated[tuple[Angle, Angle], AfterValidator(_rising)]
 Rate = Annotated[float, Interval(ge=0.01, le=1e4)]
-Speed = Annotated[float, Interval(ge=0.012, le=50.0)]
+Speed = Annotated[float, Interval(ge=MIN_SPEED, le=50.0)]
 Sigma = Annotated[float, Interval(ge=0.0, le=1.0)]
 
 TRUNK = "trunk"

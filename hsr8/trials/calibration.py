@@ -1,16 +1,19 @@
 """Calibration: what the loop needs to know about a robot, measured in simulation."""
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, replace
-from math import pi
 
 import numpy as np
 from numpy.typing import NDArray
 
+from hsr8.errors import ModelError
+from hsr8.robots.description import MIN_SPEED
 from hsr8.robots.loaded import LoadedRobot
+from hsr8.trials.commands import random_commands, random_head, time_scale
+from hsr8.trials.robot_check import MAX_TILT, check_robot
 from hsr8.trials.walk import Trial, Walked
-from walking.command import HeadTarget, VelocityCommand
-from walking.parameters import CONTROL_PERIOD, WalkingParameters
+from walking.command import VelocityCommand
+from walking.parameters import CONTROL_PERIOD
 
 Array = NDArray[np.float64]
 Report = Callable[[str], None]
@@ -19,12 +22,9 @@ AXES = ("vx", "vx_backward", "vy", "wz")
 STEADY_TIME, RANDOM_TIME = 12.0, 60.0  # of a walk, in the time scale of HSR-VIII [s]
 RANDOM_SEEDS = range(8)
 MAX_ERROR = 0.05  # of a steady velocity, relative [1]
-MAX_TILT = 8.0  # 99th percentile of the tilt in a steady walk [deg]
 SHRINK = 0.85  # of a speed that failed
 SLOW = 0.5  # of the rehearsed speed, below which a warning names the joint [1]
 SMALLEST = 0.1  # of the rehearsed limit, below which an axis is given up [1]
-STOPS, CORNERS = 0.15, 0.15  # fractions of random commands at rest and at the corners
-HEAD_INTERVAL = 0.4  # between head targets [s]
 LAGS = 40  # longest lag searched [ticks]
 INTERVAL = 5.0  # over which the odometry drifts, for its noise [s]
 FLOOR = 0.0002  # smallest odometry noise, as simulation knows no other ground [m/√s]
@@ -53,11 +53,6 @@ class _Limit:
     reason: str
 
 
-def time_scale(parameters: WalkingParameters) -> float:
-    """Return the time of a robot's walk relative to that of HSR-VIII [1]."""
-    return parameters.gait.footstep_time / WalkingParameters().gait.footstep_time
-
-
 def command_of(axis: str, speed: float) -> VelocityCommand:
     """Return the command along one axis of the speed limits."""
     sign = -1.0 if axis == "vx_backward" else 1.0
@@ -65,70 +60,41 @@ def command_of(axis: str, speed: float) -> VelocityCommand:
     return VelocityCommand(**{name: sign * speed})
 
 
-def random_commands(
-    speed: dict[str, float],
-    scale: float,
-    seed: int,
-    *,
-    stops: float = STOPS,
-    corners: float = CORNERS,
-) -> Callable[[float], VelocityCommand]:
-    """Return random commands within an envelope, by time.
-
-    Args:
-        speed: envelope.
-        scale: scale of the time between changes, 0.5 to 2 s for HSR-VIII [1].
-        seed: seed of the commands.
-        stops: fraction of commands to stand [1].
-        corners: fraction of commands with the maximum speed along every axis [1].
-    """
-    rng = np.random.default_rng([seed, 5])
-    low = np.array([-speed["vx_backward"], -speed["vy"], -speed["wz"]])
-    high = np.array([speed["vx"], speed["vy"], speed["wz"]])
-    ends, commands = [0.0], []
-    while ends[-1] < 3600.0:
-        ends.append(ends[-1] + scale * float(rng.uniform(0.5, 2.0)))
-        kind, drawn = float(rng.uniform()), rng.uniform(low, high)
-        if kind < stops:
-            drawn = np.zeros(3)
-        elif kind < stops + corners:
-            drawn = np.where(rng.uniform(size=3) < 0.5, low, high)
-        commands.append(VelocityCommand(*drawn.tolist()))
-    return lambda time: commands[int(np.searchsorted(ends, time, side="right")) - 1]
-
-
-def random_head(robot: LoadedRobot, seed: int) -> Callable[[float], HeadTarget]:
-    """Return random head targets within the range of the head, by time."""
-    rng = np.random.default_rng([seed, 6])
-    low, high = robot.model.neck.range().T
-    low, high = np.maximum(low, (-0.5 * pi, -pi / 3.0)), np.minimum(high, (0.5 * pi, pi / 9.0))
-    targets = [HeadTarget(*rng.uniform(low, np.maximum(low, high)).tolist()) for _ in range(9000)]
-    return lambda time: targets[int(time / HEAD_INTERVAL)]
-
-
 def calibrate(
     robot: LoadedRobot, report: Report = lambda _line: None
 ) -> tuple[Measured, list[str]]:
     """Measure a robot; return warnings of speeds far below the rehearsed ones, too.
 
+    The speeds are reduced until the robot walks under random commands, and passes its check.
+
     Args:
         robot: robot with its rehearsed limits.
         report: receives a line per result.
+
+    Raises:
+        ModelError: the robot would be too slow for navigation.
     """
     parameters = robot.parameters
     trial, scale = Trial(robot), time_scale(parameters)
     limits = {axis: _axis_limit(trial, axis, scale, report) for axis in AXES}
-    speed = {axis: limit.speed for axis, limit in limits.items()}
+    speed = {axis: _digits(limit.speed) for axis, limit in limits.items()}
     reasons = {axis: limit.reason for axis, limit in limits.items()}
     while True:
+        _require_speed(robot, speed, reasons)
         trial.parameters = replace(parameters, limits=replace(parameters.limits, **speed))
         walks = list(_random_walks(trial, speed, scale))
         falls = sum(walk.falls for walk in walks)
         report(f"random commands in {_text(speed)}: {falls} falls in {len(walks)} walks")
+        limiting = walks[-1].limiting_joint(robot.model)
         if not falls:
-            break
-        speed = {axis: SHRINK * value for axis, value in speed.items()}
-        reasons = dict.fromkeys(AXES, walks[-1].limiting_joint(robot.model))
+            limited = replace(robot, parameters=trial.parameters)
+            failed = [result for result in check_robot(limited)[0] if result.reason()]
+            report(f"check in {_text(speed)}: {failed[0].reason() if failed else 'passed'}")
+            if not failed:
+                break
+            limiting = failed[0].limit
+        speed = {axis: _digits(SHRINK * value) for axis, value in speed.items()}
+        reasons = dict.fromkeys(AXES, limiting)
     warnings = [
         f"{axis}: {speed[axis] / top:.0%} of the rehearsed {top:.3g}: {reasons[axis]}"
         for axis in AXES
@@ -137,7 +103,7 @@ def calibrate(
     noise = _odometry_noise(walks)
     sigmas = np.sqrt(np.mean(np.concatenate([w.camera for w in walks]) ** 2, axis=0)).tolist()
     measured = Measured(
-        speed={axis: _digits(value) for axis, value in speed.items()},
+        speed=speed,
         turn_delay=_digits(_turn_delay(trial, speed["wz"], scale)),
         lag=_digits(float(np.mean([_lag(walk) for walk in walks]))),
         forward_noise=_digits(noise[0]),
@@ -148,6 +114,22 @@ def calibrate(
         height_sigma=_digits(sigmas[3]),
     )
     return measured, warnings
+
+
+def _require_speed(
+    robot: LoadedRobot, speed: Mapping[str, float], reasons: Mapping[str, str]
+) -> None:
+    """Refuse a robot that is too slow for navigation.
+
+    Raises:
+        ModelError: it is; the message names the joint that limits it.
+    """
+    axis = min(speed, key=lambda axis: speed[axis])
+    if speed[axis] < MIN_SPEED:
+        raise ModelError(
+            f"{robot.name}: {axis}: falls or walks inexactly at higher speeds, got "
+            f"{speed[axis]:g}; expected at least {MIN_SPEED:g}: {reasons[axis]}"
+        )
 
 
 def _axis_limit(trial: Trial, axis: str, scale: float, report: Report) -> _Limit:

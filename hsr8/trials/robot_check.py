@@ -10,7 +10,7 @@ from hsr8.robots.defaults import navigation_speed
 from hsr8.robots.loaded import LoadedRobot
 from hsr8.robots.rules import one_leg_load
 from hsr8.robots.servos import OWN_SERVOS
-from hsr8.trials.calibration import MAX_TILT, random_commands, random_head, time_scale
+from hsr8.trials.commands import random_commands, random_head, time_scale
 from hsr8.trials.walk import Trial, Walked
 from walking.body.robot_model import RobotModel
 from walking.command import VelocityCommand
@@ -22,6 +22,7 @@ Report = Callable[["WalkResult"], None]
 WALK_TIME = 9.0  # of each walk, in the time scale of HSR-VIII [s]
 FRACTION = 0.5  # of the speed limits at which the robot walks [1]
 RANDOM_SEEDS, RANDOM_WALKS = range(4), 3.0  # walks under random commands, and their length [1]
+MAX_TILT = 8.0  # of the trunk, 99th percentile in a steady walk [deg]
 MAX_ERROR = 0.2  # of a velocity that still counts as followed, relative [1]
 DIRECTIONS: dict[str, tuple[str, float]] = {  # speed limit and sign
     "stand": ("vx", 0.0),
