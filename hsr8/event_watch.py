@@ -5,8 +5,7 @@ from collections.abc import Iterator, Sequence
 from hsr8.decisions import FrameRecord
 from hsr8.record import Event
 from hsr8.scenario.fault import Fault
-from hsr8.world.truth.counters import CollisionCounter, Falls
-from hsr8.world.truth.truth import Truth
+from hsr8.world.truth.truth import CollisionCounter, Falls, Truth
 
 SAME_TIME = 1e-6  # times closer than this are equal [s]
 

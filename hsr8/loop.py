@@ -30,8 +30,7 @@ from hsr8.scenario.schema import Scenario
 from hsr8.seeds import named_rng
 from hsr8.world.body.faults import SensorFaults, ServoFaults
 from hsr8.world.camera.analytic import AnalyticCamera
-from hsr8.world.camera.faults import CameraFaults
-from hsr8.world.camera.feed import CameraFeed, CapturedFrame
+from hsr8.world.camera.feed import CameraFaults, CameraFeed, CapturedFrame
 from hsr8.world.camera.rendered import RenderedCamera
 from hsr8.world.field.generator import draw_world
 from hsr8.world.model.index import ModelIndex

@@ -19,8 +19,7 @@ from hsr8.recorder.derived import truth_at
 from hsr8.recorder.table import Table
 from hsr8.world.field.certificate import Certificate
 from hsr8.world.field.layout import Layout
-from hsr8.world.truth.counters import RECOVERY_TIME, CollisionCounter, Falls
-from hsr8.world.truth.truth import Contact
+from hsr8.world.truth.truth import RECOVERY_TIME, CollisionCounter, Contact, Falls
 from navigation.angles import wrap
 from navigation.parameters.navigation import MissionParameters
 

@@ -1,10 +1,12 @@
 """Sources of a scenario: files that extend each other, tables of options, and overrides."""
 
 import hashlib
+import os
 import re
 import tomllib
 import unicodedata
 from collections.abc import Mapping, Sequence
+from copy import deepcopy
 from dataclasses import dataclass
 from pathlib import Path as FilePath
 from typing import Any
@@ -16,14 +18,14 @@ from hsr8.files.key_lines import lines_of
 from hsr8.files.regular import read_text
 from hsr8.files.toml import MAX_SIZE, TomlError, parse_toml
 from hsr8.keys import Path
-from hsr8.scenario.plugin import located_plugins
-from hsr8.scenario.robot import located
+from hsr8.scenario.plugin import KINDS
 from hsr8.scenario.scaling import merged
-from hsr8.scenario.track_file import located_tracks
+from hsr8.scenario.track_file import track_movers
 from hsr8.suggestion import suggestion
 
 BUILT_IN = FilePath(__file__).resolve().parents[1] / "scenarios"
 MAX_EXTENDED = 16  # files that extend each other
+ROBOT_SUFFIX = ".toml"  # of the file of a robot, which no name has
 
 Table = dict[str, Any]
 
@@ -73,15 +75,34 @@ class Layer:
     built_in: bool = False
 
     def located(self) -> Table:
-        """Return the tables with absolute paths of the files that they name."""
-        folder = FilePath(self.source).parent
-        table = located_tracks(located(self.table, folder), folder)
-        return table if self.text is None else located_plugins(table, folder)
+        """Return the tables with absolute paths of the files that they name and that exist.
+
+        Relative paths begin in the folder of the file, else, but for plugins, in the working
+        folder.
+        """
+        table, folder = deepcopy(self.table), FilePath(self.source).parent
+        robot, plugin = table.get("robot"), table.get("plugin")
+        if isinstance(robot, dict) and str(robot.get("model")).endswith(ROBOT_SUFFIX):
+            robot["model"] = _absolute(robot["model"], folder, FilePath())
+        for _, mover in track_movers(table):
+            mover["file"] = _absolute(mover["file"], folder, FilePath())
+        if self.text is not None and isinstance(plugin, dict):
+            for kind in plugin.keys() & KINDS:
+                file, colon, name = str(plugin[kind]).rpartition(":")
+                if colon:
+                    plugin[kind] = f"{_absolute(file, folder)}:{name}"
+        return table
 
     def locations(self, paths: Sequence[Path]) -> dict[Path, str]:
         """Return file and line, or option, that gives the key at each path."""
         lines = {} if self.text is None else lines_of(self.text, paths)
         return {p: f"{self.source}:{lines[p]}" if p in lines else self.source for p in paths}
+
+
+def _absolute(name: str, *folders: FilePath) -> str:
+    """Return the absolute path of a file in the first folder that has it, else its name."""
+    files = (folder / os.path.expanduser(name) for folder in folders)
+    return next((str(file.absolute()) for file in files if os.path.exists(file)), name)
 
 
 def find_scenario(name_or_path: str) -> FilePath:

@@ -1,9 +1,6 @@
 """Section ``[plugin]``: a user-defined planner, gaze and walker."""
 
-import os
-from collections.abc import Mapping
-from pathlib import Path
-from typing import Annotated, Any
+from typing import Annotated
 
 from annotated_types import doc
 from pydantic import Field, PrivateAttr
@@ -43,22 +40,3 @@ class Plugin(Section):
     def untrusted(self) -> dict[str, str]:
         """Kinds whose code must not run without consent, and the place that names each."""
         return self._untrusted
-
-
-def located_plugins(table: Mapping[str, Any], folder: Path) -> dict[str, Any]:
-    """Return a scenario's tables with the absolute paths of the plugins next to it.
-
-    Args:
-        table: table with `plugin` or without.
-        folder: folder in which a relative path begins; else it begins in the working folder.
-    """
-    plugin = table.get("plugin")
-    if not isinstance(plugin, dict):
-        return dict(table)
-    located = {}
-    for kind, reference in plugin.items():
-        name, colon, word = str(reference).rpartition(":")
-        file = folder / os.path.expanduser(name)
-        relative_file = colon and kind in KINDS and os.path.isfile(file)
-        located[kind] = f"{file.absolute()}:{word}" if relative_file else reference
-    return {**table, "plugin": located}

@@ -1,9 +1,6 @@
 """Section ``[robot]``: body, initial pose and speed limits."""
 
-import os
-from collections.abc import Mapping
-from pathlib import Path
-from typing import Annotated, Any, Literal
+from typing import Annotated, Literal
 
 from annotated_types import Interval, Len, doc
 
@@ -12,7 +9,6 @@ from hsr8.scenario.world import Start
 
 NOMINAL_SPEED = 0.20
 """Maximum forward speed of HSR-VIII, by which the times of worlds scale [m/s]."""
-SUFFIX = ".toml"  # of the file of a robot, which no name has
 
 WalkingSpeed = Annotated[float, Interval(ge=0.01, le=5.0), "m/s"]
 
@@ -52,19 +48,3 @@ class Robot(Section):
     ] = 0.12
     start: Annotated[Start, doc("Initial pose.")] = Start()
     speed: Annotated[SpeedEnvelope, doc("Speed limits of navigation.")] = SpeedEnvelope()
-
-
-def located(table: Mapping[str, Any], folder: Path) -> dict[str, Any]:
-    """Return a scenario's tables with the absolute path of the robot's file, if it exists.
-
-    Args:
-        table: table with `robot.model` or without.
-        folder: folder in which a relative path begins; else it begins in the working folder.
-    """
-    robot = table.get("robot")
-    if not isinstance(robot, dict) or not str(robot.get("model")).endswith(SUFFIX):
-        return dict(table)
-    model = str(robot["model"])
-    file = Path(os.path.expanduser(model))
-    paths = (path.absolute() for path in (folder / file, file) if os.path.isfile(path))
-    return {**table, "robot": {**robot, "model": str(next(paths, model))}}

@@ -7,7 +7,6 @@ semicolons, numbers may have decimal commas. A scenario holds them as text, see 
 import csv
 import hashlib
 import math
-import os
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from functools import lru_cache
@@ -55,24 +54,17 @@ class RecordedTrack:
     points: Array
 
 
-def located_tracks(table: Mapping[str, Any], folder: Path) -> Table:
-    """Return a scenario's tables with the absolute paths of the track files that exist.
-
-    Args:
-        table: table with `world.mover` or without.
-        folder: folder in which a relative path begins; else it begins in the working folder.
-    """
-    world = table.get("world")
-    if not isinstance(world, dict) or not isinstance(world.get("mover"), list):
-        return dict(table)
-    movers = [_located(mover, folder) if _is_track(mover) else mover for mover in world["mover"]]
-    return {**table, "world": {**world, "mover": movers}}
-
-
-def _located(mover: Table, folder: Path) -> Table:
-    name = os.path.expanduser(mover["file"])
-    paths = (os.path.abspath(path) for path in (folder / name, name) if os.path.exists(path))
-    return {**mover, "file": next(paths, mover["file"])}
+def track_movers(tables: Mapping[str, Any]) -> Iterator[tuple[int, Table]]:
+    """Yield the tables of recorded movers in the tables of a scenario, and their indices."""
+    world = tables.get("world")
+    movers = world.get("mover") if isinstance(world, dict) else None
+    for i, mover in enumerate(movers if isinstance(movers, list) else ()):
+        if (
+            isinstance(mover, dict)
+            and mover.get("motion") == "track"
+            and isinstance(mover.get("file"), str)
+        ):
+            yield i, mover
 
 
 def read_tracks(tables: Table) -> list[Mistake]:
@@ -80,21 +72,18 @@ def read_tracks(tables: Table) -> list[Mistake]:
 
     The content replaces the file: its name alone is kept.
     """
-    world = tables.get("world")
-    if not isinstance(world, dict) or not isinstance(world.get("mover"), list):
-        return []
-    movers, problems, room = list(world["mover"]), [], MAX_SIZE
-    for i, mover in enumerate(movers):
-        if not _is_track(mover):
-            continue
+    problems, room, read = list[Mistake](), MAX_SIZE, dict[int, Table]()
+    for i, mover in track_movers(tables):
         name, data = Path(mover["file"]).name, mover.get("data")
         try:
             text = data if isinstance(data, str) and data else _read(mover["file"], room)
             room -= len(text)
-            movers[i] = {**mover, "file": name, "data": content(text)}
+            read[i] = {**mover, "file": name, "data": content(text)}
         except TrackFileError as error:
             problems.append(Mistake(("world", "mover", i, "file"), f"{name}, {error}"))
-    tables["world"] = {**world, "mover": movers}
+    if read:
+        movers = [read.get(i, mover) for i, mover in enumerate(tables["world"]["mover"])]
+        tables["world"] = {**tables["world"], "mover": movers}
     return problems
 
 
@@ -105,14 +94,6 @@ def legible(tables: Table) -> Table:
         for m in tables["world"]["mover"]
     ]
     return {**tables, "world": {**tables["world"], "mover": movers}}
-
-
-def _is_track(mover: Any) -> bool:
-    return (
-        isinstance(mover, dict)
-        and mover.get("motion") == "track"
-        and isinstance(mover.get("file"), str)
-    )
 
 
 def _read(file: str, max_size: int) -> str:

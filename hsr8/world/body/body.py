@@ -9,9 +9,10 @@ from numpy.typing import NDArray
 from hsr8.robots.loaded import LoadedRobot
 from hsr8.world.field.layout import Layout
 from hsr8.world.model.index import ModelIndex
+from hsr8.world.rotation import heading, up_component
 from hsr8.world.truth.contacts import ContactWatch
 from hsr8.world.truth.saturation import Saturation
-from hsr8.world.truth.truth import Truth
+from hsr8.world.truth.truth import ActivePush, Truth
 from walking.signals import BodySensors, JointTargets
 
 
@@ -50,6 +51,8 @@ class Body(Protocol):
 Array = NDArray[np.float64]
 
 BLOCK = 256  # physics steps per computation of the motion of the movers
+FALLEN_RATIO = 0.64  # base height over that in the ready posture, below which it has fallen [1]
+FALLEN_TILT = 0.5  # cosine of the tilt, below which the robot has fallen [1]
 
 
 class Surroundings:
@@ -68,10 +71,9 @@ class Surroundings:
     def __init__(self, model: mujoco.MjModel, robot: LoadedRobot, layout: Layout) -> None:
         static = layout.static
         self._movers = layout.motion()
-        self._n_static = len(static)
-        self._positions = np.zeros((len(layout.obstacles), 2))  # static obstacles, then movers
-        self._positions[: len(static)] = np.reshape([o.position for o in static], (-1, 2))
-        self._zeros = np.zeros_like(self._positions)
+        self._static = np.reshape([o.position for o in static], (-1, 2))
+        self._at_rest = np.zeros_like(self._static)
+        self._ready_height = robot.height
         self.index = ModelIndex.of(model, robot, len(static), len(self._movers))
         self.watch = ContactWatch(model, self.index, layout)
         self._timestep = float(model.opt.timestep)
@@ -96,19 +98,44 @@ class Surroundings:
         self._row = number - self._first
         data.mocap_pos[:] = self._block[self._row]
 
-    def positions(self, data: mujoco.MjData) -> Array:
-        """Return the axes of all obstacles in `data`, layout order (n, 2) [m]."""
-        movers = data.mocap_pos.take(self.index.mover_mocap, axis=0)
-        return self._with(self._positions, movers[:, :2])
+    def truth(
+        self,
+        data: mujoco.MjData,
+        time: float,
+        *,
+        joint_torque: Array,
+        foot_force: Array,
+        zmp: Array,
+        pushes: tuple[ActivePush, ...] = (),
+    ) -> Truth:
+        """Return the ground truth of robot and obstacles, with the contacts since the last call.
 
-    def velocities(self, time: float) -> Array:
-        """Return the velocities of all obstacles at `time` [s], layout order (n, 2) [m/s]."""
+        Args:
+            data: state of the world, with its poses.
+            time: simulated time [s].
+            joint_torque: torques of the joints (n,) [N m].
+            foot_force: normal force under the left and right foot (2,) [N].
+            zmp: centre of pressure under both feet in W (2,) [m].
+            pushes: pushes since the last call.
+        """
+        qpos, root = data.qpos.copy(), self.index.root_qpos
+        x, y, z = qpos[root : root + 3].tolist()
+        attitude = qpos[root + 3 : root + 7]
+        low = z < FALLEN_RATIO * self._ready_height
+        movers = data.mocap_pos.take(self.index.mover_mocap, axis=0)[:, :2]
         stepped = self._ends[self._row] == time
-        movers = self._velocities[self._row] if stepped else self._movers.velocities(time)
-        return self._with(self._zeros, movers)
-
-    def _with(self, static: Array, movers: Array) -> Array:
-        """Return rows of static obstacles, then those of the movers."""
-        rows = static.copy()
-        rows[self._n_static :] = movers
-        return rows
+        moving = self._velocities[self._row] if stepped else self._movers.velocities(time)
+        return Truth(
+            time=time,
+            qpos=qpos,
+            robot=np.array([x, y, heading(attitude)]),
+            obstacle_positions=np.concatenate([self._static, movers]),
+            obstacle_velocities=np.concatenate([self._at_rest, moving]),
+            contacts=self.watch.take(),
+            clearance=self.watch.clearance(data),
+            joint_torque=joint_torque,
+            foot_force=foot_force,
+            zmp=zmp,
+            fallen=low or up_component(attitude) < FALLEN_TILT,
+            pushes=pushes,
+        )

@@ -14,10 +14,10 @@ from compilation import compiled
 from hsr8.robots.loaded import LoadedRobot
 from hsr8.scenario.sensors import SensorNoise
 from hsr8.world.body.body import Surroundings
-from hsr8.world.body.physics import has_fallen, place_robot
+from hsr8.world.body.physics import place_robot
 from hsr8.world.body.sensors import SensorSuite
 from hsr8.world.field.layout import Layout
-from hsr8.world.rotation import Quaternion, heading, product, rotate
+from hsr8.world.rotation import Quaternion, product, rotate
 from hsr8.world.truth.truth import Truth
 from walking.parameters import CONTROL_PERIOD, GRAVITY
 from walking.signals import BodySensors, JointTargets
@@ -73,7 +73,6 @@ class KinematicBody:
         self._feet = model.site_bodyid[sites].astype(np.intp)
         self._soles = np.hstack([model.site_pos[sites], model.site_quat[sites]])
         place_robot(model, self.data, robot, np.array(layout.start))
-        self._ready_height = float(self.data.qpos[self._index.root_qpos + 2])
         mujoco.mj_kinematics(model, self.data)
         self._joints = self.data.qpos[self._index.joint_qpos].copy()
         self._gyro = np.zeros(3)
@@ -132,26 +131,17 @@ class KinematicBody:
 
     def truth(self) -> Truth:
         """Return the ground truth now; the robot falls if its joint targets tip it over."""
-        data, root = self.data, self._index.root_qpos
+        data, surroundings = self.data, self._surroundings
         if self._tick % CONTACT_TICKS:
-            self._surroundings.move(data, self.time)
+            surroundings.move(data, self.time)
             mujoco.mj_kinematics(self.model, data)
-        qpos = data.qpos.copy()
-        base = qpos[root : root + 7]
-        robot = np.array([*base[:2].tolist(), heading(base[3:])])
         feet = data.site_xpos[list(self._index.foot_sites), :2]
-        return Truth(
-            time=self.time,
-            qpos=qpos,
-            robot=robot,
-            obstacle_positions=self._surroundings.positions(data),
-            obstacle_velocities=self._surroundings.velocities(self.time),
-            contacts=self._surroundings.watch.take(),
-            clearance=self._surroundings.watch.clearance(data),
+        return surroundings.truth(
+            data,
+            self.time,
             joint_torque=np.zeros(len(self._joints)),
             foot_force=self._loads[self._support],
             zmp=LOAD_FRACTIONS[self._support] @ feet,
-            fallen=has_fallen(base, self._ready_height),
         )
 
     def saturation(self) -> None:

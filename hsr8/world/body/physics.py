@@ -16,16 +16,13 @@ from hsr8.world.body.faults import WorldFaults
 from hsr8.world.body.pushes import Pusher, ScheduledPush
 from hsr8.world.body.sensors import SensorSuite
 from hsr8.world.field.layout import Layout
-from hsr8.world.rotation import heading, quaternion_from_yaw, up_component
+from hsr8.world.rotation import heading, quaternion_from_yaw
 from hsr8.world.truth.saturation import Saturation, SaturationWatch
 from hsr8.world.truth.truth import Truth
 from walking.parameters import CONTROL_PERIOD
 from walking.signals import BodySensors, JointTargets
 
 Array = NDArray[np.float64]
-
-FALLEN_RATIO = 0.64  # base height over that in the ready posture, below which it has fallen [1]
-FALLEN_TILT = 0.5  # cosine of the tilt, below which the robot has fallen [1]
 
 
 def place_robot(
@@ -42,17 +39,6 @@ def place_robot(
     data.qpos[root + 3 : root + 7] = quaternion_from_yaw(yaw)
     mujoco.mj_fwdPosition(model, data)
     data.ctrl[:] = data.actuator_length  # also of the joints that walking does not move
-
-
-def has_fallen(base: Array, ready_height: float) -> bool:
-    """Return whether a robot lies, or leans too far to stand.
-
-    Args:
-        base: its position [m] and quaternion (7,).
-        ready_height: height of the base in the ready posture [m].
-    """
-    low = float(base[2]) < FALLEN_RATIO * ready_height
-    return low or up_component(base[3:]) < FALLEN_TILT
 
 
 class PhysicsBody:
@@ -100,7 +86,6 @@ class PhysicsBody:
         self._timestep = float(model.opt.timestep)
         self._state = np.empty(mujoco.mj_stateSize(model, mujoco.mjtState.mjSTATE_INTEGRATION))
         place_robot(model, self.data, robot, np.array(layout.start))
-        self._ready_height = float(self.data.qpos[self._index.root_qpos + 2])
         self._surroundings.move(self.data, 0.0)
         # `apply` counts and raises warnings; MuJoCo must not write its log file.
         if mujoco.get_mju_user_warning() is None:
@@ -150,23 +135,14 @@ class PhysicsBody:
         mujoco.mj_camlight(self.model, self.data)
 
     def truth(self) -> Truth:
-        data, index = self.data, self._index
-        qpos = data.qpos.copy()
-        base = qpos[index.root_qpos : index.root_qpos + 7]
-        robot = np.array([*base[:2].tolist(), heading(base[3:])])
+        data = self.data
         load, pressure = self._surroundings.watch.feet(data)
-        return Truth(
-            time=self.time,
-            qpos=qpos,
-            robot=robot,
-            obstacle_positions=self._surroundings.positions(data),
-            obstacle_velocities=self._surroundings.velocities(self.time),
-            contacts=self._surroundings.watch.take(),
-            clearance=self._surroundings.watch.clearance(data),
-            joint_torque=data.actuator_force[index.actuators],
+        return self._surroundings.truth(
+            data,
+            self.time,
+            joint_torque=data.actuator_force[self._index.actuators],
             foot_force=load,
             zmp=pressure,
-            fallen=has_fallen(base, self._ready_height),
             pushes=self._pusher.take(),
         )
 

@@ -16,7 +16,7 @@ from hsr8.robots.normal_form import HEAD_CAMERA
 from hsr8.scenario.fault import ticks
 from hsr8.scenario.sensors import Camera
 from hsr8.world.body.body import Body
-from hsr8.world.camera.faults import CameraFaults
+from hsr8.world.camera.feed import CameraFaults
 from hsr8.world.field.layout import Beacon, Layout, Obstacle
 from hsr8.world.rotation import heading
 from navigation.angles import wrap, wrapped

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from hsr8.robots.normal_form import HEAD_CAMERA
 from hsr8.scenario.fault import ticks
 from hsr8.scenario.sensors import Camera
-from hsr8.world.camera.faults import CameraFaults
+from hsr8.world.camera.feed import CameraFaults
 from hsr8.world.camera.frustum import Frustum
 from hsr8.world.camera.image_noise import ImageNoise
 from hsr8.world.camera.motion_blur import MotionBlur

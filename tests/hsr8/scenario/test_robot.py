@@ -1,7 +1,7 @@
 import pytest
 
+from hsr8.scenario.layers import Layer
 from hsr8.scenario.loader import load_scenario
-from hsr8.scenario.robot import located
 
 
 @pytest.fixture
@@ -28,7 +28,7 @@ def folders(tmp_path, monkeypatch):
 )
 def test_a_file_is_searched_next_to_the_scenario_and_in_the_working_folder(model, file, folders):
     table = {"robot": {"model": model, "radius": 0.1}, "seed": 1}
-    absolute = located(table, folders / "scenarios")
+    absolute = Layer(table, str(folders / "scenarios" / "this.toml")).located()
     assert absolute == {
         "robot": {"model": file.format(folders), "radius": 0.1},
         "seed": 1,
@@ -38,7 +38,7 @@ def test_a_file_is_searched_next_to_the_scenario_and_in_the_working_folder(model
 
 def test_the_home_folder_is_expanded(folders, monkeypatch):
     monkeypatch.setenv("HOME", str(folders / "elsewhere"))
-    table = located({"robot": {"model": "~/elsewhere.toml"}}, folders)
+    table = Layer({"robot": {"model": "~/elsewhere.toml"}}, str(folders / "this.toml")).located()
     assert table["robot"]["model"] == str(folders / "elsewhere" / "elsewhere.toml")
 
 

@@ -16,7 +16,7 @@ from hsr8.world.camera.analytic import (
     project,
     project_all,
 )
-from hsr8.world.camera.faults import CameraFaults
+from hsr8.world.camera.feed import CameraFaults
 from hsr8.world.field.layout import Obstacle
 from navigation.observation import Sight
 from tests.vision.scene import CAMERA, pose

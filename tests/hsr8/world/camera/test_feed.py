@@ -5,8 +5,7 @@ from hypothesis import strategies as st
 
 from hsr8.scenario.fault import CameraDrops, CameraLatency
 from hsr8.scenario.sensors import Camera
-from hsr8.world.camera.faults import CameraFaults
-from hsr8.world.camera.feed import CameraFeed, CapturedFrame
+from hsr8.world.camera.feed import CameraFaults, CameraFeed, CapturedFrame
 
 
 def deliveries(ticks=400, seed=0, faults=(), **settings):

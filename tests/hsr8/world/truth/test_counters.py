@@ -3,8 +3,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from hsr8.world.truth.counters import RECOVERY_TIME, CollisionCounter, Falls
-from hsr8.world.truth.truth import Contact
+from hsr8.world.truth.truth import RECOVERY_TIME, CollisionCounter, Contact, Falls
 
 
 def _touch(obstacle, moving=False, closing=True):
