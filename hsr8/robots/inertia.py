@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 
 from hsr8.errors import ModelError
 from hsr8.robots.key_mistake import RepairableError
+from hsr8.robots.skeleton import matrix_of, quaternion_of
 
 if TYPE_CHECKING:
     from hsr8.robots.prepare import Place
@@ -158,19 +159,15 @@ def _tensor(body: mujoco.MjsBody) -> Array:
     local = np.array([[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]])
     if not np.isfinite(xx):
         local = np.diag(np.array(body.inertia))
-    turn = np.empty(9)
     quat = np.array(body.iquat, float)
-    mujoco.mju_quat2Mat(turn, quat / np.linalg.norm(quat))
-    rotation = turn.reshape(3, 3)
+    rotation = matrix_of(quat / np.linalg.norm(quat))
     tensor: Array = rotation @ local @ rotation.T
     return tensor
 
 
 def _set(body: mujoco.MjsBody, mass: float, com: Array, moments: Array, axes: Array) -> None:
     """State the inertia of a body: principal moments (3,) [kg m²] about the columns of axes."""
-    quat = np.empty(4)
-    mujoco.mju_mat2Quat(quat, np.ascontiguousarray(axes).ravel())
-    body.mass, body.ipos, body.iquat, body.inertia = mass, com, quat, moments
+    body.mass, body.ipos, body.iquat, body.inertia = mass, com, quaternion_of(axes), moments
     body.fullinertia = np.full(6, np.nan)
     body.ialt.type = mujoco.mjtOrientation.mjORIENTATION_QUAT
     body.explicitinertial = True

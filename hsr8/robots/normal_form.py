@@ -18,7 +18,7 @@ from hsr8.robots.files import models_dir
 from hsr8.robots.prepare import Prepared
 from hsr8.robots.roles import Roles, pose_of
 from hsr8.robots.servos import physics_step
-from hsr8.robots.skeleton import BaseFrame, Posed
+from hsr8.robots.skeleton import BaseFrame, Posed, quaternion_of
 from hsr8.robots.soles import Rectangle
 from hsr8.robots.tree import Parts
 from walking.body.tree import Sole
@@ -115,7 +115,7 @@ def normalise(
     for side in range(2):
         sole = _add_sole(spec, zero, roles, side, soles[side])
     spec.body(roles.base).add_site(
-        name=IMU, pos=roles.frame.origin, quat=_quaternion(roles.frame.rotation.T)
+        name=IMU, pos=roles.frame.origin, quat=quaternion_of(roles.frame.rotation.T)
     )
     kinds = mujoco.mjtSensor, mujoco.mjtObj
     spec.add_sensor(
@@ -210,7 +210,7 @@ def _add_sole(spec: mujoco.MjSpec, zero: Posed, roles: Roles, side: int, edges: 
     model, data = zero.model, zero.data
     body, at = spec.body(roles.feet[side]), model.body(roles.feet[side]).id
     rotation, position = data.xmat[at].reshape(3, 3), data.xpos[at]
-    quaternion = _quaternion(rotation.T)
+    quaternion = quaternion_of(rotation.T)
     ankle = max(roles.legs[side][4:], key=lambda name: abs(data.xaxis[model.joint(name).id][1]))
     x = float(data.xanchor[model.joint(ankle).id][0])
     y = 0.5 * (edges.left + edges.right)
@@ -277,7 +277,7 @@ def rebase(spec: mujoco.MjSpec, root: str, base: BaseFrame) -> None:
         base: frame of the base.
     """
     body = spec.body(root)
-    turn = _quaternion(base.rotation)
+    turn = quaternion_of(base.rotation)
     parts = [*body.bodies, *body.geoms, *body.sites, *body.cameras, *body.lights, *body.frames]
     frame = body.add_frame(pos=-base.rotation @ base.origin, quat=turn)
     for part in parts:
@@ -348,12 +348,6 @@ def _add_camera(spec: mujoco.MjSpec, zero: Posed, pose: tuple[str, Array, Array]
     frame = data.xmat[at].reshape(3, 3)
     offset = frame.T @ (position - data.xpos[at])
     carrier = spec.body(body)
-    carrier.add_site(name=CAMERA_SITE, pos=offset, quat=_quaternion(frame.T @ rotation))
+    carrier.add_site(name=CAMERA_SITE, pos=offset, quat=quaternion_of(frame.T @ rotation))
     looking = rotation * (1.0, -1.0, -1.0)  # MuJoCo cameras look along -z with y up
-    carrier.add_camera(name=HEAD_CAMERA, pos=offset, quat=_quaternion(frame.T @ looking))
-
-
-def _quaternion(rotation: Array) -> Array:
-    quaternion = np.empty(4)
-    mujoco.mju_mat2Quat(quaternion, np.ascontiguousarray(rotation).ravel())
-    return quaternion
+    carrier.add_camera(name=HEAD_CAMERA, pos=offset, quat=quaternion_of(frame.T @ looking))

@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from hsr8.errors import ModelError
 from hsr8.robots.normal_form import COLLISION_GROUP
 from hsr8.robots.roles import Roles
-from hsr8.robots.skeleton import Posed, is_below
+from hsr8.robots.skeleton import Posed, is_below, path_up
 
 Array = NDArray[np.float64]
 
@@ -176,10 +176,5 @@ def _remedy(joints: list[str], roles: Roles) -> str:
 
 def _joints_between(model: mujoco.MjModel, one: int, other: int) -> list[str]:
     """Return the joints between two bodies."""
-    paths = []
-    for body in (one, other):
-        paths.append([body])
-        while paths[-1][-1] > 0:
-            paths[-1].append(int(model.body_parentid[paths[-1][-1]]))
-    apart = {*paths[0]} ^ {*paths[1]}
+    apart = {*path_up(model, one)} ^ {*path_up(model, other)}
     return [model.joint(j).name for j in range(model.njnt) if model.jnt_bodyid[j] in apart]

@@ -17,6 +17,7 @@ from hsr8.errors import ModelError
 from hsr8.robots.inertia import complete_inertias
 from hsr8.robots.key_mistake import KeyMistake, require_name
 from hsr8.robots.read import ModelFile
+from hsr8.robots.skeleton import matrix_of
 
 Array = NDArray[np.float64]
 
@@ -381,9 +382,8 @@ def _places(spec: mujoco.MjSpec, root: str) -> dict[str, Place]:
         if body.joints or body.name == root:
             continue
         above = places.get(body.parent.name, Place(body.parent.name, np.eye(4)))
-        pose, turn = np.eye(4), np.empty(9)
-        mujoco.mju_quat2Mat(turn, orientation(spec, body))
-        pose[:3, :3], pose[:3, 3] = turn.reshape(3, 3), body.pos
+        pose = np.eye(4)
+        pose[:3, :3], pose[:3, 3] = matrix_of(orientation(spec, body)), body.pos
         with np.errstate(invalid="ignore"):  # wrong numbers are reported later
             places[body.name] = Place(above.body, above.pose @ pose)
     return places

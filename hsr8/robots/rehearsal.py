@@ -4,7 +4,6 @@ Scaling by similarity ignores the speed, range and torque of the joints. The eng
 own setpoints as sensor readings, and inverse dynamics gives the torques.
 """
 
-from collections.abc import Callable
 from dataclasses import dataclass, replace
 from math import cos, sin
 
@@ -18,6 +17,8 @@ from walking.parameters import CONTROL_PERIOD, GRAVITY, WalkingParameters
 from walking.plane import Array
 from walking.signals import BodySensors
 
+AXES = ("vx", "vx_backward", "vy", "wz")
+"""Speed limits, each of which bounds a command along one axis."""
 STEPS = 8  # footsteps of a rehearsal
 MAX_SPEED, MAX_TORQUE = 1.2, 1.0  # of the joints, of their maximum [1]
 IN_PLACE_SPEED = 0.55  # of the joints in stepping in place, so that speed is left for the walk [1]
@@ -36,10 +37,10 @@ class Demand:
     """Demand of a walk on the joints.
 
     Attributes:
-        speed: of the fastest joint, of its maximum [1].
-        torque: of the most loaded joint, of its maximum [1].
+        speed: speed of the fastest joint over its maximum [1].
+        torque: torque of the most loaded joint over its maximum [1].
         room: smallest distance to a joint limit [rad].
-        joint: that binds, for people.
+        joint: name of the joint that binds.
     """
 
     speed: float
@@ -69,9 +70,9 @@ def rehearse(robot: RobotModel, parameters: WalkingParameters, command: Velocity
     """Return the demand of a walk.
 
     Args:
-        robot: that walks.
-        parameters: of its walk.
-        command: constant.
+        robot: walking robot.
+        parameters: parameters of the walk.
+        command: constant command.
     """
     angles, loads, loaded = _walk(robot, parameters, command)
     speeds = np.abs(np.diff(angles, axis=0)) / CONTROL_PERIOD / robot.tree.speed[:12]
@@ -91,8 +92,8 @@ def within_joints(
     """Return parameters with swing height, footstep time and speed limits the joints can do.
 
     Args:
-        robot: that walks.
-        parameters: of its walk.
+        robot: walking robot.
+        parameters: parameters of the walk.
         known: speed limits found by a calibration, instead of a search.
 
     Returns:
@@ -103,21 +104,24 @@ def within_joints(
     limits = parameters.limits
     if known is not None:
         return replace(parameters, limits=replace(limits, **known)), notes
-    for name, command in _COMMANDS.items():
+    for name in AXES:
         top = getattr(limits, name)
-        fraction, demand = _bisect(robot, parameters, command, top)
+        fraction, demand = _bisect(robot, parameters, name, top)
         if fraction < 1.0 and demand is not None:
             limits = replace(limits, **{name: fraction * top})
             notes.append(f"{name} {top:.2f} -> {fraction * top:.2f}: {demand.text()}")
     return replace(parameters, limits=limits), notes
 
 
-_COMMANDS: dict[str, Callable[[float], VelocityCommand]] = {
-    "vx": lambda v: VelocityCommand(v, 0.0, 0.0),
-    "vx_backward": lambda v: VelocityCommand(-v, 0.0, 0.0),
-    "vy": lambda v: VelocityCommand(0.0, v, 0.0),
-    "wz": lambda v: VelocityCommand(0.0, 0.0, v),
-}
+def command_of(axis: str, speed: float) -> VelocityCommand:
+    """Return the command along one axis of the speed limits.
+
+    Args:
+        axis: axis of `AXES`.
+        speed: speed [m/s or rad/s].
+    """
+    sign = -1.0 if axis == "vx_backward" else 1.0
+    return VelocityCommand(**{axis.removesuffix("_backward"): sign * speed})
 
 
 def _with_lift(
@@ -149,19 +153,16 @@ def _with_lift(
 
 
 def _bisect(
-    robot: RobotModel,
-    parameters: WalkingParameters,
-    command: Callable[[float], VelocityCommand],
-    top: float,
+    robot: RobotModel, parameters: WalkingParameters, axis: str, top: float
 ) -> tuple[float, Demand | None]:
     """Return the largest fraction of a speed that the joints can do, and the demand beyond it."""
-    demand = rehearse(robot, parameters, command(top))
+    demand = rehearse(robot, parameters, command_of(axis, top))
     if demand.met:
         return 1.0, None
     low, high, beyond = MIN_FRACTION, 1.0, demand
     for _ in range(BISECTIONS):
         middle = 0.5 * (low + high)
-        demand = rehearse(robot, parameters, command(middle * top))
+        demand = rehearse(robot, parameters, command_of(axis, middle * top))
         if demand.met:
             low = middle
         else:

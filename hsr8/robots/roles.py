@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from hsr8.robots.description import CameraMount, RobotDescription
 from hsr8.robots.key_mistake import KeyMistake, require_name
 from hsr8.robots.prepare import LEG_JOINTS, Prepared
-from hsr8.robots.skeleton import HINGE, SAME, BaseFrame, Posed
+from hsr8.robots.skeleton import HINGE, SAME, BaseFrame, Posed, path_up
 
 Array = NDArray[np.float64]
 Leg = tuple[str, str, str, str, str, str]
@@ -56,10 +56,9 @@ def find_roles(model: mujoco.MjModel, description: RobotDescription, prepared: P
         KeyMistake: a name is unknown, a leg lacks six hinge joints, or the robot does not stand on
             its feet.
     """
-    tree = _Tree(model, prepared)
     _require_camera(model, description, prepared)
     left, right = (prepared.where(foot).body for foot in description.feet)
-    legs = tree.leg(description.feet[0], left), tree.leg(description.feet[1], right)
+    legs = _leg(model, prepared, description.feet[0]), _leg(model, prepared, description.feet[1])
     if common := [name for name in legs[0] if name in legs[1]]:
         left_own, right_own = (tuple(n for n in leg if n not in common) for leg in legs)
         own = left_own if len(left_own) < len(right_own) else right_own
@@ -75,8 +74,7 @@ def find_roles(model: mujoco.MjModel, description: RobotDescription, prepared: P
                     "joint: leave the key out"
                 )
     head, shoulders = description.head, description.shoulders
-    carried = [tree.joint_parent(name) for name in shoulders or head or ()]
-    trunk = tree.common_ancestor(carried) if carried else model.body(prepared.root).id
+    carried = shoulders or head
     return Roles(
         base=prepared.root,
         frame=_base_frame(model, description, prepared, (left, right), legs),
@@ -84,7 +82,7 @@ def find_roles(model: mujoco.MjModel, description: RobotDescription, prepared: P
         legs=legs,
         head=head,
         shoulders=shoulders,
-        trunk=model.body(trunk).name,
+        trunk=_trunk(model, carried) if carried else prepared.root,
     )
 
 
@@ -189,58 +187,39 @@ def _require_camera(
         require_name("camera", "camera", description.camera, cameras)
 
 
-class _Tree:
-    """Paths between the bodies of a model."""
+def _leg(model: mujoco.MjModel, prepared: Prepared, foot: str) -> Leg:
+    """Return the last six hinge joints above a foot."""
+    names = list[str]()
+    for above in path_up(model, model.body(prepared.where(foot).body).id):
+        if model.body(above).name == prepared.root or len(names) >= LEG_JOINTS:
+            break
+        first = int(model.body_jntadr[above])
+        for j in reversed(range(first, first + int(model.body_jntnum[above]))):
+            name = model.joint(j).name
+            if model.jnt_type[j] != HINGE and len(names) < LEG_JOINTS:
+                raise KeyMistake(
+                    f"feet: joint {name!r} between foot {foot!r} and base is a slide or ball "
+                    f"joint; expected {EXPECTED}"
+                )
+            names.insert(0, name)
+    if len(names) < LEG_JOINTS:
+        held = prepared.held_above.get(foot, ())
+        texts = [f"{name}: {prepared.held[name]}" for name in held]
+        more = f" and {len(held)} that are held ({', '.join(texts)})" if held else ""
+        raise KeyMistake(
+            f"feet: the leg above foot {foot!r} has {_count(names)}{more}, got "
+            f"{', '.join(names) or 'none'}; expected {EXPECTED}"
+        )
+    hip, thigh, calf, shank, ankle, sole = names[-LEG_JOINTS:]
+    return hip, thigh, calf, shank, ankle, sole
 
-    def __init__(self, model: mujoco.MjModel, prepared: Prepared) -> None:
-        self._model, self._prepared = model, prepared
 
-    def leg(self, foot: str, body: str) -> Leg:
-        """Return the last six hinge joints above a foot that is a part of a body."""
-        model, names = self._model, list[str]()
-        for above in self._path(model.body(body).id):
-            if model.body(above).name == self._prepared.root or len(names) >= LEG_JOINTS:
-                break
-            first = int(model.body_jntadr[above])
-            for j in reversed(range(first, first + int(model.body_jntnum[above]))):
-                name = model.joint(j).name
-                if model.jnt_type[j] != HINGE and len(names) < LEG_JOINTS:
-                    raise KeyMistake(
-                        f"feet: joint {name!r} between foot {foot!r} and base is a slide or ball "
-                        f"joint; expected {EXPECTED}"
-                    )
-                names.insert(0, name)
-        if len(names) < LEG_JOINTS:
-            held = self._held(foot)
-            raise KeyMistake(
-                f"feet: the leg above foot {foot!r} has {_count(names)}{held}, got "
-                f"{', '.join(names) or 'none'}; expected {EXPECTED}"
-            )
-        hip, thigh, calf, shank, ankle, sole = names[-LEG_JOINTS:]
-        return hip, thigh, calf, shank, ankle, sole
-
-    def _held(self, foot: str) -> str:
-        """Return which joints of the leg are held, for a message."""
-        held = self._prepared.held_above.get(foot, ())
-        texts = [f"{name}: {self._prepared.held[name]}" for name in held]
-        return f" and {len(held)} that are held ({', '.join(texts)})" if held else ""
-
-    def joint_parent(self, joint: str) -> int:
-        """Return the body above that of a joint."""
-        return int(self._model.body_parentid[self._model.joint(joint).bodyid[0]])
-
-    def common_ancestor(self, bodies: Sequence[int]) -> int:
-        """Return the lowest body that carries all `bodies`."""
-        first, *rest = ([*self._path(body), 0] for body in bodies)
-        return next(body for body in first if all(body in path for path in rest))
-
-    def _path(self, body: int) -> list[int]:
-        """Return a body and those above it, without the world."""
-        path = []
-        while body > 0:
-            path.append(body)
-            body = int(self._model.body_parentid[body])
-        return path
+def _trunk(model: mujoco.MjModel, joints: Sequence[str]) -> str:
+    """Return the lowest body that carries the bodies of all `joints`."""
+    bodies = (int(model.joint(name).bodyid[0]) for name in joints)
+    first, *others = ([*path_up(model, body), 0][1:] for body in bodies)
+    name: str = model.body(next(b for b in first if all(b in path for path in others))).name
+    return name
 
 
 def _count(joints: Sequence[str]) -> str:

@@ -114,9 +114,9 @@ def hip_height(robot: RobotModel, gait: GaitParameters, height: float) -> float:
     leaves torque in its pitching joints; where no height does, to that which comes nearest.
 
     Args:
-        robot: that walks.
-        gait: its stance.
-        height: wanted [m].
+        robot: walking robot.
+        gait: footsteps, with the stance.
+        height: wanted height of the hips [m].
     """
     length, pitching = robot.legs[0].length, _pitching(robot)
     heights = np.arange(height, MAX_HEIGHT * length, RAISE * length).tolist() or [height]
@@ -136,9 +136,9 @@ def one_leg_load(robot: RobotModel, half_stance: float, height: float) -> Array:
     The force of the floor on the middle of the sole points to the centre of mass.
 
     Args:
-        robot: that stands.
-        half_stance: foot to the middle of the stance [m].
-        height: of the hips [m].
+        robot: standing robot.
+        half_stance: distance of a foot from the middle of the stance [m].
+        height: height of the hips [m].
     """
     loads = np.zeros(12)
     com = robot.com(robot.ready)

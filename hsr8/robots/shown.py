@@ -16,7 +16,7 @@ from hsr8.robots.loaded import LoadedRobot
 from hsr8.robots.meshes import Array, Triangles, decimated
 from hsr8.robots.normal_form import COLLISION_GROUP
 from hsr8.robots.posed_shapes import robot_height
-from hsr8.robots.skeleton import Posed
+from hsr8.robots.skeleton import Posed, matrix_of
 
 VISUAL_GROUPS = (0, 1, 2)
 """Groups of geoms that MuJoCo draws; those from 3 are collision shapes."""
@@ -132,9 +132,8 @@ def _simple(model: mujoco.MjModel, number: int, cell: float) -> tuple[Array, Tri
     triangles = model.mesh_face[face : face + int(mesh.facenum[0])].astype(np.int64)
     if len(triangles) >= MIN_TRIANGLES:
         vertices, triangles = decimated(vertices, triangles, cell)
-    rotation = np.empty(9)
-    mujoco.mju_quat2Mat(rotation, model.mesh_quat[number])
-    return vertices @ rotation.reshape(3, 3).T + model.mesh_pos[number], triangles
+    rotation = matrix_of(model.mesh_quat[number])
+    return vertices @ rotation.T + model.mesh_pos[number], triangles
 
 
 def _set_mesh(mesh: mujoco.MjsMesh, vertices: Array, triangles: Triangles) -> None:

@@ -75,7 +75,7 @@ class Posed:
         data.qpos[2:4] = height, 1.0
         data.qpos[model.jnt_qposadr[model.jnt_type == BALL]] = 1.0
         if not base.is_body:
-            mujoco.mju_mat2Quat(data.qpos[3:7], base.rotation.ravel())
+            data.qpos[3:7] = quaternion_of(base.rotation)
             data.qpos[:3] -= base.rotation @ base.origin
         for name, angle in angles.items():
             data.qpos[model.joint(name).qposadr[0]] = angle
@@ -259,11 +259,34 @@ def label(name: str, index: int) -> str:
     return name or f"#{index}"
 
 
+def path_up(model: mujoco.MjModel, body: int) -> list[int]:
+    """Return a body and those above it, without the world."""
+    path = []
+    while body > 0:
+        path.append(body)
+        body = int(model.body_parentid[body])
+    return path
+
+
 def is_below(model: mujoco.MjModel, body: int, root: int) -> bool:
     """Return whether a body is `root` or below it."""
     while body > root:
         body = int(model.body_parentid[body])
     return body == root
+
+
+def matrix_of(quaternion: Array) -> Array:
+    """Return the rotation (3, 3) of a unit quaternion w-x-y-z (4,)."""
+    flat = np.empty(9)
+    mujoco.mju_quat2Mat(flat, np.asarray(quaternion, float))
+    return flat.reshape(3, 3)
+
+
+def quaternion_of(rotation: Array) -> Array:
+    """Return the unit quaternion w-x-y-z (4,) of a rotation (3, 3)."""
+    quaternion = np.empty(4)
+    mujoco.mju_mat2Quat(quaternion, np.ascontiguousarray(rotation).ravel())
+    return quaternion
 
 
 @dataclass(frozen=True, slots=True)

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from hsr8.robots.mechanism import TO_JOINT
 from hsr8.robots.roles import Roles
-from hsr8.robots.skeleton import HINGE
+from hsr8.robots.skeleton import HINGE, matrix_of
 from walking.body.tree import Frame, RobotTree, Sole, turn
 
 Array = NDArray[np.float64]
@@ -90,7 +90,7 @@ class _Builder:
         if body == base:
             return Frame(-1, np.eye(3), np.zeros(3))
         parent = self._carriers[int(model.body_parentid[body])]
-        rotation = parent.rotation @ _matrix(model.body_quat[body])
+        rotation = parent.rotation @ matrix_of(model.body_quat[body])
         position = parent.position + parent.rotation @ model.body_pos[body]
         joint = parent.joint
         first = int(model.body_jntadr[body])
@@ -117,7 +117,7 @@ class _Builder:
         model = self._model
         site = model.site(name).id
         body = self._carriers[int(model.site_bodyid[site])]
-        rotation = body.rotation @ _matrix(model.site_quat[site])
+        rotation = body.rotation @ matrix_of(model.site_quat[site])
         return Frame(body.joint, rotation, body.position + body.rotation @ model.site_pos[site])
 
     def tree(
@@ -167,7 +167,7 @@ class _Builder:
 
     def _mass_frame(self, body: int) -> Frame:
         model, frame = self._model, self._carriers[body]
-        rotation = frame.rotation @ _matrix(model.body_iquat[body])
+        rotation = frame.rotation @ matrix_of(model.body_iquat[body])
         return Frame(frame.joint, rotation, frame.position + frame.rotation @ model.body_ipos[body])
 
 
@@ -195,9 +195,3 @@ def servos_of(model: mujoco.MjModel) -> dict[int, int]:
 def _on_robot(model: mujoco.MjModel, joint: int, roles: Roles) -> bool:
     base = model.body(roles.base).id
     return bool(model.body_rootid[model.jnt_bodyid[joint]] == model.body_rootid[base])
-
-
-def _matrix(quaternion: Array) -> Array:
-    flat = np.empty(9)
-    mujoco.mju_quat2Mat(flat, np.asarray(quaternion, float))
-    return flat.reshape(3, 3)

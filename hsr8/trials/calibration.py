@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 from hsr8.errors import ModelError
 from hsr8.robots.description import MIN_SPEED
 from hsr8.robots.loaded import LoadedRobot
+from hsr8.robots.rehearsal import AXES, command_of
 from hsr8.trials.commands import random_commands, random_head, time_scale
 from hsr8.trials.robot_check import MAX_TILT, check_robot
 from hsr8.trials.walk import Trial, Walked
@@ -18,7 +19,6 @@ from walking.parameters import CONTROL_PERIOD
 Array = NDArray[np.float64]
 Report = Callable[[str], None]
 
-AXES = ("vx", "vx_backward", "vy", "wz")
 STEADY_TIME, RANDOM_TIME = 12.0, 60.0  # of a walk, in the time scale of HSR-VIII [s]
 RANDOM_SEEDS = range(8)
 MAX_ERROR = 0.05  # of a steady velocity, relative [1]
@@ -51,13 +51,6 @@ class _Limit:
 
     speed: float
     reason: str
-
-
-def command_of(axis: str, speed: float) -> VelocityCommand:
-    """Return the command along one axis of the speed limits."""
-    sign = -1.0 if axis == "vx_backward" else 1.0
-    name = axis.removesuffix("_backward")
-    return VelocityCommand(**{name: sign * speed})
 
 
 def calibrate(

@@ -8,13 +8,13 @@ from numpy.typing import NDArray
 
 from hsr8.robots.defaults import navigation_speed
 from hsr8.robots.loaded import LoadedRobot
+from hsr8.robots.rehearsal import command_of
 from hsr8.robots.rules import one_leg_load
 from hsr8.robots.servos import OWN_SERVOS
 from hsr8.trials.commands import random_commands, random_head, time_scale
 from hsr8.trials.walk import Trial, Walked
 from walking.body.robot_model import RobotModel
 from walking.command import VelocityCommand
-from walking.parameters import LimitParameters
 
 Array = NDArray[np.float64]
 Report = Callable[["WalkResult"], None]
@@ -24,10 +24,10 @@ FRACTION = 0.5  # of the speed limits at which the robot walks [1]
 RANDOM_SEEDS, RANDOM_WALKS = range(4), 3.0  # walks under random commands, and their length [1]
 MAX_TILT = 8.0  # of the trunk, 99th percentile in a steady walk [deg]
 MAX_ERROR = 0.2  # of a velocity that still counts as followed, relative [1]
-DIRECTIONS: dict[str, tuple[str, float]] = {  # speed limit and sign
+DIRECTIONS: dict[str, tuple[str, float]] = {  # speed limit, and its sign along the axis
     "stand": ("vx", 0.0),
     "forward": ("vx", 1.0),
-    "backward": ("vx_backward", -1.0),
+    "backward": ("vx_backward", 1.0),
     "left": ("vy", 1.0),
     "right": ("vy", -1.0),
     "turn left": ("wz", 1.0),
@@ -115,7 +115,8 @@ def check_robot(
     trial, results, walks = Trial(robot), [], []
     duration *= time_scale(robot.parameters)
     for direction, (limit, sign) in DIRECTIONS.items():
-        command = _command(robot.parameters.limits, limit, sign)
+        speed = FRACTION * getattr(robot.parameters.limits, limit)
+        command = command_of(limit, sign * speed)
         walk = trial.walk(command, duration)
         result = _result(direction, command, walk, robot)
         report(result)
@@ -152,11 +153,6 @@ def reasons(
     elif failed and robot.description.calibration is None:
         remedies.append("`hsr8 robot calibrate` finds speeds at which it does not fall")
     return [reason for result in results if (reason := result.reason())] + texts + remedies
-
-
-def _command(limits: LimitParameters, limit: str, sign: float) -> VelocityCommand:
-    speed = sign * FRACTION * getattr(limits, limit)
-    return VelocityCommand(**{limit.removesuffix("_backward"): speed})
 
 
 def _result(
