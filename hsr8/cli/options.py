@@ -64,7 +64,7 @@ class Run(RunOptions):
     view: View = None
     """Show the log during the run: in a window or in a browser."""
     video: Flag = False
-    """Also draw the video, in a second process during the run."""
+    """Also draw the video, after the run."""
     bag: Flag = False
     """Also write the run as a rosbag2 folder, see `hsr8 export`."""
     json: Json = False
@@ -225,8 +225,6 @@ class Render:
     """Simulated time at which the video ends [s]."""
     speed: Number = None
     """Simulated seconds per second of video; default: a video of at most a minute."""
-    follow: Flag = False
-    """Draw during the run; a run with a goal is drawn at its end. SIGTERM stands for the end."""
     json: Json = False
     quiet: Quiet = False
 

@@ -7,14 +7,15 @@ from contextlib import ExitStack, contextmanager
 from pathlib import Path
 from types import FrameType
 
+from rich.console import Console
+
 from hsr8.cli import report
 from hsr8.cli.first_compilation import two_processes
 from hsr8.cli.options import Run
 from hsr8.cli.output_file import writing
 from hsr8.cli.progress import Progress
 from hsr8.cli.termination import like_ctrl_c, on_signals
-from hsr8.cli.video_process import VideoProcess
-from hsr8.errors import Hsr8Error, UsageError
+from hsr8.errors import Hsr8Error
 from hsr8.evaluation.crash import crash_report
 from hsr8.evaluation.recording import Result, record, renderer_of, started_folder
 from hsr8.evaluation.verdict import exit_code
@@ -24,7 +25,7 @@ from hsr8.files.atomic import draft
 from hsr8.files.writing import require_temporary
 from hsr8.gl import require_gl
 from hsr8.loop import Simulation
-from hsr8.recorder.run.run_folder import new_run_folder
+from hsr8.recorder.run.run_folder import VIDEO, new_run_folder
 from hsr8.recorder.run.run_reader import open_run
 from hsr8.render.viewer import LiveView, live_view
 from hsr8.rerun_log.run_log import write_log
@@ -60,7 +61,7 @@ def start(options: Run, scenario: Scenario, command: Sequence[str]) -> int:
 def _start(options: Run, scenario: Scenario, command: Sequence[str]) -> int:
     renderer = renderer_of(scenario)
     new = new_run_folder(options.out, scenario.name, scenario.seed)  # before any compilation
-    with new as path, _view(options) as view, ExitStack() as after:
+    with new as path, _view(options) as view:
         simulation = Simulation(scenario, scenario.seed)
 
         def interrupt(number: int, frame: FrameType | None) -> None:
@@ -70,7 +71,7 @@ def _start(options: Run, scenario: Scenario, command: Sequence[str]) -> int:
 
         with crash_report(path), on_signals(SIGNALS, interrupt):
             folder = started_folder(path, scenario, command, renderer)
-            outputs = Outputs(options, path, after)
+            outputs = Outputs(options, path)
             with ExitStack() as shown:
                 on_tick = None
                 if not options.quiet:
@@ -96,45 +97,50 @@ class Outputs:
     Args:
         options: options of the command.
         path: run folder, which has a manifest.
-        after: contexts that end after the run; the video is drawn from now on.
 
     Attributes:
         failures: message of every output that is missing.
         exit_code: exit code of the command; 0 without a failure.
     """
 
-    def __init__(self, options: Run, path: Path, after: ExitStack) -> None:
+    def __init__(self, options: Run, path: Path) -> None:
         self._path = path
-        self._log, self._bag = options.log, options.bag
-        self._video: VideoProcess | None = None
-        if options.video:
-            silent = options.quiet or options.json
-            self._video = after.enter_context(VideoProcess(path, quiet=silent))
+        self._silent = options.quiet or options.json
+        writers = ((options.log, self._log), (options.bag, self._bag), (options.video, self._video))
+        self._missing = [write for wanted, write in writers if wanted]
         self.failures: list[str] = []
         self.exit_code = 0
 
     def complete(self) -> None:
-        """Write log and bag and wait for the video, once."""
-        log, self._log = self._log, False
-        bag, self._bag = self._bag, False
-        video, self._video = self._video, None
-        try:
-            if log:
-                write_log(open_run(self._path))
-            if bag:
-                target = self._path / BAG
-                with crash_report(self._path), writing("--bag", target), draft(target) as folder:
-                    write_bag(open_run(self._path), folder)
-        except Hsr8Error as error:
-            self._note(str(error), error.exit_code)
-        if video is not None and (code := video.wait()):
-            self._note(
-                f"--video: no video, hsr8 render ended with code {code}", UsageError.exit_code
-            )
+        """Write the outputs, once."""
+        missing, self._missing = self._missing, []
+        for write in missing:
+            try:
+                with crash_report(self._path):
+                    write()
+            except Hsr8Error as error:
+                self.failures.append(str(error))
+                self.exit_code = max(self.exit_code, error.exit_code)
 
-    def _note(self, failure: str, code: int) -> None:
-        self.failures.append(failure)
-        self.exit_code = max(self.exit_code, code)
+    def _log(self) -> None:
+        write_log(open_run(self._path))
+
+    def _bag(self) -> None:
+        target = self._path / BAG
+        with writing("--bag", target), draft(target) as folder:
+            write_bag(open_run(self._path), folder)
+
+    def _video(self) -> None:
+        # Imported late: runs without a video start earlier.
+        from hsr8.cli.render import drawing  # noqa: PLC0415
+        from hsr8.render.run_video import VideoOptions, render_run  # noqa: PLC0415
+
+        file = self._path / VIDEO
+        console = Console(stderr=True, quiet=self._silent)
+        with writing("--video", file), drawing(console) as show:
+            render_run(open_run(self._path), VideoOptions(), file, show)
+        if not self._silent:
+            print(f"video       {file}")
 
 
 @contextmanager

@@ -1,21 +1,19 @@
 """``hsr8 render``: the video of a run."""
 
-import signal
 import time as clock
-from threading import Event
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 
 from rich.console import Console
 from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeRemainingColumn
 
 from hsr8.cli.options import Render
 from hsr8.cli.output_file import parse_size, require_file_name, writing
-from hsr8.cli.termination import on_signals
 from hsr8.errors import UsageError
 from hsr8.files import atomic
 from hsr8.gl import is_software, require_gl
 from hsr8.recorder.run import run_folder
 from hsr8.recorder.run.run_reader import open_run
-from hsr8.render.growing_video import follow_run
 from hsr8.render.run_video import RenderedVideo, VideoOptions, render_run
 from hsr8.render.video import FORMATS
 
@@ -24,8 +22,6 @@ SUFFIXES = (*FORMATS, ".png")
 
 def main(options: Render) -> int:
     """Render the video and print its path."""
-    if options.follow and options.out and options.out.suffix.lower() == ".png":
-        raise UsageError(f"--follow: not for an image, got --out {options.out}; expected a video")
     if not 1 <= options.fps <= 120:
         raise UsageError(f"--fps: out of range, got {options.fps}; expected 1 to 120")
     if options.speed is not None and not 0.01 <= options.speed <= 1000.0:
@@ -47,22 +43,19 @@ def main(options: Render) -> int:
     if is_software(renderer):
         console.print(f"drawing on the processor ({renderer})", style="dim", highlight=False)
     started = clock.perf_counter()
+    with drawing(console) as show, writing("--out", out):
+        made = render_run(run, video, out, show)
+    _report(made, clock.perf_counter() - started, options)
+    return 0
+
+
+@contextmanager
+def drawing(console: Console) -> Iterator[Callable[[int, int], None]]:
+    """Yield a function that shows the numbers of finished frames and of all in a bar."""
     columns = (TextColumn("drawing"), BarColumn(), MofNCompleteColumn(), TimeRemainingColumn())
     with Progress(*columns, console=console, transient=True) as bar:
         task = bar.add_task("drawing", total=None)
-
-        def show(done: int, total: int) -> None:
-            bar.update(task, completed=done, total=total)
-
-        with writing("--out", out):
-            if options.follow:
-                stopped = Event()
-                with on_signals((signal.SIGTERM,), lambda *_: stopped.set()):
-                    made = follow_run(run, video, out, show, stopped.is_set)
-            else:
-                made = render_run(run, video, out, show)
-    _report(made, clock.perf_counter() - started, options)
-    return 0
+        yield lambda done, total: bar.update(task, completed=done, total=total)
 
 
 def _report(made: RenderedVideo, wall: float, options: Render) -> None:

@@ -18,7 +18,7 @@ HEIGHT = 0.22  # of the point looked at [m]
 POSITION_TIME = 0.6  # time constant of the position, in video time [s]
 MAX_POSITION_TIME = 1.2  # in simulated time, so that the robot stays in fast videos [s]
 DIRECTION_TIME = 2.5  # time constant of the direction, in video time [s]
-LOOKAHEAD = 2.0  # time constants after which later frames have no influence [1]
+LOOKAHEAD = 2.0  # time constants after which other frames have no influence [1]
 
 
 class FollowCamera:
@@ -29,14 +29,10 @@ class FollowCamera:
         fps: frames per second of the video.
         speed: simulated seconds per second of video.
         size: height of the robot relative to the default robot [1].
-
-    Attributes:
-        lookahead: number of next frames that determine the camera of a frame.
     """
 
     def __init__(self, qpos: Array, fps: float, speed: float, size: float = 1.0) -> None:
         self._ratio = size
-        self.lookahead = ceil(LOOKAHEAD * DIRECTION_TIME * fps)
         yaw = np.unwrap([heading(row[3:7]) for row in qpos])
         self._target = _smooth(qpos[:, :2], min(POSITION_TIME, MAX_POSITION_TIME / speed) * fps)
         direction = _smooth(np.column_stack([np.cos(yaw), np.sin(yaw)]), DIRECTION_TIME * fps)
@@ -56,8 +52,7 @@ class FollowCamera:
 def _smooth(values: Array, frames: float) -> Array:
     """Filter exponentially backwards and forwards, without lag (n, m).
 
-    Each frame depends on the `LOOKAHEAD` next time constants only, so that a video can be drawn
-    during the run.
+    Each frame depends on the frames within `LOOKAHEAD` time constants.
     """
     keep, ahead = np.exp(-1.0 / max(frames, 1e-6)), ceil(LOOKAHEAD * frames)
     weights = keep ** np.arange(ahead + 1)

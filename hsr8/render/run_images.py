@@ -45,9 +45,6 @@ class RunImages:
         fps: images per second of the video.
         speed: simulated seconds per second of video, shown in the dashboard.
         fine: smooth edges and sharp shadows, at twice the cost.
-
-    Attributes:
-        recorded: simulated time up to which everything is recorded [s].
     """
 
     def __init__(
@@ -63,12 +60,6 @@ class RunImages:
             camera.width, camera.height, camera.vertical_fov, self._scenario.world.brightness
         )
         self._stack = ExitStack()
-        self.update(run)
-
-    def update(self, run: Run) -> None:
-        """Read the records of the run again, which has gone on."""
-        seconds = run.seconds["time"]  # read first: a writer adds them after the other rows
-        self.recorded = float(seconds[-1]) if len(seconds) else 0.0
         self._motion = motion_of(run, len(self._layout.movers))
         self._obstacles = run.records["obstacle_positions"].shape[1]
         self._rows = rows_at(self._motion.time, self._times)
@@ -82,14 +73,6 @@ class RunImages:
             self._pushes = push_arrows(pushes_of(run.records), self._motion, size_ratio, weight)
         qpos = self._motion.qpos[self._rows]
         self._follow = FollowCamera(qpos, self._fps, self._speed, size_ratio)
-
-    @property
-    def ready(self) -> int:
-        """Number of images that later records do not change."""
-        recorded = int(np.searchsorted(self._times, self.recorded, side="right"))
-        if recorded == len(self._times):
-            return recorded
-        return max(0, recorded - self._follow.lookahead)
 
     def __enter__(self) -> Self:
         return self

@@ -1,6 +1,6 @@
 """A recorded run as a video or an image."""
 
-from collections.abc import Callable, Iterable
+from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -78,53 +78,27 @@ def render_run(run: Run, options: VideoOptions, out: Path, progress: Progress) -
         RenderingUnavailable: there is no OpenGL.
     """
     times, speed = instants(run.records["time"], options)
-    if out.suffix.lower() != ".png":
-        everything = range(len(times))
-        return draw_video(
-            run, options, out, progress, times=times, speed=speed, order=lambda _: everything
-        )
-    with _images(run, times[:1], 1.0, options) as images:
-        write_png(out, images.camera(options.camera)(0))
-    progress(1, 1)
-    return RenderedVideo(out, None, 1, 1 / options.fps, 1.0)
-
-
-def draw_video(
-    run: Run,
-    options: VideoOptions,
-    out: Path,
-    progress: Progress,
-    *,
-    times: Array,
-    speed: float,
-    order: Callable[[RunImages], Iterable[int]],
-) -> RenderedVideo:
-    """Draw a video; arguments and errors as `render_run`.
-
-    Args:
-        run: recorded run.
-        options: options of the video.
-        out: file to write.
-        progress: called with the number of finished frames and of all.
-        times: simulated time of every frame (n,) [s].
-        speed: simulated seconds per second of video.
-        order: yields the numbers of all frames as soon as they can be drawn.
-    """
+    suffix = out.suffix.lower()
+    still = suffix == ".png"
+    if still:
+        times, speed = times[:1], 1.0
     count, thumbnail = len(times), None
-    with _images(run, times, speed, options) as images:
+    with RunImages(
+        run, times, options.size, fps=options.fps, speed=speed, fine=options.fine
+    ) as images:
         draw = images.camera(options.camera)
+        if still:
+            write_png(out, draw(0))
+            progress(1, 1)
+            return RenderedVideo(out, None, 1, 1 / options.fps, speed)
         with draft(out) as file, VideoWriter(file, options.size, options.fps) as video:
-            for index in order(images):
+            for index in range(count):
                 video.add(draw(index))
                 progress(index + 1, count)
-        if out.suffix.lower() == ".mp4":
+        if suffix == ".mp4":
             thumbnail = out.with_suffix(".png")
             write_png(thumbnail, draw(count // 2))
     return RenderedVideo(out, thumbnail, count, count / options.fps, speed)
-
-
-def _images(run: Run, times: Array, speed: float, options: VideoOptions) -> RunImages:
-    return RunImages(run, times, options.size, fps=options.fps, speed=speed, fine=options.fine)
 
 
 def instants(time: Array, options: VideoOptions) -> tuple[Array, float]:
