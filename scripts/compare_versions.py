@@ -24,9 +24,9 @@ from collections.abc import Iterator, Sequence
 from pathlib import Path
 from typing import Any
 
-from hsr8.evaluation.markdown import table
 from hsr8.evaluation.metrics import COLUMNS, metrics
 from hsr8.evaluation.sweep.seeds import parse_seeds
+from hsr8.evaluation.tables import table
 from hsr8.files import atomic
 from hsr8.recorder.run.run_reader import StoredRun, open_run
 from hsr8.rerun_log.run_log import write_log

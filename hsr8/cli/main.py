@@ -13,7 +13,7 @@ from typing import Any, get_args
 
 import tyro
 
-from hsr8.cli.options import BenchCompare, Command, RobotAction
+from hsr8.cli.options import BenchCompare, Command, Robot, RobotAction
 from hsr8.errors import Hsr8Error, UsageError
 from hsr8.evaluation.crash import crash_report
 from hsr8.suggestion import suggestion
@@ -90,9 +90,10 @@ def _run(words: list[str]) -> int:
             if command is None:
                 return 0
             # Not before: MuJoCo, Rerun and SciPy take seconds.
-            name = "compare" if type(command) is BenchCompare else _words(type(command), "_")
+            options = command.action if isinstance(command, Robot) else command
+            name = "compare" if type(options) is BenchCompare else _words(type(options), "_")
             module = importlib.import_module(f"hsr8.cli.{name}")
-            code: int = module.main(command)
+            code: int = module.main(options)
     except Hsr8Error as error:
         notes = getattr(error, "__notes__", [])
         print(", ".join([f"hsr8: {error}", *notes]), file=sys.stderr)

@@ -95,8 +95,6 @@ class Sweep(RunOptions):
     """Wall-clock limit per run [s]; default: 60 s + 20 x its duration."""
     keep: Literal["all", "failed", "none"] = "all"
     """Run folders to keep, 100 kB per simulated second; one with a traceback always is."""
-    log: Flag = False
-    """Write the Rerun log of every run."""
     json: Json = False
     quiet: Quiet = False
 

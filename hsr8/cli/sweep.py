@@ -38,7 +38,6 @@ def main(options: Sweep) -> int:
         executor=options.executor,
         timeout=options.timeout,
         keep=options.keep,
-        log=options.log,
         quiet=options.quiet,
     )
     combinations = _combinations(options)

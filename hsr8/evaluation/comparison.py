@@ -10,7 +10,6 @@ from typing import Any
 import numpy as np
 
 from hsr8.errors import UsageError
-from hsr8.evaluation.markdown import table
 from hsr8.evaluation.registry import METRICS, Shown, shown_in
 from hsr8.evaluation.statistics import PairedDifference, compare_successes, compare_values
 from hsr8.evaluation.sweep.definition import (
@@ -21,7 +20,7 @@ from hsr8.evaluation.sweep.definition import (
 )
 from hsr8.evaluation.sweep.folder import DEFINITION, SweepFolder
 from hsr8.evaluation.sweep.job import CRASHED, REFUSED, RunResult
-from hsr8.evaluation.sweep.table import flatten
+from hsr8.evaluation.tables import flatten, table
 from hsr8.recorder.run.manifest import CALL
 from hsr8.recorder.run.run_reader import open_run, run_folders
 from hsr8.suggestion import suggestion

@@ -16,17 +16,14 @@ from hsr8.evaluation.verdict import Criterion, evaluate_criteria
 from hsr8.files.writing import FAILED
 from hsr8.gl import require_gl
 from hsr8.loop import Simulation
-from hsr8.plugin_file import digests
 from hsr8.record import Tick
 from hsr8.recorder.recorder import IMAGES, PERIOD, Memory, Recorder, Sink
-from hsr8.recorder.run.manifest import CALL, Manifest
+from hsr8.recorder.run.manifest import CALL, Manifest, versions_of
 from hsr8.recorder.run.run import MemoryRun, Run
 from hsr8.recorder.run.run_folder import RunFolder
 from hsr8.recorder.run.run_reader import open_run
-from hsr8.robots.locate import digest
 from hsr8.scenario.loader import dump
 from hsr8.scenario.schema import Scenario
-from hsr8.scenario.track_file import track_digests
 
 LIVE_PERIOD = PERIOD // 2  # ticks of a batch while a viewer is connected
 
@@ -95,9 +92,7 @@ def started_folder(
 
 def _manifest(scenario: Scenario, command: Sequence[str], renderer: str) -> Manifest:
     manifest = Manifest.now(scenario.name, scenario.seed, command, renderer)
-    libraries = manifest.libraries | digests(scenario.plugin) | digest(scenario.robot.model)
-    libraries |= track_digests(scenario.world.mover)
-    return replace(manifest, libraries=libraries)
+    return replace(manifest, libraries=versions_of(scenario))
 
 
 class Recording:

@@ -1,11 +1,12 @@
 """Differences between two runs: the first row, column and values of every table."""
 
 import tomllib
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from typing import Any
 
 from hsr8.errors import UsageError
+from hsr8.evaluation.tables import flatten
 from hsr8.recorder.rows import TABLES
 from hsr8.recorder.run.run import Run
 from hsr8.recorder.run.run_reader import StoredRun
@@ -39,13 +40,15 @@ class RunDifference:
 
 def settings(a: StoredRun, b: StoredRun) -> Iterator[RunDifference]:
     """Yield every key of the scenario that differs."""
-    for key, x, y in _unequal(_flat(_scenario(a)), _flat(_scenario(b))):
+    tables = (flatten(_scenario(run)).items() for run in (a, b))
+    keys = ({key: value for key, value in table if value != []} for table in tables)
+    for key, x, y in _unequal(*keys):
         yield RunDifference("settings", key, x, y)
 
 
 def results(a: Run, b: Run) -> Iterator[RunDifference]:
     """Yield every result that differs, except those of the wall clock."""
-    for key, x, y in _unequal(_flat(a.metrics()), _flat(b.metrics())):
+    for key, x, y in _unequal(flatten(a.metrics()), flatten(b.metrics())):
         if not key.startswith(CLOCKED):
             yield RunDifference("results", key, x, y)
 
@@ -84,20 +87,6 @@ def _scenario(run: StoredRun) -> Mapping[str, Any]:
         return tomllib.loads(run.scenario_text())
     except (ValueError, RecursionError) as error:
         raise UsageError(f"cannot read {run.scenario_file}: {error}") from error
-
-
-def _flat(value: Any, key: str = "") -> dict[str, Any]:
-    """Return every leaf by its dotted key."""
-    if isinstance(value, Mapping):
-        inner: Sequence[tuple[str, Any]] = list(value.items())
-    elif isinstance(value, list):
-        inner = [(str(k), item) for k, item in enumerate(value)]
-    else:
-        return {key: value}
-    leaves: dict[str, Any] = {}
-    for name, item in inner:
-        leaves |= _flat(item, f"{key}.{name}" if key else name)
-    return leaves
 
 
 def _unequal(a: Mapping[str, Any], b: Mapping[str, Any]) -> Iterator[tuple[str, Any, Any]]:

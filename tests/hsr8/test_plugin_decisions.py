@@ -160,7 +160,7 @@ def test_a_falsy_planner_is_used():
     assert hsr8.run(quick(), seed=4, planner=planner).metrics["path_length_m"] < 0.01
 
 
-@pytest.mark.parametrize("kind", ["planner", "gaze"])
+@pytest.mark.parametrize("kind", ["planner", "gaze", "walker"])
 def test_an_unsuitable_object_is_refused_before_the_run(kind, tmp_path):
     for plugin, expected in ((Fixed, rf"{kind}=Fixed\(\)"), (object(), "has no method")):
         with pytest.raises(UsageError, match=expected):

@@ -218,19 +218,6 @@ def test_the_head_moves_to_its_target_within_its_limits(robot):
     assert rates.max() <= WalkingParameters().head.max_rate + 1e-9
 
 
-@pytest.mark.parametrize(
-    ("walker", "expected"),
-    [
-        (Fixed, r"walker=Fixed: expected an instance, walker=Fixed\(\), got the class"),
-        (object(), "walker object has no method step"),
-    ],
-)
-def test_an_unsuitable_object_is_refused_before_the_run(walker, expected, tmp_path):
-    with pytest.raises(UsageError, match=expected):
-        hsr8.run("quick", settings=FAST, walker=walker, out=tmp_path)
-    assert list(tmp_path.iterdir()) == []
-
-
 def test_the_engine_of_hsr8_as_a_custom_walker_reaches_the_goal():
     settings = {"camera.source": "analytic"}
     usual = hsr8.run("quick", seed=4, settings=settings).metrics
@@ -301,12 +288,6 @@ def test_a_run_records_the_digest_and_can_be_verified_and_drawn(folder, capsys):
     assert (metrics["steps"], metrics["path_length_m"]) == (0, pytest.approx(0.0, abs=1e-3))
 
 
-def test_a_run_with_an_object_records_its_class(folder):
-    hsr8.run("quick", settings=FAST, walker=Fixed(load_robot("hsr8").model.ready), out=folder)
-    (manifest,) = folder.glob("quick/*/manifest.json")
-    assert f"walker={__name__}.Fixed" in str(json.loads(manifest.read_text())["command"])
-
-
 @pytest.mark.parametrize(
     ("name", "message"),
     [
@@ -325,10 +306,3 @@ def test_an_error_of_a_walker_is_one_message(folder, capsys, name, message):
     assert "internal" not in error
     if name in ("Trips", "Unwilling"):
         assert f"{folder / 'mine.py'}, line" in error
-
-
-def test_a_sweep_takes_a_walker(folder, capsys):
-    walker = ("--set", "plugin.walker=mine.py:Hold", "duration=0.3")
-    assert entry(["sweep", "quick", *QUICK, "--seeds", "0:1", "--out", "s", *walker]) == 1
-    (row,) = map(json.loads, (folder / "s" / "runs.jsonl").read_text().splitlines())
-    assert row["steps"] == 0

@@ -9,13 +9,13 @@ from annotated_types import Interval
 from pydantic import TypeAdapter, ValidationError
 
 from hsr8.errors import UsageError
-from hsr8.evaluation.markdown import table
 from hsr8.evaluation.registry import METRICS
 from hsr8.evaluation.statistics import Proportion
 from hsr8.evaluation.sweep.definition import Differences
 from hsr8.evaluation.sweep.folder import DEFINITION
 from hsr8.evaluation.sweep.job import RunResult
 from hsr8.evaluation.sweep.summary import Summary, summarize
+from hsr8.evaluation.tables import table
 from hsr8.files import atomic
 from hsr8.files.regular import read_text
 from hsr8.mistakes import mistake_lines

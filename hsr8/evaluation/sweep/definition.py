@@ -12,7 +12,7 @@ from pathlib import Path
 from typing import Any
 
 from hsr8.errors import ScenarioError
-from hsr8.evaluation.sweep.table import flatten
+from hsr8.evaluation.tables import flatten
 from hsr8.recorder.run.manifest import versions
 from hsr8.robots.files import models_dir
 from hsr8.scenario.layers import Table

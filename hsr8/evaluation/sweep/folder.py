@@ -10,18 +10,19 @@ runs/                run folders
 """
 
 import fcntl
+import io
 import json
 import os
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from pathlib import Path
-from typing import Self, TextIO
+from typing import Any, Self, TextIO
 
 from hsr8.errors import Hsr8Error, UsageError
 from hsr8.evaluation.sweep.definition import Definition, scenario_differences, version_differences
 from hsr8.evaluation.sweep.job import CRASHED, OUTCOMES, REFUSED, RUNS, RunResult
 from hsr8.evaluation.sweep.summary import COUNTS, QUANTITIES
-from hsr8.evaluation.sweep.table import write_table
+from hsr8.evaluation.tables import flatten
 from hsr8.files import atomic
 from hsr8.files.json_lines import open_to_append, read_lines
 from hsr8.files.regular import read_text
@@ -198,3 +199,26 @@ def _parse(line: str) -> RunResult:
         if not isinstance(result.get(key), int | float | None):
             raise ValueError(f"{key}: not a number: {result[key]!r}")
     return result
+
+
+def write_table(path: Path, results: Sequence[RunResult]) -> None:
+    """Write a Parquet table with a row per run.
+
+    Missing values are null, columns of mixed types text, nested results dotted columns.
+    """
+    import pyarrow as pa  # noqa: PLC0415  takes half a second
+    import pyarrow.parquet as pq  # noqa: PLC0415
+
+    def column(values: list[Any]) -> Any:
+        try:
+            return pa.array(values)
+        except (pa.ArrowInvalid, pa.ArrowTypeError, UnicodeEncodeError):
+            texts = (None if v is None else str(v) for v in values)
+            return pa.array(t and t.encode("utf-8", "backslashreplace").decode() for t in texts)
+
+    rows = [flatten(result) for result in results]
+    names = dict.fromkeys(name for row in rows for name in row)
+    columns = {name: column([row.get(name) for row in rows]) for name in names}
+    content = io.BytesIO()
+    pq.write_table(pa.table(columns), content)
+    atomic.write_bytes(path, content.getvalue())

@@ -15,7 +15,6 @@ from hsr8.evaluation.recording import Result, record, renderer_of, started_folde
 from hsr8.evaluation.verdict import exit_code
 from hsr8.loop import Simulation
 from hsr8.recorder.run.run_folder import new_run_folder
-from hsr8.recorder.run.run_reader import open_run
 from hsr8.scenario.schema import Scenario
 
 RunResult = dict[str, Any]
@@ -39,7 +38,6 @@ class Job:
         folder: absolute path of the sweep's folder.
         command: command line that repeats the run.
         timeout: wall-clock limit [s].
-        log: whether the run writes a Rerun log.
         keep: run folders that are kept.
         attempt: 1, or 2 after a crash.
     """
@@ -48,7 +46,6 @@ class Job:
     folder: str
     command: str
     timeout: float
-    log: bool = False
     keep: Keep = "all"
     attempt: int = 1
 
@@ -88,12 +85,7 @@ def _record(job: Job, path: Path) -> Result:
     signal.signal(signal.SIGTERM, lambda *_: simulation.interrupt())
     with crash_report(path):
         folder = started_folder(path, job.scenario, (job.command,), renderer)
-        result = record(simulation, folder)
-        if job.log:
-            from hsr8.rerun_log.run_log import write_log  # noqa: PLC0415  not in the server
-
-            write_log(open_run(path))
-        return result
+        return record(simulation, folder)
 
 
 def _result(result: Result) -> RunResult:

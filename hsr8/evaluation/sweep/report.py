@@ -3,11 +3,11 @@
 from collections.abc import Mapping, Sequence
 from typing import Any
 
-from hsr8.evaluation.markdown import table
 from hsr8.evaluation.registry import METRICS
 from hsr8.evaluation.sweep.definition import Definition
 from hsr8.evaluation.sweep.job import REFUSED, RunResult
 from hsr8.evaluation.sweep.summary import COUNTS, QUANTITIES, Summary, summarize, worst_first
+from hsr8.evaluation.tables import table
 
 MAX_LISTED = 20  # runs listed with their command line
 MAX_TABLE = 200  # runs in the table of the page

@@ -18,11 +18,10 @@ from hsr8.evaluation.sweep.progress import SweepProgress
 from hsr8.evaluation.sweep.report import report
 from hsr8.files.writing import require_temporary
 from hsr8.gl import require_gl
-from hsr8.plugin_file import digests, require_plugins
-from hsr8.robots.locate import digest
+from hsr8.plugin_file import require_plugins
+from hsr8.recorder.run.manifest import versions_of
 from hsr8.scenario.loader import dump
 from hsr8.scenario.schema import Scenario
-from hsr8.scenario.track_file import track_digests
 
 START_TIME = 60.0  # default limits: for the start of a process [s]
 MAX_SLOWNESS = 20.0  # and wall time per simulated second [1]
@@ -40,7 +39,6 @@ class Execution:
         executor: "local" or "dask://HOST:PORT".
         timeout: wall-clock limit per run [s]; None for the default.
         keep: run folders that are kept.
-        log: whether runs write Rerun logs.
         quiet: whether no progress is shown.
 
     Raises:
@@ -54,7 +52,6 @@ class Execution:
     executor: str = "local"
     timeout: float | None = None
     keep: Keep = "all"
-    log: bool = False
     quiet: bool = False
 
     def __post_init__(self) -> None:
@@ -120,7 +117,6 @@ def run_sweeps(
                     str(folder.path.resolve()),
                     folder.definition.command(seed),
                     limit,
-                    log=execution.log,
                     keep=execution.keep,
                 )
                 for seed in pending(execution.seeds, folder.results(), execution.shard)
@@ -152,10 +148,7 @@ def definitions(
             common,
             name=scenario.name,
             command_words=commands[name],
-            libraries=common.libraries
-            | digests(scenario.plugin)
-            | digest(scenario.robot.model)
-            | track_digests(scenario.world.mover),
+            libraries=versions_of(scenario),
             scenario=dump(scenario),
         )
         for name, scenario in scenarios.items()

@@ -10,6 +10,10 @@ from typing import Any
 
 from hsr8 import arithmetic
 from hsr8.files import atomic
+from hsr8.plugin_file import digests
+from hsr8.robots.locate import digest
+from hsr8.scenario.schema import Scenario
+from hsr8.scenario.track_file import track_digests
 from hsr8.version import VERSION
 
 LIBRARIES = (
@@ -103,3 +107,14 @@ def versions() -> dict[str, str]:
         except metadata.PackageNotFoundError:
             installed[name] = "missing"
     return installed
+
+
+def versions_of(scenario: Scenario) -> dict[str, str]:
+    """Return `versions`, with the digests of plugins, robot and recordings of a scenario.
+
+    Raises:
+        UsageError: a plugin cannot be read.
+        ModelError: a file of the robot is missing.
+    """
+    made = digests(scenario.plugin) | digest(scenario.robot.model)
+    return versions() | made | track_digests(scenario.world.mover)

@@ -8,7 +8,7 @@ from pathlib import Path
 
 import pytest
 
-from hsr8.cli.main import COMMANDS, entry
+from hsr8.cli.main import ACTIONS, COMMANDS, entry
 from hsr8.errors import Hsr8Error, SimulationDiverged, UsageError
 from hsr8.evaluation.crash import InternalError, crash_report
 
@@ -48,7 +48,10 @@ def test_no_arguments_show_the_help(capsys):
 def test_every_command_has_help_and_a_main(command, capsys):
     assert entry([command, "--wrong", "-h"]) == 0
     assert f"usage: hsr8 {command}" in capsys.readouterr().out
-    assert callable(importlib.import_module(f"hsr8.cli.{command.replace('-', '_')}").main)
+    actions = ACTIONS["robot"] if command == "robot" else [""]
+    for action in actions:
+        name = f"{command.replace('-', '_')}_{action}".rstrip("_")
+        assert callable(importlib.import_module(f"hsr8.cli.{name}").main)
 
 
 @pytest.mark.parametrize("shell", ["bash", "zsh", "fish"])

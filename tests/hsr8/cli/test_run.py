@@ -58,28 +58,6 @@ def test_the_folder_has_the_command_to_repeat_the_run(tmp_path, capsys):
     assert open_run(tmp_path / "again").metrics()["state_hash"] == first["state_hash"]
 
 
-def test_the_resolved_scenario_is_the_same_run(tmp_path, capsys):
-    _run(tmp_path, "--quiet", "--seed", "4")
-    run = open_run(tmp_path)
-    entry(["run", str(run.scenario_file), "--out", str(tmp_path / "b"), "--quiet"])
-    assert open_run(tmp_path / "b").metrics()["state_hash"] == run.metrics()["state_hash"]
-
-
-@pytest.mark.parametrize(
-    ("more", "text"),
-    [
-        (["--view", "native"], "no display"),
-        (["--set", "plugin.planner=nope.py:A"], "cannot read nope.py"),
-        (["--out", "/dev/null"], "cannot write the run folder /dev/null/quick: Not a directory"),
-    ],
-)
-def test_a_run_that_cannot_begin_leaves_no_folder(tmp_path, monkeypatch, capsys, more, text):
-    monkeypatch.setattr("hsr8.render.viewer.has_display", lambda: False)
-    assert entry([*FAST, "--quiet", "--out", str(tmp_path), *more]) == 2
-    assert text in capsys.readouterr().err
-    assert list(tmp_path.iterdir()) == []
-
-
 def test_quiet_is_quiet(tmp_path, capsys):
     _run(tmp_path, "--quiet")
     printed = capsys.readouterr()

@@ -3,7 +3,8 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from hsr8.evaluation.sweep.table import flatten, write_table
+from hsr8.evaluation.sweep.folder import write_table
+from hsr8.evaluation.tables import flatten
 
 VALUES = (
     st.none() | st.booleans() | st.integers(-(2**60), 2**60) | st.floats() | st.text(max_size=3)
