@@ -10,15 +10,15 @@ from typing import Self, SupportsIndex
 import cv2
 import numpy as np
 
-from hsr8.body_builder import build_body, build_model
 from hsr8.decisions import FrameRecord, GazeController, MotionPlanner, Situation
 from hsr8.errors import ScenarioError, SimulationDiverged
-from hsr8.event_watch import EventWatch
 from hsr8.plugin_method import number
 from hsr8.plugin_walker import CustomWalker
-from hsr8.record import Event, RunOutcome, Second, Tick, TickRecord
+from hsr8.record import Event, EventWatch, RunOutcome, Second, Tick, TickRecord
 from hsr8.robot import Robot, SensorFrame
 from hsr8.robot_builder import (
+    build_body,
+    build_model,
     build_robot,
     camera_sight,
     field_of_view,

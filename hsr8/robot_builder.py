@@ -1,8 +1,10 @@
-"""Builder of the robot side of a scenario."""
+"""Builders of a scenario: the world model, the body, and the robot side."""
 
+from dataclasses import replace
 from functools import partial
 from math import inf, pi
 
+import mujoco
 import numpy as np
 
 from hsr8.command_schedule import (
@@ -17,12 +19,18 @@ from hsr8.plugin_decisions import Limits, PluginGaze, PluginPlanner
 from hsr8.plugin_file import load_named
 from hsr8.plugin_walker import CustomWalker, PluginEngine, PluginWalker, RobotInfo
 from hsr8.robot import Robot
+from hsr8.robots.files import reading_models
 from hsr8.robots.loaded import LoadedRobot, load_robot
 from hsr8.robots.posed_shapes import ground_shadow
 from hsr8.scenario.mission import Walk
 from hsr8.scenario.schema import Scenario
 from hsr8.seeds import named_rng
+from hsr8.world.body.body import Body
+from hsr8.world.body.kinematic import KinematicBody
+from hsr8.world.body.physics import PhysicsBody
+from hsr8.world.body.pushes import schedule
 from hsr8.world.field.layout import Layout
+from hsr8.world.model.assembly import Optics, assemble
 from navigation.baselines.choice import build_planner
 from navigation.belief.estimator import Estimator
 from navigation.gaze.planner import GazePlanner
@@ -32,7 +40,7 @@ from navigation.observation import Sight
 from vision.camera import PinholeCamera
 from vision.detector import Detector
 from vision.self_mask import BodyPart
-from walking.parameters import WalkingParameters
+from walking.parameters import CONTROL_PERIOD, WalkingParameters
 from walking.scaling import override
 from walking.walker import Walker
 
@@ -254,3 +262,35 @@ def build_estimator(scenario: Scenario, layout: Layout, rng: np.random.Generator
         np.diag(np.square([sigma, sigma, START_HEADING_SIGMA])),
         rng,
     )
+
+
+def build_model(scenario: Scenario, layout: Layout) -> mujoco.MjModel:
+    """Return the world model of `scenario` for the camera of the robot."""
+    robot = load_robot(scenario.robot.model)
+    camera = scenario.camera
+    fov = camera.vertical_fov
+    brightness = scenario.world.brightness
+    optics = Optics(camera.width, camera.height, fov, brightness, camera.shadows)
+    return assemble(robot, layout, "vision", optics)
+
+
+def build_body(scenario: Scenario, seed: int, layout: Layout, model: mujoco.MjModel) -> Body:
+    """Return the body of the robot in `model`; `seed` draws noise and random pushes.
+
+    Raises:
+        ModelError: the control period is not a multiple of the physics step.
+    """
+    robot = load_robot(scenario.robot.model)
+    noise, rng = scenario.sensors, named_rng(seed, "body")
+    if scenario.robot.body == "kinematic":
+        return KinematicBody(model, robot, layout, noise, rng)
+    scheduled = schedule(
+        scenario.disturbance,
+        scenario.duration,
+        CONTROL_PERIOD,
+        named_rng(seed, "push"),
+        scenario.fault,
+    )
+    pushes = [replace(push, body=robot.body_name(push.body)) for push in scheduled]
+    with reading_models():
+        return PhysicsBody(model, robot, layout, noise, rng, pushes=pushes, faults=scenario.fault)

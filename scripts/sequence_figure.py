@@ -12,7 +12,7 @@ from hsr8.recorder.run.run_reader import open_run
 from hsr8.recorder.table import Table
 from hsr8.render.motion import Motion as TrueMotion
 from hsr8.render.motion import motion_of, rows_at
-from hsr8.render.shown_frame import shown_frames
+from hsr8.render.run_images import shown_frames
 from hsr8.render.walk_panels import INK, LEFT, RIGHT, contacts, outline
 from hsr8.robots.loaded import load_robot
 from hsr8.scenario.loader import load_scenario

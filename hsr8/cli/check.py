@@ -12,8 +12,8 @@ from hsr8.cli.options import Check
 from hsr8.cli.output_file import require_file_name, writing
 from hsr8.files import atomic
 from hsr8.plugin_file import inspect_plugins
+from hsr8.render.image import write_png
 from hsr8.render.plan_view import PlanView
-from hsr8.render.png import write_png
 from hsr8.robot_builder import field_of_view, head_camera
 from hsr8.scenario.loader import load_scenario
 from hsr8.scenario.schema import Scenario

@@ -7,7 +7,6 @@ from itertools import islice
 
 import numpy as np
 
-from hsr8.body_builder import build_body, build_model
 from hsr8.decisions import DecisionContext, FrameRecord
 from hsr8.errors import SimulationDiverged
 from hsr8.loop import HASH
@@ -18,7 +17,14 @@ from hsr8.recorder.rows import TABLES
 from hsr8.recorder.run.run import Run
 from hsr8.recorder.table import Table
 from hsr8.recorder.table_difference import first_cell
-from hsr8.robot_builder import build_decisions, build_estimator, build_schedule, camera_sight
+from hsr8.robot_builder import (
+    build_body,
+    build_decisions,
+    build_estimator,
+    build_model,
+    build_schedule,
+    camera_sight,
+)
 from hsr8.seeds import named_rng
 from hsr8.world.field.generator import draw_layout
 from navigation.observation import CameraView, Frame, Sight

@@ -3,6 +3,7 @@
 import hashlib
 from collections.abc import Sequence
 from dataclasses import dataclass, field
+from math import inf
 from typing import Any
 
 import cv2
@@ -11,7 +12,6 @@ from numpy.typing import NDArray
 
 from hsr8.decisions import FrameRecord
 from hsr8.record import Tick
-from hsr8.recorder.throttle import Throttle
 from navigation.belief.belief import Belief
 from navigation.belief.tracks import Tracks
 from navigation.decision import DirectionField, GazeDecision, MotionDecision
@@ -25,6 +25,32 @@ HASH = 16  # bytes of the hash of a local map
 # Lengths are those in a world of scale 1.
 SPACING, REACH = 0.25, 1.5  # of the points, and their maximum distance [m]
 STEP, STEPS = 0.15, 8  # of the path that follows the field [m]
+
+
+class Throttle:
+    """Selection of samples by time.
+
+    Args:
+        period: minimum interval between two samples [s].
+    """
+
+    __slots__ = ("_last", "_period")
+
+    def __init__(self, period: float) -> None:
+        self._period = period
+        self._last = -inf
+
+    def select(self, times: NDArray[np.float64]) -> NDArray[np.intp]:
+        """Return the indices of the samples at `times` (n,) [s] that pass."""
+        due = [k for k, time in enumerate(times.tolist()) if self.due(time)]
+        return np.array(due, dtype=np.intp)
+
+    def due(self, time: float) -> bool:
+        """Return whether the sample at `time` [s] passes."""
+        if time - self._last < self._period - 1e-9:
+            return False
+        self._last = time
+        return True
 
 
 @dataclass(frozen=True, slots=True)

@@ -13,10 +13,9 @@ import pyarrow as pa
 from hsr8.decisions import FrameRecord
 from hsr8.record import Tick
 from hsr8.recorder.columns import batch_of, schema_of
-from hsr8.recorder.recorded import FrameSampler, RecordedImage, image_row, objects_of
+from hsr8.recorder.recorded import FrameSampler, RecordedImage, Throttle, image_row, objects_of
 from hsr8.recorder.rows import TABLES
 from hsr8.recorder.table import Table
-from hsr8.recorder.throttle import Throttle
 
 Tables = dict[str, Table]
 

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from hsr8.recorder import palette
-from hsr8.render.text import Color, Image, draw_text, font_size, text_width
+from hsr8.render.image import Color, Image, draw_text, font_size, text_width
 
 Array = NDArray[np.float64]
 Rectangle = tuple[float, float, float, float]  # left, top, right, bottom [pixel]

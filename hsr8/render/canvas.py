@@ -9,7 +9,7 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-from hsr8.render.text import Color, Image
+from hsr8.render.image import Color, Image
 
 Array = NDArray[np.float64]
 Point = Sequence[float] | Array

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from hsr8.recorder import palette
 from hsr8.render.camera_overlay import CameraOverlay
 from hsr8.render.gaze_panel import GazePanel
-from hsr8.render.text import Color, Image, draw_text, font_size, text_width
+from hsr8.render.image import Color, Image, draw_text, font_size, text_width
 from hsr8.render.top_down import INK as DARK
 from hsr8.render.top_down import PAPER, TopDown, pale
 from hsr8.scenario.schema import Scenario
@@ -151,7 +151,7 @@ class DashboardFrame:
 
     Attributes:
         time: simulated time [s].
-        frame: latest camera frame, see `hsr8.render.shown_frame`.
+        frame: latest camera frame, see `hsr8.render.run_images.shown_frames`.
         movers: true positions (n, 2) [m].
         trail: true path of the robot so far (m, 2) [m].
         events: time [s] and kind of each event so far.

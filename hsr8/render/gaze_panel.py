@@ -8,7 +8,7 @@ import cv2
 import numpy as np
 
 from hsr8.recorder import palette
-from hsr8.render.text import Image, draw_text, font_size
+from hsr8.render.image import Image, draw_text, font_size
 
 PANEL, GROOVE = (28, 30, 34), (70, 74, 82)
 INK, FAINT = (238, 239, 241), (164, 168, 176)

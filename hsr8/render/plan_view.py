@@ -7,7 +7,7 @@ from math import inf
 import numpy as np
 
 from hsr8.render.canvas import Canvas, Point, framed
-from hsr8.render.text import Color, Image, draw_text
+from hsr8.render.image import Color, Image, draw_text
 from hsr8.scenario.track import Track
 from hsr8.world.field.certificate import Certificate
 from hsr8.world.field.layout import Layout, Obstacle

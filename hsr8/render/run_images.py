@@ -17,7 +17,6 @@ from hsr8.render.dashboard import Dashboard, DashboardFrame, Timeline
 from hsr8.render.follow import FollowCamera
 from hsr8.render.motion import SHOWN, Arrow, PushArrow, arrows_at, motion_of, push_arrows, rows_at
 from hsr8.render.scene_renderer import Image, SceneRenderer
-from hsr8.render.shown_frame import shown_frames
 from hsr8.render.top_down import TRAIL
 from hsr8.robots.loaded import load_robot
 from hsr8.robots.normal_form import HEAD_CAMERA
@@ -33,6 +32,13 @@ Draw = Callable[[int], Image]
 CYCLE = 34  # records per gait cycle
 OVERSAMPLING = {True: 2.0, False: 1.0}  # of fine and of quick images
 CAMERA_OVERSAMPLING = 1.5  # of the head camera in the dashboard, which is small
+COLUMNS = (  # of a drawn camera frame
+    *("time", "captured", "pose", "pose_covariance", "lost", "head", "fov", "gaze", "psi"),
+    *("target", "via_points", "velocity", "situation"),
+    *(f"tracks.{c}" for c in ("id", "label", "position", "velocity", "covariance", "radius")),
+    *("tracks.motion", "tracks.visible", "virtual_obstacles.position", "virtual_obstacles.radius"),
+    *("detections.label", "detections.box", "detections.distance"),
+)
 
 
 class RunImages:
@@ -196,3 +202,24 @@ class RunImages:
         whole = len(path) // CYCLE * CYCLE
         trail: Array = path[:whole].reshape(-1, CYCLE, 2).mean(axis=1)
         return trail
+
+
+def shown_frames(run: Run, times: Array) -> tuple[SimpleNamespace, ...]:
+    """Return the latest camera frame at each of the times (m,) [s]; empty if the run has none.
+
+    The attributes of a frame are the columns `COLUMNS`, ``truth``, the true pose (3,)
+    [m, m, rad], and ``gaze_map``, the latest gaze map in 255 shades, left and up of the head at
+    left and up (tilts, pans), None without a map. Times with the same frame have the same object.
+    """
+    frames, records = run.frames, run.records
+    if not len(frames):
+        return ()
+    rows, index = np.unique(frames.at(times), return_inverse=True)
+    truth = records["robot"][records.at(frames["time"][rows])]
+    made, maps = frames.present("gaze_map")
+    latest = np.searchsorted(made, rows, side="right") - 1
+    shown = frames.take(rows).objects(*COLUMNS)
+    for frame, robot, k in zip(shown, truth.tolist(), latest.tolist(), strict=True):
+        frame.truth = robot
+        frame.gaze_map = maps[k][::-1, ::-1] if k >= 0 else None
+    return tuple(shown[k] for k in index.tolist())

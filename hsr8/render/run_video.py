@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from hsr8.errors import UsageError
 from hsr8.files.atomic import draft
 from hsr8.recorder.run.run import Run
-from hsr8.render.png import write_png
+from hsr8.render.image import write_png
 from hsr8.render.run_images import RunImages
 from hsr8.render.video import VideoWriter
 

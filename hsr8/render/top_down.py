@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from hsr8.recorder import palette
 from hsr8.recorder.derived import ellipse_axes
 from hsr8.render.canvas import Canvas
-from hsr8.render.text import Color, Image, draw_text, font_size
+from hsr8.render.image import Color, Image, draw_text, font_size
 from hsr8.world.field.layout import Layout
 
 Array = NDArray[np.float64]
@@ -64,7 +64,7 @@ class TopDown:
         """Return the map at one camera frame.
 
         Args:
-            frame: belief and decisions, see `hsr8.render.shown_frame`.
+            frame: belief and decisions, see `hsr8.render.run_images.shown_frames`.
             movers: true positions (n, 2) [m].
             trail: true path of the robot so far (m, 2) [m].
 

@@ -8,7 +8,7 @@ from typing import Self
 import av
 import cv2
 
-from hsr8.render.text import Image
+from hsr8.render.image import Image
 
 # Codec, its options and those of the container, by suffix.
 FORMATS: dict[str, tuple[str, dict[str, str], dict[str, str]]] = {

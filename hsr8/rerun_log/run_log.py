@@ -10,7 +10,6 @@ import numpy as np
 import rerun as rr
 from numpy.typing import NDArray
 
-from hsr8.body_builder import build_model
 from hsr8.files import atomic
 from hsr8.files.writing import failure, writing
 from hsr8.recorder import palette
@@ -28,6 +27,7 @@ from hsr8.rerun_log.shapes import sole_outline
 from hsr8.rerun_log.stream import APPLICATION, LogStream
 from hsr8.rerun_log.walking import log_every_record, log_walking, style_walking
 from hsr8.rerun_log.world import PATH_HEIGHT, WorldShapes, log_footsteps, log_waypoints
+from hsr8.robot_builder import build_model
 from hsr8.robots.loaded import LoadedRobot, load_robot
 from hsr8.robots.normal_form import HEAD_CAMERA
 from hsr8.robots.scale import DEFAULT_ROBOT, DEFAULT_STATURE

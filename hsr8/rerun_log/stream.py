@@ -11,7 +11,7 @@ import rerun.blueprint as rrb
 from numpy.typing import NDArray
 
 from hsr8.files.writing import require_temporary
-from hsr8.recorder.throttle import Throttle
+from hsr8.recorder.recorded import Throttle
 
 TIMELINE = "sim_time"
 APPLICATION = "hsr8"

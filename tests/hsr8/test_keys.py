@@ -2,11 +2,15 @@ from dataclasses import dataclass
 from typing import Annotated
 
 from annotated_types import doc
+from hypothesis import given
+from hypothesis import strategies as st
 
 from hsr8.keys import annotation_at, chosen, texts
 from hsr8.robots.description import Name, RobotDescription, SoleRectangle
 from hsr8.scenario.mission import Stretch, Walk
 from hsr8.scenario.schema import Navigation, Scenario
+from hsr8.seeds import named_rng
+from hsr8.suggestion import suggestion
 from navigation.parameters.navigation import NavigationParameters
 
 Length = Annotated[float, "m", doc("A length [m].")]
@@ -50,3 +54,23 @@ def test_the_annotation_of_a_value_follows_from_the_tables_around_it():
     for value, expected in (({"front": 1.0}, SoleRectangle), (["a", "b"], tuple[Name, Name])):
         annotation = annotation_at(("sole",), RobotDescription, {"sole": value})
         assert chosen(annotation, value)[0] == expected
+
+
+def test_the_closest_word_is_suggested():
+    assert suggestion("quik", ["paper", "quick"]) == "; did you mean 'quick'?"
+
+
+def test_nothing_close_is_no_suggestion():
+    assert suggestion("zzz", ["paper", "quick"]) == ""
+    assert suggestion("quick", []) == ""
+
+
+@given(st.integers(0, 2**32 - 1))
+def test_a_subsystem_draws_the_same_for_the_same_seed(seed):
+    assert named_rng(seed, "body").random() == named_rng(seed, "body").random()
+
+
+@given(st.integers(0, 2**32 - 1))
+def test_subsystems_draw_independently(seed):
+    draws = {named_rng(seed, name).random() for name in ("body", "camera", "belief")}
+    assert len(draws) == 3

@@ -1,10 +1,16 @@
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
 from hsr8.decisions import GazeController, MotionPlanner
-from hsr8.errors import RenderingUnavailable
+from hsr8.errors import RenderingUnavailable, ScenarioError
 from hsr8.loop import Simulation
+from hsr8.record import EventWatch
+from hsr8.robot_builder import MARGINS, walking_parameters
+from hsr8.robots.loaded import load_robot
 from hsr8.scenario.loader import load_scenario
+from hsr8.world.truth.truth import Contact, Truth
 from navigation.decision import GazeDecision, MotionDecision
 
 STAND_INS = ['robot.body="kinematic"', 'camera.source="analytic"']
@@ -81,3 +87,54 @@ def test_a_given_planner_and_gaze_replace_those_of_the_scenario():
     assert record.command.velocity == (0.0, 0.0, 0.8)
     assert np.hypot(*(record.truth.robot[:2] - simulation.layout.start[:2])) < 0.15
     assert abs(record.truth.robot[2] - simulation.layout.start[2]) > 1.0
+
+
+def truth_with(time, *obstacles):
+    contacts = tuple(
+        Contact(o, f"beacon {o}", False, "l_sole", 1.0, closing=False) for o in obstacles
+    )
+    empty = np.zeros(0)
+    return Truth(
+        time=time,
+        qpos=empty,
+        robot=empty,
+        obstacle_positions=empty,
+        obstacle_velocities=empty,
+        contacts=contacts,
+        clearance=1.0,
+        joint_torque=empty,
+        foot_force=empty,
+        zmp=empty,
+        fallen=False,
+    )
+
+
+def test_a_contact_is_told_with_the_name_of_what_is_touched():
+    (event,) = EventWatch(()).look(truth_with(0.0, 3), None)
+    assert event.text == "l_sole touches beacon 3"
+
+
+def test_a_contact_that_goes_on_is_one_event_and_a_later_one_another():
+    watch = EventWatch(())
+
+    def events(time, obstacle):
+        return [event.kind for event in watch.look(truth_with(time, obstacle), None)]
+
+    assert events(0.0, 3) == ["collision"]
+    for time in np.arange(0.02, 1.0, 0.02):
+        assert events(time, 3) == []
+    assert events(1.2, 3) == []
+    assert events(1.9, 3) == events(1.9, 4) == ["collision"]
+
+
+@pytest.mark.parametrize("key", [".".join(margin) for margin in MARGINS])
+def test_a_margin_is_below_half_the_width_of_the_sole_of_the_robot_that_walks(key, monkeypatch):
+    robot = load_robot("hsr8")
+    half = robot.model.sole.half_width
+    scenario = load_scenario("walk", [f"constants.walking.{key}={half}"])
+    with pytest.raises(
+        ScenarioError, match=f"constants.walking.{key}: .* less than half the width"
+    ):
+        walking_parameters(robot, scenario)
+    monkeypatch.setattr(robot.model, "sole", replace(robot.model.sole, half_width=1.1 * half))
+    walking_parameters(robot, scenario)

@@ -1,6 +1,10 @@
+import os
+import signal
+
 import pytest
 
 from hsr8.cli.output_file import parse_size, require_file_name, writing
+from hsr8.cli.termination import like_ctrl_c
 from hsr8.errors import UsageError
 
 
@@ -40,3 +44,15 @@ def test_sizes(text, size):
 def test_an_invalid_size_is_refused_with_an_example(text):
     with pytest.raises(UsageError, match="1280x720"):
         parse_size(text)
+
+
+def test_sigterm_interrupts():
+    with pytest.raises(KeyboardInterrupt), like_ctrl_c():
+        os.kill(os.getpid(), signal.SIGTERM)
+
+
+def test_the_handlers_are_restored():
+    before = signal.getsignal(signal.SIGTERM)
+    with like_ctrl_c():
+        assert signal.getsignal(signal.SIGTERM) is not before
+    assert signal.getsignal(signal.SIGTERM) is before

@@ -3,7 +3,7 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from hsr8.render.shown_frame import shown_frames
+from hsr8.render.run_images import shown_frames
 
 
 @pytest.fixture

@@ -1,4 +1,5 @@
 import shutil
+from itertools import pairwise
 
 import cv2
 import numpy as np
@@ -8,6 +9,7 @@ from hsr8.cli.main import entry
 from hsr8.errors import UsageError
 from hsr8.recorder.run import run_folder
 from hsr8.recorder.run.run_reader import open_run
+from hsr8.render.run_images import shown_frames
 from hsr8.render.run_video import VideoOptions, instants, render_run
 
 TIME = 0.02 * np.arange(50 * 100 + 1)  # 100 s
@@ -115,3 +117,51 @@ def test_a_trajectory_of_another_scenario_is_a_usage_error(run, tmp_path):
         render_run(
             open_run(copy), VideoOptions(size=(64, 64)), tmp_path / "v.mp4", lambda n, total: None
         )
+
+
+@pytest.fixture(scope="module")
+def longer(tmp_path_factory):
+    out = tmp_path_factory.mktemp("runs")
+    options = ["--body", "kinematic", "--camera", "analytic", "--duration", "2"]
+    entry(
+        [
+            "run",
+            "quick",
+            *options,
+            "--set",
+            "navigation.gaze.mode=integrated",
+            "--quiet",
+            "--out",
+            str(out),
+        ]
+    )
+    return open_run(out)
+
+
+def test_each_time_has_the_latest_frame(longer):
+    times = np.linspace(0.0, 3.0, 61)
+    arrived = longer.frames["time"]
+    for time, frame in zip(times, shown_frames(longer, times), strict=True):
+        assert frame.time == max(arrived[arrived <= time + 1e-9], default=arrived[0])
+
+
+def test_each_frame_has_the_latest_gaze_map(longer):
+    maps = list(longer.frames["gaze_map"])
+    assert 0 < sum(made is not None for made in maps) < len(maps)
+    for row, frame in enumerate(shown_frames(longer, longer.frames["time"])):
+        made = [m for m in maps[: row + 1] if m is not None]
+        assert np.array_equal(frame.gaze_map, made[-1][::-1, ::-1] if made else None)
+
+
+def test_frames_do_not_depend_on_the_other_times(longer):
+    every = {frame.time: frame for frame in shown_frames(longer, longer.frames["time"])}
+    for time in longer.frames["time"][::7].tolist():
+        (alone,) = shown_frames(longer, np.array([time]))
+        assert np.array_equal(alone.gaze_map, every[time].gaze_map)
+        assert (alone.tracks, alone.detections) == (every[time].tracks, every[time].detections)
+        assert (alone.pose, alone.truth) == (every[time].pose, every[time].truth)
+
+
+def test_times_with_the_same_frame_share_it(longer):
+    shown = shown_frames(longer, np.linspace(0.0, 2.0, 201))
+    assert all((a is b) == (a.time == b.time) for a, b in pairwise(shown))

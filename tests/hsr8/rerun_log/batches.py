@@ -1,11 +1,10 @@
 """Batches of tables, as the recorder passes them to a log."""
 
 from hsr8.record import Event
-from hsr8.recorder.recorded import FrameSampler, image_row
+from hsr8.recorder.recorded import FrameSampler, Throttle, image_row
 from hsr8.recorder.recorder import IMAGES
 from hsr8.recorder.rows import TABLES
 from hsr8.recorder.table import Table
-from hsr8.recorder.throttle import Throttle
 
 
 def batch_of(records, events=(), *, full=False):

@@ -6,8 +6,7 @@ from math import atan2
 import numpy as np
 import pytest
 
-from hsr8.body_builder import build_model
-from hsr8.robot_builder import camera_sight, head_camera
+from hsr8.robot_builder import build_model, camera_sight, head_camera
 from hsr8.robots.loaded import load_robot
 from hsr8.robots.normal_form import HEAD_CAMERA
 from hsr8.scenario.loader import load_scenario

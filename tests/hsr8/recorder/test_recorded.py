@@ -1,8 +1,10 @@
+from math import inf
+
 import numpy as np
 import pytest
 
 from hsr8.recorder import recorded
-from hsr8.recorder.recorded import grid, path_along
+from hsr8.recorder.recorded import Throttle, grid, path_along
 
 
 class Whirl:
@@ -40,3 +42,30 @@ def test_the_path_ends_at_the_destination():
     path = path_along(Right(), np.zeros(2), np.array([0.3, 0.0]))
     assert path[-1] == pytest.approx([0.3, 0.0])
     assert (np.diff(path[:, 0]) > 0.0).all()
+
+
+def test_one_sample_per_period_passes():
+    throttle = Throttle(0.06)
+    due = [k for k in range(100) if throttle.due(0.02 * k)]
+    assert due == list(range(0, 100, 3))
+
+
+def test_without_a_period_every_sample_passes():
+    throttle = Throttle(0.0)
+    assert all(throttle.due(0.02 * k) for k in range(100))
+
+
+def test_the_period_restarts_after_a_gap():
+    throttle = Throttle(1.0)
+    assert [throttle.due(time) for time in (0.0, 0.9, 1.7, 2.0, 2.7)] == [
+        True,
+        False,
+        True,
+        False,
+        True,
+    ]
+
+
+def test_one_sample_passes_in_an_infinite_period():
+    throttle = Throttle(inf)
+    assert [throttle.due(time) for time in (0.0, 1.0)] == [True, False]

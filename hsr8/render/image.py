@@ -1,11 +1,14 @@
-"""Text in images, in the outline font of OpenCV."""
+"""Images: their type, text in the outline font of OpenCV, PNG files."""
 
 from functools import cache
+from pathlib import Path
 from typing import Literal
 
 import cv2
 import numpy as np
 from numpy.typing import NDArray
+
+from hsr8.files import atomic
 
 Color = tuple[int, ...]
 Image = NDArray[np.uint8]
@@ -57,3 +60,13 @@ def draw_text(
         length = text_width(text, size, strong=strong)
         column -= length if side == "right" else length // 2
     cv2.putText(image, text, (column, row), color, _face(), size, BOLD if strong else REGULAR)
+
+
+def write_png(path: Path, image: NDArray[np.uint8]) -> None:
+    """Write `image` (height, width, 3), RGB, as PNG, whatever the suffix of `path`.
+
+    Raises:
+        OSError: the file cannot be written.
+    """
+    _, data = cv2.imencode(".png", cv2.cvtColor(image, cv2.COLOR_RGB2BGR))
+    atomic.write_bytes(path, data.tobytes())
