@@ -18,7 +18,7 @@ from hsr8.evaluation.bench.suite import (
     scenario_hash,
 )
 from hsr8.evaluation.sweep.folder import REPORT
-from hsr8.evaluation.sweep.runs import Execution, definitions, run_sweeps
+from hsr8.evaluation.sweep.runs import Execution, run_sweeps
 from hsr8.evaluation.sweep.seeds import parse_seeds
 from hsr8.evaluation.sweep.summary import summarize
 from hsr8.files import atomic
@@ -49,9 +49,8 @@ def main(options: Bench) -> int:
         family: command_words(Run(path, set=((*suite.settings, *words),)))
         for family, path in suite.paths(file).items()
     }
-    defined = definitions(scenarios, commands)
     with like_ctrl_c():
-        runs = run_sweeps(out, scenarios, defined, execution)
+        runs = run_sweeps(out, scenarios, commands, execution)
     if runs.interrupted:
         return INTERRUPTED
     results = {
@@ -66,7 +65,7 @@ def main(options: Bench) -> int:
         seeds=seeds,
         command=_command(options),
         settings=changed,
-        versions=next(iter(defined.values())).versions(),
+        versions=runs.definition.versions(),
         scenarios={family: scenario_hash(scenario) for family, scenario in scenarios.items()},
         runs={family: [row(r) for r in part] for family, part in results.items()},
     )

@@ -17,7 +17,7 @@ from hsr8.cli.termination import like_ctrl_c
 from hsr8.errors import Hsr8Error, UsageError
 from hsr8.evaluation.sweep.folder import REPORT
 from hsr8.evaluation.sweep.report import headline, report_of_values
-from hsr8.evaluation.sweep.runs import Execution, definitions, run_sweeps
+from hsr8.evaluation.sweep.runs import Execution, run_sweeps
 from hsr8.evaluation.sweep.seeds import parse_seeds, parse_shard, parse_values
 from hsr8.evaluation.sweep.summary import Summary, summarize
 from hsr8.files import atomic
@@ -46,13 +46,12 @@ def main(options: Sweep) -> int:
     commands = {
         name: command_words(run_options(options, None, more)) for name, more in combinations.items()
     }
-    defined = definitions(scenarios, commands)
     with like_ctrl_c():
-        runs = run_sweeps(out, scenarios, defined, execution)
+        runs = run_sweeps(out, scenarios, commands, execution)
     summaries = {name: summarize(results) for name, results in runs.results.items()}
     if options.vary:
         keys = ", ".join(parse_values(text)[0] for text in flat(options.vary))
-        made_with = next(iter(defined.values())).made_with()
+        made_with = runs.definition.made_with()
         page = report_of_values(keys, summaries, execution.command, made_with)
         try:
             atomic.write_text(out / REPORT, page)

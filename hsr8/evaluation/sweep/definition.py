@@ -13,10 +13,11 @@ from typing import Any
 
 from hsr8.errors import ScenarioError
 from hsr8.evaluation.tables import flatten
-from hsr8.recorder.run.manifest import versions
+from hsr8.recorder.run.manifest import versions_of
 from hsr8.robots.files import models_dir
 from hsr8.scenario.layers import Table
-from hsr8.scenario.loader import loads, tables
+from hsr8.scenario.loader import dump, loads, tables
+from hsr8.scenario.schema import Scenario
 from hsr8.version import VERSION
 
 PACKAGES = ("compilation", "hsr8", "navigation", "walking", "vision")
@@ -51,10 +52,21 @@ class Definition:
     scenario: str
 
     @classmethod
-    def now(cls, name: str, command_words: tuple[str, ...], scenario: str) -> "Definition":
-        """Return a definition with the installed versions."""
-        code, machine = code_digest(), platform.machine()
-        return cls(name, command_words, VERSION, code, machine, versions(), scenario)
+    def now(cls, scenario: Scenario, command_words: tuple[str, ...]) -> "Definition":
+        """Return the definition of a scenario with the installed versions.
+
+        Raises:
+            UsageError: a plugin cannot be read.
+        """
+        return cls(
+            name=scenario.name,
+            command_words=command_words,
+            hsr8=VERSION,
+            code=code_digest(),
+            processor=platform.machine(),
+            libraries=versions_of(scenario),
+            scenario=dump(scenario),
+        )
 
     def command(self, seed: int) -> str:
         """Return the command line that repeats the run of `seed`."""

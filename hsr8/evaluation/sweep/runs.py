@@ -4,7 +4,7 @@ import os
 import sys
 from collections.abc import Mapping, Sequence
 from contextlib import ExitStack, closing
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from pathlib import Path
 
 from hsr8.errors import UsageError
@@ -19,8 +19,6 @@ from hsr8.evaluation.sweep.report import report
 from hsr8.files.writing import require_temporary
 from hsr8.gl import require_gl
 from hsr8.plugin_file import require_plugins
-from hsr8.recorder.run.manifest import versions_of
-from hsr8.scenario.loader import dump
 from hsr8.scenario.schema import Scenario
 
 START_TIME = 60.0  # default limits: for the start of a process [s]
@@ -70,17 +68,19 @@ class SweepRuns:
 
     Attributes:
         results: results of all seeds in the folder, by name of the sweep.
+        definition: definition of one of them, with the versions.
         interrupted: whether the runs were interrupted.
     """
 
     results: dict[str, list[RunResult]]
+    definition: Definition
     interrupted: bool
 
 
 def run_sweeps(
     out: Path,
     scenarios: Mapping[str, Scenario],
-    definitions: Mapping[str, Definition],
+    commands: Mapping[str, tuple[str, ...]],
     execution: Execution,
 ) -> SweepRuns:
     """Execute the runs without a result and write the results and a report of every sweep.
@@ -88,11 +88,11 @@ def run_sweeps(
     Args:
         out: parent of the folders of the sweeps.
         scenarios: scenario by name of the folder; an empty name is `out` itself.
-        definitions: definition by name of the folder.
+        commands: command line of one run without its seed, by name of the folder.
         execution: how to execute the runs.
 
     Raises:
-        UsageError: a plugin cannot be made, or a folder is invalid.
+        UsageError: a plugin cannot be read or made, or a folder is invalid.
         RenderingUnavailable: the camera needs OpenGL and there is none.
     """
     local = not parse_executor(execution.executor)
@@ -106,7 +106,7 @@ def run_sweeps(
     jobs: list[Job] = []
     with ExitStack() as stack:
         for name, scenario in scenarios.items():
-            folder = SweepFolder.open(out / name, definitions[name])
+            folder = SweepFolder.open(out / name, Definition.now(scenario, commands[name]))
             folder.lock(execution.shard)
             stack.callback(folder.close)
             folders[name] = folder
@@ -127,32 +127,7 @@ def run_sweeps(
             folder.write_report(report(folder.definition, results[name], execution.command))
     if interrupted:
         print(f"hsr8: interrupted; continue with: {execution.command}", file=sys.stderr)
-    return SweepRuns(results, interrupted)
-
-
-def definitions(
-    scenarios: Mapping[str, Scenario], commands: Mapping[str, tuple[str, ...]]
-) -> dict[str, Definition]:
-    """Return the definitions of sweeps with the installed versions.
-
-    Args:
-        scenarios: scenarios by name of the folder.
-        commands: command line of one run without its seed, by name of the folder.
-
-    Raises:
-        UsageError: a plugin cannot be read.
-    """
-    common = Definition.now("", (), "")
-    return {
-        name: replace(
-            common,
-            name=scenario.name,
-            command_words=commands[name],
-            libraries=versions_of(scenario),
-            scenario=dump(scenario),
-        )
-        for name, scenario in scenarios.items()
-    }
+    return SweepRuns(results, folder.definition, interrupted)
 
 
 def _run(jobs: Sequence[Job], folders: Sequence[SweepFolder], execution: Execution) -> bool:

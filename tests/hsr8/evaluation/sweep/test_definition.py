@@ -8,6 +8,7 @@ from hsr8.evaluation.sweep.definition import (
     scenario_differences,
     version_differences,
 )
+from hsr8.scenario.loader import load_scenario
 
 
 def test_it_is_read_back(definition):
@@ -46,6 +47,6 @@ def test_the_digest_is_of_what_shapes_a_result(tmp_path, monkeypatch):
 
 
 def test_now_names_what_is_installed():
-    now = Definition.now("x", (), 'name = "x"')
+    now = Definition.now(load_scenario("quick"), ())
     assert now.libraries["mujoco"] in now.made_with()
-    assert tomllib.loads(now.scenario)["name"] == "x"
+    assert tomllib.loads(now.scenario)["name"] == now.name == "quick"
