@@ -2,6 +2,7 @@
 
 import hashlib
 import os
+import warnings
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 from pathlib import Path
@@ -30,7 +31,7 @@ def models_dir() -> Path:
 
 @contextmanager
 def reading_models(source: str | None = None) -> Iterator[None]:
-    """Context in which errors of model files become a `ModelError`.
+    """Context in which errors of model files become a `ModelError`, without further warnings.
 
     Args:
         source: file that is read, which begins the message; default: the models of hsr8.
@@ -39,14 +40,13 @@ def reading_models(source: str | None = None) -> Iterator[None]:
         ModelError: a file is damaged, or lacks a required name.
     """
     try:
-        yield
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore")  # MuJoCo's, about models that are checked here
+            yield
     except (ValueError, KeyError, SyntaxError) as error:  # SyntaxError: invalid XML
         reason = " ".join(str(error.args[0]).split())
         what = "invalid robot or field model" if source is None else "invalid robot model"
         raise ModelError(f"{source or models_dir()}: {what}: {reason}") from error
-
-
-FOLDERS = {"mesh": "meshdir", "texture": "texturedir", "hfield": "meshdir", "skin": "meshdir"}
 
 
 def package_folders(packages: Mapping[str, str], folder: Path) -> dict[str, Path]:
@@ -90,36 +90,34 @@ def find_mesh(uri: str, urdf: Path, packages: Mapping[str, Path]) -> Path | None
     return next((path for path in candidates if path.is_file()), None)
 
 
-def files_of(
-    model: Path, packages: Mapping[str, Path], options: Mapping[str, str] | None = None
-) -> Iterator[Path]:
+def files_of(model: Path, packages: Mapping[str, Path]) -> Iterator[Path]:
     """Yield a model file, and the files that it includes or refers to and that exist.
 
     Args:
         model: MJCF or URDF file.
         packages: folders of the packages that a URDF file names.
-        options: options of the compiler in the file that includes this one.
     """
-    yield model
+    if model.suffix.lower() == ".urdf":
+        yield model
+        yield from _meshes_of(model, packages)
+        return
+    import mujoco  # noqa: PLC0415 (loads slowly)
+
     try:
-        root = ElementTree.fromstring(model.read_bytes())
+        names = mujoco.mju_getXMLDependencies(str(model))
+    except mujoco.FatalError:  # reading the file reports the reason
+        names = [str(model)]
+    yield from (path for path in map(Path, sorted(names)) if path.is_file())
+
+
+def _meshes_of(urdf: Path, packages: Mapping[str, Path]) -> Iterator[Path]:
+    """Yield the mesh files of a URDF file that exist."""
+    try:
+        robot = ElementTree.fromstring(urdf.read_bytes())
     except (OSError, ValueError, ElementTree.ParseError):
         return  # reading it reports the reason
-    if root.tag == "robot":
-        uris = dict.fromkeys(mesh.get("filename", "") for mesh in root.iter("mesh"))
-        yield from (path for uri in uris if (path := find_mesh(uri, model, packages)))
-        return
-    folders = dict(options or {})
-    for compiler in root.iter("compiler"):
-        folders |= compiler.attrib
-    for element in root.iter():
-        below = folders.get(FOLDERS.get(element.tag, ""), folders.get("assetdir", ""))
-        for key, name in element.attrib.items():
-            path = model.parent / below / name
-            if key == "file" and element.tag in ("include", "model"):
-                yield from files_of(model.parent / name, packages, folders)
-            elif key.startswith("file") and path.is_file():
-                yield path
+    uris = dict.fromkeys(mesh.get("filename", "") for mesh in robot.iter("mesh"))
+    yield from (path for uri in uris if (path := find_mesh(uri, urdf, packages)))
 
 
 def digest_of(files: Iterator[Path]) -> str:

@@ -15,6 +15,9 @@ from hsr8.robots.urdf import drop_invalid_meshes, read_urdf
 MIN_STEP = 1e-5  # of the physics [s]
 MAX_OFFSET = 5.0  # of a body from the one that carries it [m]
 
+if mujoco.get_mju_user_warning() is None:  # MuJoCo would write a log into the working folder
+    mujoco.set_mju_user_warning(lambda _message: None)
+
 
 @dataclass(frozen=True, slots=True, eq=False)
 class ModelFile:

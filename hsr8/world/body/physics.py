@@ -87,9 +87,6 @@ class PhysicsBody:
         self._state = np.empty(mujoco.mj_stateSize(model, mujoco.mjtState.mjSTATE_INTEGRATION))
         place_robot(model, self.data, robot, np.array(layout.start))
         self._surroundings.move(self.data, 0.0)
-        # `apply` counts and raises warnings; MuJoCo must not write its log file.
-        if mujoco.get_mju_user_warning() is None:
-            mujoco.set_mju_user_warning(lambda _message: None)
         mujoco.mj_forward(model, self.data)
 
     @property

@@ -5,9 +5,7 @@ fast, for the camera of the robot; ``show`` for people. Parts that do not depend
 in ``models/field/``.
 """
 
-import warnings
-from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from collections.abc import Callable
 from dataclasses import dataclass
 from math import hypot
 from typing import Any, Literal
@@ -107,29 +105,13 @@ def assemble(
         _add_beacon(spec, beacon, quality)
     for i, bump in enumerate(layout.bumps):
         _add_bump(spec, f"{FIELD}bump_{i:02d}", bump)
-    with _unwarned():
-        model = spec.compile()
-    return model
-
-
-@contextmanager
-def _unwarned() -> Iterator[None]:
-    """Context without MuJoCo's warning that the names of the robot have no prefix."""
-    handler = mujoco.get_mju_user_warning()
-    mujoco.set_mju_user_warning(lambda _message: None)
-    try:
-        with warnings.catch_warnings():
-            warnings.simplefilter("ignore")
-            yield
-    finally:
-        mujoco.set_mju_user_warning(handler)
+    return spec.compile()
 
 
 def _attach(spec: mujoco.MjSpec, robot: LoadedRobot, quality: Quality) -> None:
     """Add the robot in the shapes of a quality."""
     shapes = camera_spec(robot) if quality == "vision" else visual_spec(robot)
-    with _unwarned():
-        spec.attach(shapes, prefix="", frame=spec.worldbody.add_frame())
+    spec.attach(shapes, prefix="", frame=spec.worldbody.add_frame())
 
 
 def _part(find: Callable[[str], Any], name: str) -> Any:

@@ -10,7 +10,7 @@ from hsr8.errors import ModelError
 from hsr8.robots.loaded import load_robot, read_robot
 from hsr8.robots.locate import digest
 from tests.hsr8.robots.mesh_humanoid import write_robot
-from tests.hsr8.robots.robot_parts import described, part, setting
+from tests.hsr8.robots.robot_parts import adding, described, part, setting
 from tests.hsr8.robots.small_humanoid import SmallHumanoid
 
 
@@ -55,7 +55,9 @@ def option(**values):
         ),
         (setting("body", "torso", pos="0 0 1e9"), "body 'torso': 1e+09 m from the body that carr"),
         (
-            setting("position", "l_knee", forcerange="-inf 3"),
+            adding(
+                '<actuator><position name="l_knee" joint="l_knee" forcerange="-inf 3"/></actuator>'
+            ),
             "actuator 'l_knee': forcerange, got -inf 3; expected finite",
         ),
     ],
@@ -63,6 +65,18 @@ def option(**values):
 def test_numbers_that_are_not_those_of_a_robot_are_refused(read, change, reason):
     with pytest.raises(ModelError, match=re.escape(reason)):
         read(change)
+
+
+def test_warnings_of_mujoco_are_neither_printed_nor_logged(read, tmp_path, monkeypatch, recwarn):
+    monkeypatch.chdir(tmp_path)
+    for change in (
+        setting("joint", "l_knee", range="nan nan"),
+        setting("body", "torso", pos="0 0 1e9"),
+    ):
+        with pytest.raises(ModelError):
+            read(change)
+    assert not recwarn
+    assert [path.name for path in tmp_path.iterdir()] == ["robot.xml"]
 
 
 def names(model):

@@ -175,15 +175,11 @@ def standing_tilt(spec, timestep=STEP, seconds=2.0):
     model = spec.compile()
     data = mujoco.MjData(model)
     tilt = 0.0
-    mujoco.set_mju_user_warning(lambda _message: None)
-    try:
-        for _ in range(int(seconds / timestep)):
-            mujoco.mj_step(model, data)
-            if not np.abs(data.qvel).max() < 1e6:
-                return np.inf
-            tilt = max(tilt, 2.0 * float(np.hypot(data.qpos[4], data.qpos[5])))
-    finally:
-        mujoco.set_mju_user_warning(None)
+    for _ in range(int(seconds / timestep)):
+        mujoco.mj_step(model, data)
+        if not np.abs(data.qvel).max() < 1e6:
+            return np.inf
+        tilt = max(tilt, 2.0 * float(np.hypot(data.qpos[4], data.qpos[5])))
     return tilt
 
 
