@@ -10,8 +10,6 @@ other compromise takes the body farther and costs more footsteps.
 A plan that is tried is a copy: the plan in force changes only when one is taken.
 """
 
-from typing import NamedTuple
-
 from compilation import compiled
 from walking.foothold import Foothold, foothold, put, towards
 from walking.footsteps import landing_of, towards_strides
@@ -21,56 +19,6 @@ from walking.records import BEST, LIVE, PAPER, TRIAL, Record
 from walking.support import Region
 
 BISECTIONS = 4  # at most 1/16 short of the maximum admissible change
-
-
-class Plans(NamedTuple):
-    """Plan in force, plan that is tried, and best admitted plan, see `walking.records.LIVE`.
-
-    Attributes:
-        records: the plans (3,).
-        ramps: ZMP reference of each (3, n).
-        steps: footholds of each (3, m).
-        knots: knots of each (3, k).
-    """
-
-    records: Record
-    ramps: Record
-    steps: Record
-    knots: Record
-
-
-class Model(NamedTuple):
-    """Constants of the walk.
-
-    Attributes:
-        robot: constants of the robot.
-        parameters: parameters of the walk.
-        still: strides of stepping in place.
-        sums: sums of the gains of preview control.
-    """
-
-    robot: Record
-    parameters: Record
-    still: Record
-    sums: Record
-
-
-@compiled
-def plan_in(
-    plans: Plans, which: int, landing: Foothold, following: Record, moving: bool, model: Model
-) -> None:
-    """Set footholds and reference of a plan for its gait, see `walking.gait.plan_walk`."""
-    plan_walk(
-        plans.records[which],
-        plans.ramps[which],
-        plans.steps[which],
-        landing,
-        following,
-        moving,
-        model.still,
-        model.robot,
-        model.parameters,
-    )
 
 
 @compiled
@@ -89,31 +37,35 @@ def skip(admission: Record, following: Record, moving: bool) -> None:
 @compiled
 def admit(
     admission: Record,
-    plans: Plans,
+    plans: Record,
+    knots: Record,
     pendulum: Record,
     region: Region,
     wanted: Record,
     moving: bool,
     off_plan: bool,
-    model: Model,
+    robot: Record,
+    parameters: Record,
 ) -> bool:
     """Give the plan in force the admitted timing, footholds and reference.
 
     Args:
         admission: admitted plan, changed.
-        plans: the one in force is changed.
+        plans: plans, see `walking.records.LIVE` (3,); the one in force is changed.
+        knots: knots of the plans (3, k), changed.
         pendulum: pendulum of the plan.
         region: admissible ZMP in this tick.
         wanted: strides of the wanted plan.
         moving: whether the walk goes on in the wanted plan.
         off_plan: whether the swing foot makes a capture step that leaves this plan.
-        model: constants.
+        robot: constants.
+        parameters: parameters of the walk.
 
     Returns:
         whether the ZMP plan in `BEST` belongs to the reference.
     """
-    live, best = plans.records[LIVE], plans.records[BEST]
-    gait, parameters = live.gait, model.parameters
+    live, best = plans[LIVE], plans[BEST]
+    gait = live.gait
     continues = admission.stepping and gait.stepping and gait.completed == admission.completed
     admission.completed = gait.completed
     if not continues or (gait.landed_early and not off_plan):
@@ -122,17 +74,17 @@ def admit(
     goal = last
     if gait.adjustable:
         goal = aimed(gait, last, landing_of(support_foot(gait), wanted), parameters)
-    plan_in(plans, LIVE, goal, wanted, moving, model)
+    plan_walk(live, goal, wanted, moving, robot, parameters)
     best.zmp = live.zmp
     if not (admission.known and admission.stepping and gait.stepping):
         _take(admission, goal, wanted, moving, 1.0)
         return False
-    if _is_feasible(plans, LIVE, pendulum, region, model):
+    if _is_feasible(plans, knots, LIVE, pendulum, region, robot, parameters):
         accepted = True
         _take(admission, goal, wanted, moving, 1.0)
     else:
         accepted = _compromise(
-            admission, plans, pendulum, region, last, goal, wanted, moving, model
+            admission, plans, knots, pendulum, region, last, goal, wanted, moving, robot, parameters
         )
     if parameters.pattern.generator == PAPER:
         live.zmp = best.zmp
@@ -142,28 +94,34 @@ def admit(
 @compiled
 def _compromise(
     admission: Record,
-    plans: Plans,
+    plans: Record,
+    knots: Record,
     pendulum: Record,
     region: Region,
     last: Foothold,
     goal: Foothold,
     wanted: Record,
     moving: bool,
-    model: Model,
+    robot: Record,
+    parameters: Record,
 ) -> bool:
     """Take a feasible plan between the last one, landing at `last`, and the wanted one."""
-    live, parameters = plans.records[LIVE], model.parameters
+    live = plans[LIVE]
     gait, admission.goal = live.gait, live.gait.clock
-    if not moving and _end(admission, plans, pendulum, region, last, goal, wanted, model):
+    if not moving and _end(
+        admission, plans, knots, pendulum, region, last, goal, wanted, robot, parameters
+    ):
         return True
     gait.clock = admission.clock
     update_phase(gait, parameters)
-    plan_in(plans, LIVE, last, admission.following, admission.moving, model)
-    if remains_feasible(live.zmp, plans.ramps[LIVE], live.ramps, parameters):
-        return _bisect(admission, plans, pendulum, region, last, goal, wanted, model)
+    plan_walk(live, last, admission.following, admission.moving, robot, parameters)
+    if remains_feasible(live.zmp, live.ramps, live.ramp_count, parameters):
+        return _bisect(
+            admission, plans, knots, pendulum, region, last, goal, wanted, robot, parameters
+        )
     gait.clock = admission.goal
     update_phase(gait, parameters)
-    plan_in(plans, LIVE, goal, wanted, moving, model)
+    plan_walk(live, goal, wanted, moving, robot, parameters)
     _take(admission, goal, wanted, moving, 1.0)
     return False
 
@@ -171,23 +129,25 @@ def _compromise(
 @compiled
 def _end(
     admission: Record,
-    plans: Plans,
+    plans: Record,
+    knots: Record,
     pendulum: Record,
     region: Region,
     last: Foothold,
     goal: Foothold,
     wanted: Record,
-    model: Model,
+    robot: Record,
+    parameters: Record,
 ) -> bool:
     """Take a walk that ends after the next footstep, if one is feasible."""
-    trial = plans.records[TRIAL]
+    trial = plans[TRIAL]
     low, high = 0.0, 1.0
     for attempt in range(BISECTIONS + 1):
         fraction = 0.5 * (low + high) if attempt > 0 else 0.0
         landing = towards(last, goal, fraction)
-        trial.gait = plans.records[LIVE].gait
-        plan_in(plans, TRIAL, landing, wanted, False, model)
-        if _is_feasible(plans, TRIAL, pendulum, region, model):
+        trial.gait = plans[LIVE].gait
+        plan_walk(trial, landing, wanted, False, robot, parameters)
+        if _is_feasible(plans, knots, TRIAL, pendulum, region, robot, parameters):
             low = fraction
             trial.moving, trial.following = False, wanted
             put(trial.landing, landing)
@@ -203,19 +163,21 @@ def _end(
 @compiled
 def _bisect(
     admission: Record,
-    plans: Plans,
+    plans: Record,
+    knots: Record,
     pendulum: Record,
     region: Region,
     last: Foothold,
     goal: Foothold,
     wanted: Record,
-    model: Model,
+    robot: Record,
+    parameters: Record,
 ) -> bool:
     """Take the plan with the maximum admitted fraction of the change, or keep the last plan.
 
     The last plan is the one in force.
     """
-    trial, between, moving = plans.records[TRIAL], admission.between, admission.moving
+    trial, between, moving = plans[TRIAL], admission.between, admission.moving
     before, after = admission.clock.timing, admission.goal.timing
     low, high, admitted = 0.0, 1.0, False
     for _ in range(BISECTIONS):
@@ -224,12 +186,12 @@ def _bisect(
         between.single = before.single + round(fraction * (after.single - before.single))
         change = after.swing_height - before.swing_height
         between.swing_height = before.swing_height + fraction * change
-        trial.gait = plans.records[LIVE].gait
-        retime(trial.gait, between, model.robot, model.parameters)
+        trial.gait = plans[LIVE].gait
+        retime(trial.gait, between, robot, parameters)
         landing = towards(last, goal, fraction)
         towards_strides(trial.following, admission.following, wanted, fraction)
-        plan_in(plans, TRIAL, landing, trial.following, moving, model)
-        if _is_feasible(plans, TRIAL, pendulum, region, model):
+        plan_walk(trial, landing, trial.following, moving, robot, parameters)
+        if _is_feasible(plans, knots, TRIAL, pendulum, region, robot, parameters):
             low, admitted = fraction, True
             trial.moving = moving
             put(trial.landing, landing)
@@ -244,47 +206,54 @@ def _bisect(
 
 
 @compiled
-def _is_feasible(plans: Plans, which: int, pendulum: Record, region: Region, model: Model) -> bool:
+def _is_feasible(
+    plans: Record,
+    knots: Record,
+    which: int,
+    pendulum: Record,
+    region: Region,
+    robot: Record,
+    parameters: Record,
+) -> bool:
     """Whether a plan is feasible; then its ZMP plan is in `BEST`."""
     return is_feasible(
-        plans.records[BEST].zmp,
-        plans.records[LIVE].zmp,
-        plans.knots[BEST],
+        plans[BEST].zmp,
+        plans[LIVE].zmp,
+        knots[BEST],
         pendulum,
-        plans.ramps[which],
-        plans.records[which].ramps,
+        plans[which].ramps,
+        plans[which].ramp_count,
         region,
-        model.robot,
-        model.parameters,
+        robot,
+        parameters,
     )
 
 
 @compiled
-def _keep_trial(plans: Plans) -> None:
+def _keep_trial(plans: Record) -> None:
     """Copy the plan that was tried to `BEST`, where its ZMP plan is."""
-    trial, best = plans.records[TRIAL], plans.records[BEST]
+    trial, best = plans[TRIAL], plans[BEST]
     best.gait, best.landing, best.following = trial.gait, trial.landing, trial.following
     best.moving = trial.moving
-    _copy_reference(plans, BEST, TRIAL)
+    _copy_reference(best, trial)
 
 
 @compiled
-def _copy_reference(plans: Plans, goal: int, source: int) -> None:
+def _copy_reference(copy: Record, plan: Record) -> None:
     """Copy reference and footholds of a plan."""
-    copy, plan = plans.records[goal], plans.records[source]
-    copy.ramps, copy.steps = plan.ramps, plan.steps
-    for k in range(plan.ramps):
-        plans.ramps[goal, k] = plans.ramps[source, k]
-    for k in range(plan.steps):
-        plans.steps[goal, k] = plans.steps[source, k]
+    copy.ramp_count, copy.step_count = plan.ramp_count, plan.step_count
+    for k in range(plan.ramp_count):
+        copy.ramps[k] = plan.ramps[k]
+    for k in range(plan.step_count):
+        copy.steps[k] = plan.steps[k]
 
 
 @compiled
-def _take_best(admission: Record, plans: Plans, fraction: float) -> None:
+def _take_best(admission: Record, plans: Record, fraction: float) -> None:
     """Put the best admitted plan in force."""
-    live, best = plans.records[LIVE], plans.records[BEST]
+    live, best = plans[LIVE], plans[BEST]
     live.gait = best.gait
-    _copy_reference(plans, LIVE, BEST)
+    _copy_reference(live, best)
     _take(admission, foothold(best.landing), best.following, best.moving, fraction)
 
 

@@ -13,11 +13,11 @@ from math import exp, log
 from typing import NamedTuple
 
 from compilation import compiled
-from walking.admission import Model, Plans, admit, plan_in, skip
+from walking.admission import admit, skip
 from walking.command import BALANCE, LANDING_FROZEN, LANDING_SPEED, ZMP_REGION
 from walking.foothold import Foothold, equal, foothold, put
 from walking.footsteps import equal_strides, is_same, landing_of, reachable
-from walking.gait import aimed, equal_clocks, shorten, support_foot
+from walking.gait import aimed, equal_clocks, plan_walk, shorten, support_foot
 from walking.parameters import CONTROL_PERIOD
 from walking.patterns import advance_pattern, planned_dcm, rejects_infeasible, reset_plan
 from walking.pendulum import dcm_of, dcm_reference, ramp_weights, track_dcm, track_reference
@@ -163,22 +163,17 @@ def plan_pendulum(walk: Record) -> Record:
 
 @compiled
 def _needed_capture(
-    walk: Record, plans: Plans, landing: Foothold, error: Point, model: Model
+    walk: Record, plans: Record, landing: Foothold, error: Point, robot: Record, parameters: Record
 ) -> Capture:
     """Return the capture step for the measured DCM."""
-    live, ramps, robot, parameters = (
-        plans.records[LIVE],
-        plans.ramps[LIVE],
-        model.robot,
-        model.parameters,
-    )
-    gait = live.gait
+    live = plans[LIVE]
+    gait, ramps = live.gait, live.ramps
     support = support_foot(gait)
     if gait.shortened:
-        x, y = dcm_reference(ramps, live.ramps, robot)
+        x, y = dcm_reference(ramps, live.ramp_count, robot)
     else:
         pendulum = plan_pendulum(walk)
-        x, y = planned_dcm(live.zmp, pendulum, ramps, live.ramps, robot, parameters)
+        x, y = planned_dcm(live.zmp, pendulum, ramps, live.ramp_count, robot, parameters)
     body_x, body_y = dcm_of(walk.pendulum, robot)
     off = (body_x + error[0] - x, body_y + error[1] - y)
     if not exceeds(support, off, parameters.stabilizer.capture_dead_zone, robot, parameters):
@@ -193,70 +188,91 @@ def _needed_capture(
 @compiled
 def place_foot(
     walk: Record,
-    plans: Plans,
+    plans: Record,
+    knots: Record,
     wanted: Record,
     velocity: Vector,
     error: Point,
     region: Region,
     moving: bool,
-    model: Model,
+    robot: Record,
+    parameters: Record,
 ) -> None:
     """Choose landing and timing of the swing foot in this tick: the plan in force.
 
     Args:
         walk: state, changed.
-        plans: the one in force is changed.
+        plans: plans (3,); the one in force is changed.
+        knots: knots of the plans (3, k), changed.
         wanted: wanted strides.
         velocity: velocity of these strides (vx, vy, wz) [m/s, m/s, rad/s].
         error: error of the DCM [m].
         region: admissible ZMP in this tick.
         moving: whether the walk is to go on.
-        model: constants.
+        robot: constants.
+        parameters: parameters of the walk.
     """
-    placing, gait = walk.placing, plans.records[LIVE].gait
+    placing, gait = walk.placing, plans[LIVE].gait
     adjustable = gait.adjustable
     placing.bound, placing.moving, placing.accepted = 0, moving, False
     placing.moved_x = placing.moved_y = 0.0
-    landing = _reference(walk, plans, wanted, velocity, region, model)
+    landing = _reference(walk, plans, knots, wanted, velocity, region, robot, parameters)
     if adjustable:
-        _capture(walk, plans, landing, wanted, error, model)
+        _capture(walk, plans, landing, wanted, error, robot, parameters)
     elif gait.stepping:
         nominal = landing_of(support_foot(gait), wanted)
-        if not is_same(nominal, foothold(gait.landing), model.parameters):
+        if not is_same(nominal, foothold(gait.landing), parameters):
             placing.bound |= LANDING_FROZEN
-    if _selects(plans, model):
+    if _selects(gait, parameters):
         placing.moving = walk.admission.moving
 
 
 @compiled
-def _selects(plans: Plans, model: Model) -> bool:
+def _selects(gait: Record, parameters: Record) -> bool:
     """Whether the generator may limit the footsteps; not in a shortened footstep."""
-    return rejects_infeasible(model.parameters) and not plans.records[LIVE].gait.shortened
+    return rejects_infeasible(parameters) and not gait.shortened
 
 
 @compiled
 def _reference(
-    walk: Record, plans: Plans, wanted: Record, velocity: Vector, region: Region, model: Model
+    walk: Record,
+    plans: Record,
+    knots: Record,
+    wanted: Record,
+    velocity: Vector,
+    region: Region,
+    robot: Record,
+    parameters: Record,
 ) -> Foothold:
     """Put the reference that the generator admits in force; return the landing of the plan."""
-    placing, admission, gait = walk.placing, walk.admission, plans.records[LIVE].gait
-    if not _selects(plans, model):
+    placing, admission, gait = walk.placing, walk.admission, plans[LIVE].gait
+    if not _selects(gait, parameters):
         for k in range(3):
             placing.applied[k] = velocity[k]
         skip(admission, wanted, placing.moving)
         landing = foothold(gait.landing)
         if gait.adjustable:
             landing = landing_of(support_foot(gait), wanted)
-        plan_in(plans, LIVE, landing, wanted, placing.moving, model)
+        plan_walk(plans[LIVE], landing, wanted, placing.moving, robot, parameters)
         return landing
     admission.before = gait.clock
     pendulum = plan_pendulum(walk)
     placing.accepted = admit(
-        admission, plans, pendulum, region, wanted, placing.moving, walk.off_plan, model
+        admission,
+        plans,
+        knots,
+        pendulum,
+        region,
+        wanted,
+        placing.moving,
+        walk.off_plan,
+        robot,
+        parameters,
     )
     fraction = admission.fraction
     if fraction < 1.0:
-        if not equal_clocks(gait.clock, admission.before) or _differs(walk, plans, wanted, model):
+        retimed = not equal_clocks(gait.clock, admission.before)
+        if retimed or _differs(walk, gait, wanted, parameters):
             placing.bound |= ZMP_REGION
         for k in range(3):
             now = placing.applied[k]
@@ -268,32 +284,38 @@ def _reference(
 
 
 @compiled
-def _differs(walk: Record, plans: Plans, wanted: Record, model: Model) -> bool:
+def _differs(walk: Record, gait: Record, wanted: Record, parameters: Record) -> bool:
     """Whether the footsteps of the admitted plan differ from the wanted ones."""
-    admission, gait = walk.admission, plans.records[LIVE].gait
+    admission = walk.admission
     if not equal_strides(admission.following, wanted) or admission.moving != walk.placing.moving:
         return True
     nominal, landing = landing_of(support_foot(gait), wanted), foothold(admission.landing)
-    differs: bool = gait.adjustable and not is_same(nominal, landing, model.parameters)
+    differs: bool = gait.adjustable and not is_same(nominal, landing, parameters)
     return differs
 
 
 @compiled
 def _capture(
-    walk: Record, plans: Plans, landing: Foothold, wanted: Record, error: Point, model: Model
+    walk: Record,
+    plans: Record,
+    landing: Foothold,
+    wanted: Record,
+    error: Point,
+    robot: Record,
+    parameters: Record,
 ) -> None:
     """Aim at the landing of a capture step if one is needed."""
-    placing, live, parameters = walk.placing, plans.records[LIVE], model.parameters
+    placing, live = walk.placing, plans[LIVE]
     gait, goal = live.gait, landing
-    capture = _needed_capture(walk, plans, landing, error, model)
+    capture = _needed_capture(walk, plans, landing, error, robot, parameters)
     if capture.needed and shorten(
-        gait, walk.limbs.feet, capture.ticks, capture.landing, model.robot, parameters
+        gait, walk.limbs.feet, capture.ticks, capture.landing, robot, parameters
     ):
         # The timing has changed: plan again.
         merge_pendulums(walk, plans)
         placing.accepted = False
-        plan_in(plans, LIVE, landing, wanted, placing.moving, model)
-        capture = _needed_capture(walk, plans, landing, error, model)
+        plan_walk(plans[LIVE], landing, wanted, placing.moving, robot, parameters)
+        capture = _needed_capture(walk, plans, landing, error, robot, parameters)
     if capture.needed and not gait.double:
         goal = capture.landing
         placing.moved_x, placing.moved_y = goal.x - landing.x, goal.y - landing.y
@@ -303,33 +325,39 @@ def _capture(
         placing.bound |= BALANCE
     elif not placing.bound & ZMP_REGION and not is_same(nominal, now, parameters):
         placing.bound |= LANDING_SPEED
-    if not _selects(plans, model) and not equal(now, landing):
-        plan_in(plans, LIVE, now, wanted, placing.moving, model)
+    if not _selects(gait, parameters) and not equal(now, landing):
+        plan_walk(plans[LIVE], now, wanted, placing.moving, robot, parameters)
 
 
 # Pendulum
 
 
 @compiled
-def advance_pendulum(walk: Record, plans: Plans, region: Region, model: Model) -> None:
+def advance_pendulum(
+    walk: Record,
+    plans: Record,
+    knots: Record,
+    region: Region,
+    robot: Record,
+    parameters: Record,
+    sums: Record,
+) -> None:
     """Advance the pendulums of plan and body by one tick.
 
     Args:
         walk: state, changed.
-        plans: the ZMP plan in force is changed.
+        plans: plans (3,); the ZMP plan in force is changed.
+        knots: knots of the plans (3, k); those of the plan in force are changed.
         region: admissible ZMP.
-        model: constants.
+        robot: constants.
+        parameters: parameters of the walk.
+        sums: sums of the gains of preview control.
     """
-    live, ramps, robot, parameters = (
-        plans.records[LIVE],
-        plans.ramps[LIVE],
-        model.robot,
-        model.parameters,
-    )
-    gait, body, gain = live.gait, walk.pendulum, parameters.pattern.dcm_gain
+    live, body, gain = plans[LIVE], walk.pendulum, parameters.pattern.dcm_gain
+    gait, ramps = live.gait, live.ramps
     selective = rejects_infeasible(parameters)
     if selective and gait.shortened:
-        track_reference(body, robot, gain, ramps, live.ramps, region)
+        track_reference(body, robot, gain, ramps, live.ramp_count, region)
         return
     landing, planned = foothold(gait.landing), foothold(walk.admission.landing)
     if selective and not (gait.double or walk.off_plan or equal(landing, planned)):
@@ -338,17 +366,17 @@ def advance_pendulum(walk: Record, plans: Plans, region: Region, model: Model) -
     x, y = dcm_of(pendulum, robot)
     advance_pattern(
         live.zmp,
-        plans.knots[LIVE],
-        plans.records[BEST].zmp,
-        plans.knots[BEST],
+        knots[LIVE],
+        plans[BEST].zmp,
+        knots[BEST],
         walk.placing.accepted,
         pendulum,
         ramps,
-        live.ramps,
+        live.ramp_count,
         region,
         robot,
         parameters,
-        model.sums,
+        sums,
     )
     if walk.off_plan:
         # Shift of the DCM by a ramp of the ZMP from the fixed support foot to the new landing.
@@ -361,15 +389,15 @@ def advance_pendulum(walk: Record, plans: Plans, region: Region, model: Model) -
 
 
 @compiled
-def end_capture(walk: Record, plans: Plans) -> None:
+def end_capture(walk: Record, plans: Record) -> None:
     """At touchdown, restart the plan from the pendulum of the body."""
-    gait = plans.records[LIVE].gait
+    gait = plans[LIVE].gait
     if walk.off_plan and (gait.double or not gait.stepping):
         merge_pendulums(walk, plans)
 
 
 @compiled
-def merge_pendulums(walk: Record, plans: Plans) -> None:
+def merge_pendulums(walk: Record, plans: Record) -> None:
     """Drop the plan of the generator."""
     walk.off_plan = False
-    reset_plan(plans.records[LIVE].zmp)
+    reset_plan(plans[LIVE].zmp)

@@ -20,7 +20,7 @@ from walking.odometry import LegOdometry
 from walking.parameters import CONTROL_PERIOD, WalkingParameters
 from walking.plane import Array
 from walking.published import Publication, publish, report
-from walking.records import FOOTHOLD, KNOT, LIVE, PLAN, RAMP, WALK, parameters_record
+from walking.records import KNOT, LIVE, PLAN, WALK, parameters_record
 from walking.signals import BodySensors, JointTargets
 from walking.state import WalkingState
 from walking.tick import begin, finish, stand_ready, watch
@@ -59,11 +59,8 @@ class WalkingEngine:
         self._joints = joint_records(robot, parameters)
         self._odometry = odometry or LegOdometry(parameters.odometry)
         self._walks, self._plans = np.zeros(1, WALK), np.zeros(PLANS, PLAN)
-        steps = parameters.gait.preview_steps
-        self._ramps = np.zeros((PLANS, 2 * steps + 2), RAMP)
-        self._steps = np.zeros((PLANS, steps), FOOTHOLD)
         self._knots = np.zeros((PLANS, max_knots(_longest(parameters), SUPPORTS)), KNOT)
-        self._publication = Publication(steps)
+        self._publication = Publication()
         self._legs = robot.chains
         self._axes, self._origins = np.zeros((2, 6, 3)), np.zeros((2, 6, 3))
         self._walk, self._plan = self._walks[0], self._plans[LIVE]
@@ -141,8 +138,6 @@ class WalkingEngine:
             self._walks,
             self._odometry.records,
             self._plans,
-            self._ramps,
-            self._steps,
             self._knots,
             self._joints,
             self._robots,
@@ -210,7 +205,6 @@ class WalkingEngine:
             publication.footsteps,
             self._walks,
             self._plans,
-            self._steps,
             self._odometry.records,
             self._robots,
             self._parameters,
@@ -230,8 +224,6 @@ class WalkingEngine:
         stand_ready(
             self._walks,
             self._plans,
-            self._ramps,
-            self._steps,
             _ready_stance(robot),
             self._robots,
             self._parameters,

@@ -44,13 +44,13 @@ def landing_of(support: Foothold, strides: Record) -> Foothold:
 
 
 @compiled
-def is_parallel(support: Foothold, other: Foothold, still: Record, parameters: Record) -> bool:
+def is_parallel(support: Foothold, other: Foothold, robot: Record, parameters: Record) -> bool:
     """Whether the stance is parallel within tolerance.
 
     After an early touchdown or a capture step the foot is off its planned landing, with the
     pendulum at rest: another footstep would start it again from an infeasible state.
     """
-    rest, near = landing_of(support, still), STANCE_TOLERANCE * parameters.gait.half_stance
+    rest, near = landing_of(support, robot.still), STANCE_TOLERANCE * parameters.gait.half_stance
     return (
         abs(other.x - rest.x) < near
         and abs(other.y - rest.y) < near

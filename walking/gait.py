@@ -186,16 +186,13 @@ def stop_ticks(parameters: Record) -> int:
 
 
 @compiled
-def start(
-    gait: Record, support: int, at_once: bool, still: Record, robot: Record, parameters: Record
-) -> None:
+def start(gait: Record, support: int, at_once: bool, robot: Record, parameters: Record) -> None:
     """Start to walk.
 
     Args:
         gait: changed.
         support: index of the first support foot.
         at_once: whether to skip the long first double support.
-        still: strides of stepping in place.
         robot: constants.
         parameters: parameters of the walk.
     """
@@ -203,7 +200,7 @@ def start(
     if at_once:
         ticks = gait.clock.timing.double
     zmp, weight = scheduled_zmp(gait, robot, parameters), gait.right_weight
-    _begin(gait, support, ticks, zmp, weight, still, parameters)
+    _begin(gait, support, ticks, zmp, weight, robot, parameters)
     gait.shift_fixed = not at_once
 
 
@@ -214,7 +211,7 @@ def _begin(
     double: int,
     zmp: Point,
     right_weight: float,
-    still: Record,
+    robot: Record,
     parameters: Record,
 ) -> None:
     gait.stepping, gait.support = True, support
@@ -224,7 +221,7 @@ def _begin(
     put_single_support(gait.clock.single, gait.clock.timing.single, parameters)
     update_phase(gait, parameters)
     gait.swing_height = gait.clock.timing.swing_height
-    put(gait.landing, landing_of(support_foot(gait), still))
+    put(gait.landing, landing_of(support_foot(gait), robot.still))
 
 
 @compiled
@@ -332,7 +329,6 @@ def advance(
     steps: Record,
     count: int,
     moving: bool,
-    still: Record,
     robot: Record,
     parameters: Record,
 ) -> None:
@@ -344,7 +340,6 @@ def advance(
         steps: planned footholds.
         count: number of these.
         moving: whether the walk goes on.
-        still: strides of stepping in place.
         robot: constants.
         parameters: parameters of the walk.
     """
@@ -365,7 +360,7 @@ def advance(
         gait.swing_phase,
     )
     if gait.stepping and gait.ticks_left == 0:
-        _land(gait, feet, steps, count, moving, still, robot, parameters)
+        _land(gait, feet, steps, count, moving, robot, parameters)
 
 
 @compiled
@@ -375,7 +370,6 @@ def _land(
     steps: Record,
     count: int,
     moving: bool,
-    still: Record,
     robot: Record,
     parameters: Record,
 ) -> None:
@@ -384,13 +378,13 @@ def _land(
     rest_at(feet[swing], landing)
     gait.completed += 1
     here = zmp_under(support_foot(gait), robot, parameters)
-    if not moving and is_parallel(support_foot(gait), landing, still, parameters):
+    if not moving and is_parallel(support_foot(gait), landing, robot, parameters):
         gait.stepping, gait.tick = False, 0
         put_shift(gait.clock.shift, 0, stop_ticks(parameters), here, float(support))
         update_phase(gait, parameters)
         return
     double = gait.clock.timing.double
-    _begin(gait, swing, double, here, float(support), still, parameters)
+    _begin(gait, swing, double, here, float(support), robot, parameters)
     if count > 1:
         put(gait.landing, foothold(steps[1]))
 
@@ -401,44 +395,38 @@ def _land(
 @compiled
 def plan_walk(
     plan: Record,
-    ramps: Record,
-    steps: Record,
     landing: Foothold,
     following: Record,
     moving: bool,
-    still: Record,
     robot: Record,
     parameters: Record,
 ) -> None:
     """Set footholds and ZMP reference of a plan from now on.
 
     Args:
-        plan: plan whose gait is read, and whose numbers of ramps and footholds are set.
-        ramps: set (n,).
-        steps: set (n,).
+        plan: plan whose gait is read, and whose reference and footholds are set.
         landing: foothold of the swing foot.
         following: strides of the footsteps after it.
         moving: whether the walk goes on.
-        still: strides of stepping in place.
         robot: constants.
         parameters: parameters of the walk.
     """
-    gait = plan.gait
+    gait, ramps, steps = plan.gait, plan.ramps, plan.steps
     support, swing = support_foot(gait), swing_foot(gait)
     if not gait.stepping:
         left, right = foothold(gait.footholds[0]), foothold(gait.footholds[1])
         centre = zmp_between(left, right, robot, parameters)
         zmp = scheduled_zmp(gait, robot, parameters)
         set_ramp(ramps[0], max(1, -gait.elapsed), zmp, centre, support, swing)
-        plan.ramps, plan.steps = 1, NO_STEPS
+        plan.ramp_count, plan.step_count = 1, NO_STEPS
         return
     timing, single = gait.clock.timing, gait.clock.single.ticks
-    count, ends = chain_footholds(steps, support, landing, following, still, moving, parameters)
+    count, ends = chain_footholds(steps, support, landing, following, moving, robot, parameters)
     shift, carry, zmp = 0, gait.ticks_left, (0.0, 0.0)
     if gait.double:
         shift, carry, zmp = -gait.elapsed, single, scheduled_zmp(gait, robot, parameters)
     ticks = (shift, carry, timing.double, timing.single, stop_ticks(parameters))
-    plan.steps = count
-    plan.ramps = reference_ramps(
+    plan.step_count = count
+    plan.ramp_count = reference_ramps(
         ramps, swing, support, steps, count, ends, zmp, ticks, robot, parameters
     )

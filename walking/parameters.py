@@ -74,7 +74,6 @@ class GaitParameters:
     capture_clearance: Annotated[float, LENGTH] = 0.020
     # distance of every corner of a landing sole from the strip of the support foot [m]
     foot_clearance: Annotated[float, LENGTH] = 0.012
-    preview_steps: int = 4  # planned footholds [1]
 
 
 @dataclass(frozen=True)

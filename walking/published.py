@@ -12,7 +12,7 @@ from walking.foothold import Foothold, foothold, put
 from walking.gait import support_foot, swing_foot
 from walking.odometry import Odometry
 from walking.plane import Array, Indices, Point
-from walking.records import FOOTHOLD, LIVE, WORD, Record, record
+from walking.records import FOOTHOLD, LIVE, STEPS, WORD, Record, record
 from walking.state import Balance, HeadCameraPose, Phase, WalkingState
 from walking.steering import report_applied
 from walking.support import CORNERS, polygon
@@ -69,18 +69,15 @@ PlanFrame = tuple[float, float, float, float, float]
 class Publication:
     """Buffer that `publish` and `report` fill, and the states made of it.
 
-    Args:
-        steps: maximum number of planned footsteps after the support foot.
-
     Attributes:
         records: record `PUBLISHED` (1,).
         footsteps: planned footholds, the support foot first (n,).
     """
 
-    def __init__(self, steps: int) -> None:
+    def __init__(self) -> None:
         self._numbers = np.zeros(_WORDS)
         self.records: Record = self._numbers.view(PUBLISHED)
-        self.footsteps: Record = np.zeros(1 + steps, FOOTHOLD)
+        self.footsteps: Record = np.zeros(1 + STEPS, FOOTHOLD)
 
     def state(self, count: int, commanded: Command, *, fallen: bool) -> WalkingState:
         """Return the state; its arrays are parts of a copy of the buffer.
@@ -152,7 +149,6 @@ def publish(
     footsteps: Record,
     walks: Record,
     plans: Record,
-    steps: Record,
     odometry: Record,
     robots: Record,
     parameters: Record,
@@ -169,7 +165,6 @@ def publish(
         footsteps: planned footholds, the support foot first, set (n,).
         walks: state of the walk (1,).
         plans: plans of the walk (3,).
-        steps: footholds of the plans (3, m).
         odometry: dead reckoning (1,).
         robots: constants (1,).
         parameters: parameters of the walk (1,).
@@ -181,9 +176,7 @@ def publish(
     """
     published, walk, robot = records[0], walks[0], robots[0]
     publish_camera(published, walk.sensing, angles, rates, gyro, chain, moving, robot)
-    return publish_plan(
-        published, footsteps, walk, plans[LIVE], steps[LIVE], odometry[0], robot, parameters[0]
-    )
+    return publish_plan(published, footsteps, walk, plans[LIVE], odometry[0], robot, parameters[0])
 
 
 @compiled
@@ -204,7 +197,6 @@ def publish_plan(
     footsteps: Record,
     walk: Record,
     plan: Record,
-    steps: Record,
     odometry: Record,
     robot: Record,
     parameters: Record,
@@ -218,7 +210,6 @@ def publish_plan(
         footsteps: planned footholds, support foot first, set (n,).
         walk: state of the walk.
         plan: plan in force.
-        steps: footholds of the plan.
         odometry: dead reckoning.
         robot: constants.
         parameters: parameters of the walk.
@@ -258,9 +249,9 @@ def publish_plan(
     if not gait.stepping:
         _put_foothold(footsteps[1], frame, swing_foot(gait))
         return 2
-    for k in range(plan.steps):
-        _put_foothold(footsteps[1 + k], frame, foothold(steps[k]))
-    count: int = 1 + plan.steps
+    for k in range(plan.step_count):
+        _put_foothold(footsteps[1 + k], frame, foothold(plan.steps[k]))
+    count: int = 1 + plan.step_count
     return count
 
 

@@ -299,17 +299,22 @@ ZMP_PLAN = record(
 """Plan of a pattern generator that plans its ZMP, see `walking.zmp_plan` and
 `walking.paper_pattern`."""
 
+STEPS = 4  # planned footholds
+
 PLAN = record(
     gait=GAIT,
     landing=FOOTHOLD,
     following=STRIDES,
     moving=bool,
-    ramps=int,
-    steps=int,
+    ramps=(RAMP, 2 * STEPS + 2),
+    ramp_count=int,
+    steps=(FOOTHOLD, STEPS),
+    step_count=int,
     zmp=ZMP_PLAN,
 )
 """Plan of the walk: gait with its timing; landing of the swing foot, strides after it, and whether
-the walk goes on; number of ramps and of footholds; plan of the ZMP."""
+the walk goes on; ZMP reference and its number of ramps; footholds and their number; plan of the
+ZMP."""
 
 LIVE, TRIAL, BEST = range(3)
 """Plans: the one in force, one that is tried, and the best that was admitted."""

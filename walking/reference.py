@@ -31,8 +31,8 @@ def chain_footholds(
     support: Foothold,
     landing: Foothold,
     following: Record,
-    still: Record,
     moving: bool,
+    robot: Record,
     parameters: Record,
 ) -> tuple[int, bool]:
     """Set the footholds of a walk, that of the swing foot first.
@@ -42,8 +42,8 @@ def chain_footholds(
         support: support foot.
         landing: foothold of the swing foot.
         following: strides of the footsteps after it.
-        still: strides of stepping in place.
         moving: whether the walk goes on; if not, it ends as soon as the stance is parallel.
+        robot: constants.
         parameters: parameters of the walk.
 
     Returns:
@@ -53,7 +53,7 @@ def chain_footholds(
     number = steps.shape[0]
     for k in range(number):
         put(steps[k], last)
-        if k + 1 < number and not moving and is_parallel(before, last, still, parameters):
+        if k + 1 < number and not moving and is_parallel(before, last, robot, parameters):
             return k + 1, True
         before, last = last, landing_of(last, following)
     return number, False

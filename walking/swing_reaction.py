@@ -135,20 +135,17 @@ def previewed(ticks: int, tick: int, robot: Record) -> Moments:
 
 
 @compiled
-def compensate(
-    limbs: Record, plan: Record, steps: Record, robot: Record, parameters: Record
-) -> None:
+def compensate(limbs: Record, plan: Record, robot: Record, parameters: Record) -> None:
     """Run one tick of the compensation along a plan.
 
     Args:
         limbs: offset of the pelvis and its acceleration, changed.
         plan: plan in force.
-        steps: footholds of the plan.
         robot: constants.
         parameters: parameters of the walk.
     """
     w = robot.omega
-    ahead_x, ahead_y, now_x, now_y = _previewed_shift(plan, steps, robot, parameters)
+    ahead_x, ahead_y, now_x, now_y = _previewed_shift(plan, robot, parameters)
     gain = 1.0 - exp(-w * CONTROL_PERIOD)
     offset, ahead = limbs.offset, limbs.ahead
     x = offset[0] + gain * (0.5 * (ahead[0] + ahead_x) - offset[0])
@@ -160,12 +157,12 @@ def compensate(
 
 @compiled
 def _previewed_shift(
-    plan: Record, steps: Record, robot: Record, parameters: Record
+    plan: Record, robot: Record, parameters: Record
 ) -> tuple[float, float, float, float]:
     """Return ξ x, y [m] and the present shift of the ZMP x, y [m]; zero while standing."""
     gait, timing, single = plan.gait, plan.gait.clock.timing, plan.gait.clock.single
     ahead_x = ahead_y = now_x = now_y = 0.0
-    if not gait.stepping or plan.steps == 0:
+    if not gait.stepping or plan.step_count == 0:
         return ahead_x, ahead_y, now_x, now_y
     begin, ticks = single.first - gait.elapsed, single.last - single.first
     if begin <= 0 and single.origin > 0.0:
@@ -188,8 +185,8 @@ def _previewed_shift(
             now_x, now_y = _zmp_shift(origin, landing, zmp, lift, moments, robot)
     begin = gait.ticks_left + timing.double + first
     whole = previewed(usual, 0, robot)
-    for k in range(1, plan.steps):
-        step, zmp = foothold(steps[k]), zmp_under(landing, robot, parameters)
+    for k in range(1, plan.step_count):
+        step, zmp = foothold(plan.steps[k]), zmp_under(landing, robot, parameters)
         dx, dy = _zmp_shift(support, step, zmp, timing.swing_height, whole, robot)
         decay = _decay(begin, robot)
         ahead_x, ahead_y = ahead_x - decay * dx, ahead_y - decay * dy

@@ -7,7 +7,7 @@ feed-forward.
 import numpy as np
 
 from compilation import compiled
-from walking.admission import Model, Plans, remember
+from walking.admission import remember
 from walking.balance import advance_pendulum, end_capture, exceeds, place_foot, zmp_shift
 from walking.body.kinematics import feet_poses
 from walking.command import BALANCE, FALLEN, SWING_HEIGHT, TIMING
@@ -61,9 +61,7 @@ DIVERGED = 1e6  # distance of the pendulum from the support foot per length of t
 @compiled
 def stand_ready(
     walks: Record,
-    plan_records: Record,
-    ramps: Record,
-    steps: Record,
+    plans: Record,
     stance: Array,
     robots: Record,
     parameter_records: Record,
@@ -72,14 +70,12 @@ def stand_ready(
 
     Args:
         walks: state (1,), changed.
-        plan_records: plans (3,), changed.
-        ramps: ZMP references of the plans (3, n), changed.
-        steps: footholds of the plans (3, m), changed.
+        plans: plans (3,), changed.
         stance: x, y [m] and yaw [rad] of the left and right foot (2, 3).
         robots: constants (1,).
         parameter_records: parameters of the walk (1,).
     """
-    walk, robot, parameters, live = walks[0], robots[0], parameter_records[0], plan_records[LIVE]
+    walk, robot, parameters, live = walks[0], robots[0], parameter_records[0], plans[LIVE]
     gait, limbs, pendulum = live.gait, walk.limbs, walk.pendulum
     for side in range(2):
         foot = Foothold(side == 0, stance[side, 0], stance[side, 1], stance[side, 2])
@@ -91,9 +87,8 @@ def stand_ready(
     remember(walk.admission, gait)
     walk.admission.fraction = 1.0
     put(walk.admission.landing, foothold(gait.landing))
-    landing, still = foothold(gait.landing), robot.still
-    plan_walk(live, ramps[LIVE], steps[LIVE], landing, still, False, still, robot, parameters)
-    end = ramps[LIVE, 0]
+    plan_walk(live, foothold(gait.landing), robot.still, False, robot, parameters)
+    end = live.ramps[0]
     pendulum.x, pendulum.y = pendulum.zmp_x, pendulum.zmp_y = end.bx, end.by
     restart_cycle(walk.corrections)
     limbs.pelvis[0], limbs.pelvis[1], limbs.pelvis[2] = pelvis_over(
@@ -142,9 +137,7 @@ def watch(
 def begin(
     walks: Record,
     odometry: Record,
-    plan_records: Record,
-    ramps: Record,
-    steps: Record,
+    plans: Record,
     knots: Record,
     joints: Record,
     robots: Record,
@@ -167,9 +160,7 @@ def begin(
     Args:
         walks: state (1,), changed.
         odometry: dead reckoning (1,), changed.
-        plan_records: plans (3,), changed.
-        ramps: ZMP references of the plans (3, n), changed.
-        steps: footholds of the plans (3, m), changed.
+        plans: plans (3,), changed.
         knots: knots of the plans (3, k), changed.
         joints: joints of the robot (n,), changed.
         robots: constants (1,).
@@ -192,9 +183,7 @@ def begin(
         depth of the planned ZMP in the support polygon [m]; limits that bind, as bits.
     """
     walk, robot, parameters = walks[0], robots[0], parameter_records[0]
-    plans = Plans(plan_records, ramps, steps, knots)
-    model = Model(robot, parameters, robot.still, sums)
-    live, pendulum = plan_records[LIVE], walk.pendulum
+    live, pendulum = plans[LIVE], walk.pendulum
     gait = live.gait
     estimate(walk, odometry[0], gait.right_weight, gait.stepping, robot)
     error = (walk.sensing.dcm_x, walk.sensing.dcm_y)
@@ -207,8 +196,8 @@ def begin(
     _detect_touchdown(walk, gait, parameters)
     region = _contact_region(walk, gait, parameters.pattern.sole_margin, robot)
     velocity, moving = wanted_velocity(walk.steering), moves(walk.steering)
-    place_foot(walk, plans, walk.wanted, velocity, error, region, moving, model)
-    advance_pendulum(walk, plans, region, model)
+    place_foot(walk, plans, knots, walk.wanted, velocity, error, region, moving, robot, parameters)
+    advance_pendulum(walk, plans, knots, region, robot, parameters, sums)
     distance = _far(walk, gait, robot)
     if distance != 0.0:
         return distance, walk.zmp_depth, 0
@@ -219,12 +208,12 @@ def begin(
     corners = polygon(robot.support, foothold(walk.unloading), foothold(walk.loading), walk.single)
     walk.zmp_depth = depth(corners, zmp[0], zmp[1])
     feet, moving = walk.limbs.feet, walk.placing.moving
-    advance(gait, feet, steps[LIVE], live.steps, moving, robot.still, robot, parameters)
+    advance(gait, feet, live.steps, live.step_count, moving, robot, parameters)
     height = gait.clock.timing.swing_height
     if not gait.double and abs(gait.swing_height - height) > SAME_HEIGHT:
         walk.bound |= SWING_HEIGHT
     end_capture(walk, plans)
-    _move_body(walk, live, steps[LIVE], joints, legs, axes, origins, angles, head, model)
+    _move_body(walk, live, joints, legs, axes, origins, angles, head, robot, parameters)
     acceleration = walk.limbs.offset_acceleration
     w2 = robot.omega * robot.omega
     moved = (
@@ -238,7 +227,7 @@ def begin(
 @compiled
 def finish(
     walks: Record,
-    plan_records: Record,
+    plans: Record,
     joints: Record,
     robots: Record,
     parameter_records: Record,
@@ -255,7 +244,7 @@ def finish(
 
     Args:
         walks: state (1,), changed.
-        plan_records: plans (3,).
+        plans: plans (3,).
         joints: joints of the robot (n,), changed.
         robots: constants (1,).
         parameter_records: parameters of the walk (1,).
@@ -269,7 +258,7 @@ def finish(
         setpoint: set (n,) [rad].
     """
     walk, robot, parameters = walks[0], robots[0], parameter_records[0]
-    gait = plan_records[LIVE].gait
+    gait = plans[LIVE].gait
     walk.limbs.com[0], walk.limbs.com[1] = com[0], com[1]
     left, right = foothold(gait.footholds[0]), foothold(gait.footholds[1])
     zmps = (zmp_under(left, robot, parameters), zmp_under(right, robot, parameters))
@@ -358,7 +347,7 @@ def _maybe_start(
     elif sideways == 0.0:
         opening_left = not walk.last_opening_left
     walk.last_opening_left = opening_left
-    start(gait, 1 if opening_left else 0, pushed, robot.still, robot, parameters)
+    start(gait, 1 if opening_left else 0, pushed, robot, parameters)
     if not retime(gait, walk.steering.timing, robot, parameters):
         walk.bound |= TIMING
 
@@ -402,26 +391,21 @@ def _right_load(gait: Record, region: Region, zmp: Point) -> float:
 def _move_body(
     walk: Record,
     live: Record,
-    steps: Record,
     joints: Record,
     legs: Array,
     axes: Array,
     origins: Array,
     angles: Array,
     head: Point,
-    model: Model,
+    robot: Record,
+    parameters: Record,
 ) -> None:
     """Move the pelvis with the pendulum, and set the posture."""
-    limbs, pendulum, robot, parameters = (
-        walk.limbs,
-        walk.pendulum,
-        model.robot,
-        model.parameters,
-    )
+    limbs, pendulum = walk.limbs, walk.pendulum
     advance_head(limbs, head, robot, parameters)
     turned = head_joints(limbs.head[0], limbs.head[1], joints, robot)
     before = limbs.pelvis[2]
-    compensate(limbs, live, steps, robot, parameters)
+    compensate(limbs, live, robot, parameters)
     offset = walk.corrections.com_offset
     dx, dy = rotate(before, offset[0], offset[1])
     com = (pendulum.x + (limbs.offset[0] + dx), pendulum.y + (limbs.offset[1] + dy))

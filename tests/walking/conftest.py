@@ -1,12 +1,12 @@
 """A robot model and a body without dynamics."""
 
 from math import atan2, cos, sin
+from typing import NamedTuple
 
 import numpy as np
 import pytest
 
 from hsr8.robots.loaded import load_robot
-from walking.admission import Model, Plans
 from walking.body.robot_model import RobotModel
 from walking.body.tree import LEFT_LEG, RIGHT_LEG
 from walking.constants import robot_record
@@ -14,16 +14,7 @@ from walking.foothold import Foothold, put
 from walking.footsteps import STILL, cadence, put_timing, velocity_strides
 from walking.gait import stand
 from walking.parameters import CONTROL_PERIOD, PatternParameters, WalkingParameters
-from walking.records import (
-    FOOTHOLD,
-    KNOT,
-    LIVE,
-    PLAN,
-    RAMP,
-    STRIDES,
-    WALK,
-    parameters_record,
-)
+from walking.records import LIVE, PLAN, STRIDES, WALK, Record, parameters_record
 from walking.signals import BodySensors
 from walking.swing import rest_at
 
@@ -119,6 +110,14 @@ def mirrored_joints(robot):
     return lambda angles: sign * angles[..., swapped]
 
 
+class Model(NamedTuple):
+    """Constants of a walk, and sums of the gains of preview control."""
+
+    robot: Record
+    parameters: Record
+    sums: Record
+
+
 @pytest.fixture(scope="session")
 def make_model(robot):
     """Constants of a walk with a pattern generator."""
@@ -126,7 +125,7 @@ def make_model(robot):
     def make(generator="robust", parameters=None):
         parameters = parameters or WalkingParameters(pattern=PatternParameters(generator=generator))
         records, sums = robot_record(robot, parameters)
-        return Model(records[0], parameters_record(parameters)[0], records[0].still, sums)
+        return Model(records[0], parameters_record(parameters)[0], sums)
 
     return make
 
@@ -157,13 +156,8 @@ def make_walk(model):
         half = float(model.parameters.gait.half_stance)
         stance = stance or (Foothold(True, 0.0, half, 0.0), Foothold(False, 0.0, -half, 0.0))
         walk = np.zeros(1, WALK)[0]
-        plans = Plans(
-            np.zeros(3, PLAN),
-            np.zeros((3, 10), RAMP),
-            np.zeros((3, 4), FOOTHOLD),
-            np.zeros((3, 200), KNOT),
-        )
-        gait = plans.records[LIVE].gait
+        plans = np.zeros(3, PLAN)
+        gait = plans[LIVE].gait
         for side, foot in enumerate(stance):
             put(gait.footholds[side], foot)
             rest_at(walk.limbs.feet[side], foot)

@@ -25,7 +25,7 @@ from walking.footsteps import STILL, is_same, landing_of, reachable
 from walking.gait import advance, retime, start, support_foot, swing_foot, swing_of
 from walking.parameters import CONTROL_PERIOD, StabilizerParameters
 from walking.pendulum import hold_tick
-from walking.records import LIVE
+from walking.records import KNOT, LIVE
 from walking.steering import (
     follow_command,
     moves,
@@ -151,7 +151,8 @@ class Walk:
     def __init__(self, model, make_walk):
         self.model = model
         self.walk, self.plans = make_walk()
-        self.live, self.placing = self.plans.records[LIVE], self.walk.placing
+        self.knots = np.zeros((3, 200), KNOT)
+        self.live, self.placing = self.plans[LIVE], self.walk.placing
         self.gait, pendulum = self.live.gait, self.walk.pendulum
         shift = self.gait.clock.shift
         pendulum.x = pendulum.zmp_x = shift.zmp_x
@@ -171,16 +172,17 @@ class Walk:
         use_next_timing(timing, steering, gait.clock.timing, gait.stepping)
         retime(gait, timing, robot, parameters)
         if not gait.stepping and moves(steering):
-            start(gait, 0, False, model.still, robot, parameters)
+            start(gait, 0, False, robot, parameters)
         wanted_strides(walk.wanted, steering, STILL, robot, parameters)
         loading = support_foot(gait)
         unloading = swing_foot(gait) if gait.double else loading
         margin = parameters.pattern.sole_margin
         region = support_region(robot.support, unloading, loading, margin)
         wanted, moving = wanted_velocity(steering), moves(steering)
-        place_foot(walk, self.plans, walk.wanted, wanted, error, region, moving, model)
-        advance_pendulum(walk, self.plans, region, model)
-        rest = (self.plans.steps[LIVE], self.live.steps, self.placing.moving, model.still)
+        plans = (walk, self.plans, self.knots)
+        place_foot(*plans, walk.wanted, wanted, error, region, moving, robot, parameters)
+        advance_pendulum(*plans, region, *model)
+        rest = (self.live.steps, self.live.step_count, self.placing.moving)
         advance(gait, walk.limbs.feet, *rest, robot, parameters)
         end_capture(walk, self.plans)
 

@@ -5,13 +5,13 @@ from itertools import pairwise
 import numpy as np
 import pytest
 
-from walking.admission import plan_in
 from walking.foothold import Foothold, foothold, put
 from walking.footsteps import STILL, is_parallel, landing_of, put_timing
 from walking.gait import (
     advance,
     aimed,
     phase_of,
+    plan_walk,
     put_single_support,
     retime,
     retime_single_support,
@@ -41,11 +41,11 @@ class Walk:
     def __init__(self, model, strides_of, make_walk):
         self.model, self.strides_of = model, strides_of
         self.walk, self.plans = make_walk()
-        self.plan = self.plans.records[LIVE]
+        self.plan = self.plans[LIVE]
         self.gait, self.feet = self.plan.gait, self.walk.limbs.feet
 
     def start(self, support=0):
-        start(self.gait, support, False, self.model.still, self.model.robot, self.model.parameters)
+        start(self.gait, support, False, self.model.robot, self.model.parameters)
         return self
 
     def tick(self, velocity=STILL, *, strides=None, moving=True):
@@ -54,15 +54,14 @@ class Walk:
         if gait.adjustable:
             wanted = landing_of(support_foot(gait), strides)
             put(gait.landing, aimed(gait, self.landing, wanted, model.parameters))
-        plan_in(self.plans, LIVE, self.landing, strides, moving, model)
-        ramps = self.plans.ramps[LIVE, : self.plan.ramps].copy()
+        plan_walk(self.plan, self.landing, strides, moving, model.robot, model.parameters)
+        ramps = self.plan.ramps[: self.plan.ramp_count].copy()
         advance(
             gait,
             self.feet,
-            self.plans.steps[LIVE],
             self.plan.steps,
+            self.plan.step_count,
             moving,
-            model.still,
             model.robot,
             model.parameters,
         )
@@ -290,7 +289,7 @@ def stop(walk, velocity, stop_at):
         if tick >= stop_at and not walk.gait.stepping:
             break
     left, right = (foothold(foot) for foot in walk.gait.footholds)
-    assert is_parallel(left, right, model.still, model.parameters)
+    assert is_parallel(left, right, model.robot, model.parameters)
     return walk.gait.completed - completed
 
 

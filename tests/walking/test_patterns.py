@@ -87,9 +87,10 @@ class Admission:
     def __init__(self, model, make_walk):
         self.model = model
         self.walk, self.plans = make_walk()
-        self.live = self.plans.records[LIVE]
+        self.knots = np.zeros((3, 200), KNOT)
+        self.live = self.plans[LIVE]
         self.gait = self.live.gait
-        start(self.gait, 0, True, model.still, model.robot, model.parameters)
+        start(self.gait, 0, True, model.robot, model.parameters)
         self.gait.tick = self.gait.clock.shift.end + 44
         update_phase(self.gait, model.parameters)
         self.region = support_region(model.robot.support, LEFT, LEFT, 0.005)
@@ -97,24 +98,24 @@ class Admission:
     def on_reference(self, strides):
         """Put the pendulum on the DCM of a plan with these strides."""
         self.admit(strides)
-        ramps, p = self.plans.ramps[LIVE], self.walk.pendulum
-        x, y = dcm_reference(ramps, self.live.ramps, self.model.robot)
+        ramps, p = self.live.ramps, self.walk.pendulum
+        x, y = dcm_reference(ramps, self.live.ramp_count, self.model.robot)
         p.x, p.y, p.vx, p.vy = x, y, 0.0, 0.0
         p.zmp_x, p.zmp_y = ramps[0].ax, ramps[0].ay
 
     def admit(self, strides, *, moving=True):
         admission = self.walk.admission
         remember(admission, self.gait)
-        rest = (self.walk.pendulum, self.region, strides, moving, False, self.model)
-        self.accepted = admit(admission, self.plans, *rest)
+        rest = (self.walk.pendulum, self.region, strides, moving, False, *self.model[:2])
+        self.accepted = admit(admission, self.plans, self.knots, *rest)
         return admission
 
     def feasible(self):
         """Whether the plan in force is feasible by itself."""
-        plans, model = self.plans, self.model
+        live, model = self.live, self.model
         trial, knots = np.zeros(1, ZMP_PLAN)[0], np.zeros(200, KNOT)
-        rest = (self.walk.pendulum, plans.ramps[LIVE], self.live.ramps, self.region)
-        return is_feasible(trial, self.live.zmp, knots, *rest, model.robot, model.parameters)
+        rest = (self.walk.pendulum, live.ramps, live.ramp_count, self.region)
+        return is_feasible(trial, live.zmp, knots, *rest, model.robot, model.parameters)
 
 
 @pytest.fixture
@@ -134,7 +135,7 @@ def test_a_change_that_is_too_large_is_made_in_part_and_stays_feasible(admission
     slow, fast = strides_of((0.1, 0.0, 0.0)), strides_of(FAST)
     admission.on_reference(slow)
     admission.admit(slow)
-    live, best = admission.live.zmp, admission.plans.records[BEST].zmp
+    live, best = admission.live.zmp, admission.plans[BEST].zmp
     live.exists, live.phases, live.count = True, best.phases, best.count
     for k in range(best.phases):
         live.supports[k] = best.supports[k]

@@ -22,7 +22,7 @@ class Body:
         feet = (Foothold(True, 0.01, 0.045, 0.15), Foothold(False, -0.01, -0.04, -0.05))
         self.feet, self.robot, self.model = feet, robot, model
         self.walk, self.plans = make_walk(feet)
-        self.gait, self.limbs = self.plans.records[LIVE].gait, self.walk.limbs
+        self.gait, self.limbs = self.plans[LIVE].gait, self.walk.limbs
         self.limbs.leg_angles = robot.ready[:12]
         self.joints = joint_records(robot, PARAMETERS)
 
@@ -69,10 +69,10 @@ def test_a_foot_on_the_floor_ignores_the_tilt(body):
 
 
 def test_a_foot_in_the_air_stays_level_under_a_tilted_trunk(robot, model, body):
-    gait, rest = body.gait, (model.still, model.robot, model.parameters)
+    gait, rest = body.gait, (model.robot, model.parameters)
     start(gait, 0, False, *rest)
     while gait.swing_phase < 0.5:
-        advance(gait, body.limbs.feet, body.plans.steps[LIVE], 0, True, *rest)
+        advance(gait, body.limbs.feet, body.plans[LIVE].steps, 0, True, *rest)
     for _ in range(30):
         angles = body.posture(tilt=(0.0, 0.15))[0][RIGHT_LEG]
     stabilizer = PARAMETERS.stabilizer

@@ -4,12 +4,11 @@ import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
 
-from walking.admission import plan_in
 from walking.body.kinematics import chain_end
 from walking.body.tree import HEAD
 from walking.command import VelocityCommand
 from walking.foothold import foothold
-from walking.gait import start
+from walking.gait import plan_walk, start
 from walking.published import PUBLISHED, Publication, publish_camera, publish_plan
 from walking.records import LIVE, ODOMETRY, SENSING
 from walking.state import Phase
@@ -70,24 +69,23 @@ def test_a_tilted_trunk_tilts_the_camera(look, roll, pitch):
 def published(model, strides_of, make_walk):
     """State of a walk in its first double support, odometry at a pose."""
     walk, plans = make_walk()
-    plan = plans.records[LIVE]
-    start(plan.gait, 0, False, model.still, model.robot, model.parameters)
+    plan = plans[LIVE]
+    start(plan.gait, 0, False, model.robot, model.parameters)
     landing, strides = foothold(plan.gait.landing), strides_of((0.2, 0.0, 0.3))
-    plan_in(plans, LIVE, landing, strides, True, model)
+    plan_walk(plan, landing, strides, True, model.robot, model.parameters)
     p, sensing, placing = walk.pendulum, walk.sensing, walk.placing
     p.x, p.y, p.vx, p.vy, p.zmp_x, p.zmp_y = 0.01, 0.005, 0.1, -0.2, 0.02, 0.01
     set_body(sensing)
     sensing.x, sensing.y, sensing.vx, sensing.vy = 0.001, -0.002, 0.01, 0.02
     placing.moved_x, placing.moved_y = 0.03, -0.01
     walk.unloading, walk.loading = plan.gait.footholds[1], plan.gait.footholds[0]
-    publication = Publication(4)  # a state keeps its numbers when the next one is published
+    publication = Publication()  # a state keeps its numbers when the next one is published
 
     def state(x=0.0, y=0.0, yaw=0.0):
         odometry = np.zeros(1, ODOMETRY)[0]
         odometry.x, odometry.y, odometry.yaw = x, y, yaw
         published, rest = publication.records[0], (odometry, model.robot, model.parameters)
-        steps = plans.steps[LIVE]
-        count = publish_plan(published, publication.footsteps, walk, plan, steps, *rest)
+        count = publish_plan(published, publication.footsteps, walk, plan, *rest)
         return publication.state(count, VelocityCommand(0.2), fallen=False)
 
     return state

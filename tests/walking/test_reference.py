@@ -32,7 +32,7 @@ def test_each_foothold_is_the_stride_of_the_one_before(model, strides_of, seed, 
     strides, steps = strides_of(STILL if seed % 3 == 0 else velocity), np.zeros(4, FOOTHOLD)
     landing = landing_of(support, strides)
     count, ends = chain_footholds(
-        steps, support, landing, strides, model.still, moving, model.parameters
+        steps, support, landing, strides, moving, model.robot, model.parameters
     )
     feet = [support, *map(foothold, steps[:count])]
     assert feet[1] == landing
@@ -40,7 +40,7 @@ def test_each_foothold_is_the_stride_of_the_one_before(model, strides_of, seed, 
         assert after == landing_of(before, strides)
     assert ends == (not moving and count < 4)
     if ends:
-        assert is_parallel(*feet[-2:], model.still, model.parameters)
+        assert is_parallel(*feet[-2:], model.robot, model.parameters)
 
 
 def test_the_zmp_turns_with_the_foot_and_is_ahead_of_the_ankle_and_inward(robot, model):

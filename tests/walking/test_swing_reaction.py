@@ -9,7 +9,7 @@ from walking.command import HeadTarget, VelocityCommand
 from walking.engine import WalkingEngine
 from walking.foothold import Foothold, put
 from walking.parameters import CONTROL_PERIOD, WalkingParameters
-from walking.records import FOOTHOLD, LIMBS, PLAN
+from walking.records import FOOTHOLD, GAIT, LIMBS, PLAN, record
 from walking.reference import zmp_under
 from walking.swing_reaction import compensate, leg_reaction
 
@@ -27,8 +27,8 @@ def foothold(n, stride, *, side=1.0, angle=0.0):
 
 
 def plan_at(k, stride, *, steps=6, **walk):
-    """Plan in tick `k` of a walk that goes on for ever, with its footholds."""
-    plan, future = np.zeros(1, PLAN)[0], np.zeros(steps, FOOTHOLD)
+    """Plan in tick `k` of a walk that goes on for ever."""
+    plan = np.zeros(1, record(gait=GAIT, steps=(FOOTHOLD, steps), step_count=int))[0]
     gait, n = plan.gait, k // STEP
     clock, support = gait.clock, foothold(n, stride, **walk)
     gait.stepping, gait.support = True, 0 if support.left else 1
@@ -41,9 +41,9 @@ def plan_at(k, stride, *, steps=6, **walk):
     gait.elapsed = k % STEP - DOUBLE
     gait.ticks_left = SINGLE - gait.elapsed
     for number in range(steps):
-        put(future[number], foothold(n + 1 + number, stride, **walk))
-    plan.steps = steps
-    return plan, future
+        put(plan.steps[number], foothold(n + 1 + number, stride, **walk))
+    plan.step_count = steps
+    return plan
 
 
 @pytest.fixture
@@ -53,7 +53,7 @@ def track(model):
     def run(stride, count=600, **walk):
         limbs, rows = np.zeros(1, LIMBS)[0], []
         for k in range(count):
-            compensate(limbs, *plan_at(k, stride, **walk), model.robot, model.parameters)
+            compensate(limbs, plan_at(k, stride, **walk), model.robot, model.parameters)
             rows.append((*limbs.offset, *limbs.offset_acceleration))
         return np.array(rows)
 
@@ -110,9 +110,9 @@ def test_offsets_stay_small_and_mirror(track):
 def test_standing_the_pelvis_comes_back(model):
     limbs, standing = np.zeros(1, LIMBS)[0], np.zeros(1, PLAN)[0]
     for k in range(200):
-        compensate(limbs, *plan_at(k, 0.07), model.robot, model.parameters)
+        compensate(limbs, plan_at(k, 0.07), model.robot, model.parameters)
     for _ in range(400):
-        compensate(limbs, standing, np.zeros(4, FOOTHOLD), model.robot, model.parameters)
+        compensate(limbs, standing, model.robot, model.parameters)
     assert np.abs(limbs.offset).max() < 1e-6
 
 
