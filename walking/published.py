@@ -1,5 +1,6 @@
 """Published state of the engine: the plan in the odometry frame, the camera, the limits."""
 
+from functools import cached_property
 from math import asin, atan2, cos, sin
 from typing import Any
 
@@ -56,11 +57,12 @@ PUBLISHED = record(
 _WORDS = PUBLISHED.itemsize // WORD
 _FIELDS: Any = PUBLISHED.fields
 _SCALARS = sum(not kind.shape for kind, *_ in _FIELDS.values())
-_ARRAYS = [
-    (slice(offset // WORD, (offset + kind.itemsize) // WORD), kind.shape)
-    for kind, offset, *_ in _FIELDS.values()
+_ARRAYS = {
+    name: (slice(offset // WORD, (offset + kind.itemsize) // WORD), kind.shape)
+    for name, (kind, offset, *_) in _FIELDS.items()
     if kind.shape
-]
+}
+_DEPTH, _BOUND = (_FIELDS[name][1] // WORD for name in ("zmp_depth", "bound"))
 
 PlanFrame = tuple[float, float, float, float, float]
 """Origin x, y [m], cosine and sine of the direction, and the direction [rad] of the plan frame."""
@@ -80,67 +82,110 @@ class Publication:
         self.footsteps: Record = np.zeros(1 + STEPS, FOOTHOLD)
 
     def state(self, count: int, commanded: Command, *, fallen: bool) -> WalkingState:
-        """Return the state; its arrays are parts of a copy of the buffer.
+        """Return the state.
 
         Args:
             count: number of footsteps.
             commanded: last command.
             fallen: whether the robot believes that it has fallen.
         """
-        numbers = self._numbers.copy()
-        phase, x, y, yaw, roll, pitch, step_count, zmp_depth, corner_count, _, _, *camera = numbers[
-            :_SCALARS
-        ].tolist()
-        (
-            _,
-            covariance,
-            rotation,
-            position,
-            applied_velocity,
-            zmp,
-            dcm,
-            com,
-            planned_com,
-            measured_dcm,
-            corners,
-            feet,
-            capture,
-        ) = [
-            numbers[part] if len(shape) == 1 else numbers[part].reshape(shape)
-            for part, shape in _ARRAYS
-        ]
-        return WalkingState(
-            phase=PHASES[int(phase)],
-            odometry=Odometry(x, y, yaw, covariance),
-            camera=HeadCameraPose(rotation, position, *camera),
-            applied_velocity=applied_velocity,
-            footsteps=tuple(map(Foothold._make, self.footsteps[:count].tolist())),
-            zmp=zmp,
-            dcm=dcm,
-            com=com,
-            roll=roll,
-            pitch=pitch,
-            step_count=int(step_count),
-            fallen=fallen,
-            balance=Balance(
-                com=planned_com,
-                dcm=measured_dcm,
-                support=corners[: int(corner_count)],
-                zmp_depth=zmp_depth,
-                feet=feet,
-                capture=capture,
-            ),
-            command_limits=self.report(commanded),
+        return PublishedState.of(
+            self._numbers.copy(), self.footsteps[:count].copy(), commanded, fallen=fallen
         )
 
     def report(self, commanded: Command) -> CommandLimits:
         """Return the report of how a command is limited."""
-        *_, bound, explicit, _, _, _, _, _ = self._numbers[:_SCALARS].tolist()
-        if bound == 0.0:
-            return CommandLimits(commanded, commanded, ())
-        values = self._numbers[_ARRAYS[0][0]].tolist()  # the applied command
-        command = CommandState(*values) if explicit else VelocityCommand(*values[:3])
-        return CommandLimits(commanded, command, limits_of(int(bound)))
+        return _report(self._numbers, commanded)
+
+
+class PublishedState(WalkingState):
+    """State over a copy of the buffer; what few read becomes an object when it is read."""
+
+    _numbers: Array
+    _steps: Record
+    _commanded: Command
+
+    @classmethod
+    def of(cls, numbers: Array, steps: Record, commanded: Command, *, fallen: bool) -> WalkingState:
+        """Make a state of the numbers of a record `PUBLISHED`.
+
+        Args:
+            numbers: the record as an array (n,), kept.
+            steps: planned footholds, the support foot first, kept (k,).
+            commanded: last command.
+            fallen: whether the robot believes that it has fallen.
+        """
+        state: Any = cls.__new__(cls)
+        state._numbers, state._steps, state._commanded = numbers, steps, commanded
+        phase, x, y, yaw, roll, pitch, step_count, _, _, _, _, *camera = numbers[:_SCALARS].tolist()
+        state.phase = PHASES[int(phase)]
+        state.odometry = Odometry(x, y, yaw, _array(numbers, "covariance"))
+        rotation, position = _array(numbers, "rotation"), _array(numbers, "position")
+        state.camera = HeadCameraPose(rotation, position, *camera)
+        state.roll, state.pitch, state.step_count = roll, pitch, int(step_count)
+        state.fallen = fallen
+        made: WalkingState = state
+        return made
+
+    @cached_property
+    def footsteps(self) -> tuple[Foothold, ...]:
+        """Planned footholds, the support foot first."""
+        return tuple(map(Foothold._make, self._steps.tolist()))
+
+    @cached_property
+    def applied_velocity(self) -> Array:
+        """Velocity that the footsteps follow (3,) [m/s, m/s, rad/s]."""
+        return _array(self._numbers, "applied_velocity")
+
+    @cached_property
+    def zmp(self) -> Array:
+        """Planned zero-moment point (2,) [m]."""
+        return _array(self._numbers, "zmp")
+
+    @cached_property
+    def dcm(self) -> Array:
+        """Planned divergent component of motion (2,) [m]."""
+        return _array(self._numbers, "dcm")
+
+    @cached_property
+    def com(self) -> Array:
+        """Measured centre of mass (2,) [m]."""
+        return _array(self._numbers, "com")
+
+    @cached_property
+    def balance(self) -> Balance:
+        """Planned and measured motion in detail."""
+        numbers = self._numbers
+        zmp_depth, corner_count = numbers[_DEPTH : _DEPTH + 2].tolist()
+        return Balance(
+            com=_array(numbers, "planned_com"),
+            dcm=_array(numbers, "measured_dcm"),
+            support=_array(numbers, "corners")[: int(corner_count)],
+            zmp_depth=zmp_depth,
+            feet=_array(numbers, "feet"),
+            capture=_array(numbers, "capture"),
+        )
+
+    @cached_property
+    def command_limits(self) -> CommandLimits:
+        """How the last command was limited."""
+        return _report(self._numbers, self._commanded)
+
+
+def _array(numbers: Array, name: str) -> Array:
+    """Return an array of a record `PUBLISHED`."""
+    part, shape = _ARRAYS[name]
+    return numbers[part].reshape(shape)
+
+
+def _report(numbers: Array, commanded: Command) -> CommandLimits:
+    """Return how a command is limited."""
+    bound, explicit = numbers[_BOUND : _BOUND + 2].tolist()
+    if bound == 0.0:
+        return CommandLimits(commanded, commanded, ())
+    values = _array(numbers, "applied").tolist()
+    command = CommandState(*values) if explicit else VelocityCommand(*values[:3])
+    return CommandLimits(commanded, command, limits_of(int(bound)))
 
 
 @compiled

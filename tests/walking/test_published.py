@@ -1,5 +1,7 @@
 """Published state: camera on a tilted body, and the plan in the odometry frame."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
@@ -139,3 +141,11 @@ def test_a_command_without_a_limit_is_reported_as_applied(published):
     report = published().command_limits
     assert report.applied == report.commanded == VelocityCommand(0.2)
     assert not report.limited
+
+
+def test_a_changed_copy_keeps_the_rest(published):
+    state = published()
+    copy = replace(state, step_count=7)
+    assert copy.step_count == 7
+    assert copy.footsteps == state.footsteps
+    assert copy.balance is state.balance
