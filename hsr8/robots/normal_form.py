@@ -334,9 +334,8 @@ def _extent(zero: Posed, body: int) -> tuple[Array, Array]:
     low, high = data.xpos[body].copy(), data.xpos[body].copy()
     first = int(model.body_geomadr[body])
     for geom in range(first, first + int(model.body_geomnum[body])):
-        rotation = data.geom_xmat[geom].reshape(3, 3)
-        centre = data.geom_xpos[geom] + rotation @ model.geom_aabb[geom, :3]
-        half = np.abs(rotation) @ model.geom_aabb[geom, 3:]
+        centre, rotation, sides = zero.box(geom)
+        half = np.abs(rotation) @ sides
         low, high = np.minimum(low, centre - half), np.maximum(high, centre + half)
     return low, high
 

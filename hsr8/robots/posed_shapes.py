@@ -44,7 +44,7 @@ def arm_spheres(robot: Posed, roles: Roles, *, has_meshes: bool) -> list[tuple[A
         root = int(model.joint(shoulder).bodyid[0])
         geoms = [g for g in range(model.ngeom) if is_below(model, int(model.geom_bodyid[g]), root)]
         visible = [g for g in geoms if _seen(model, g, has_meshes=has_meshes)]
-        spheres = [sphere for g in visible for sphere in _spheres(model, data, g)]
+        spheres = [sphere for g in visible for sphere in _spheres(robot, g)]
         centres = np.array([centre for centre, _ in spheres]).reshape(-1, 3)
         away = np.linalg.norm(centres - data.xanchor[model.joint(shoulder).id], axis=1)
         arms.append((centres, np.array([radius for _, radius in spheres]) + SWING * away))
@@ -83,13 +83,12 @@ def _seen(model: mujoco.MjModel, geom: int, *, has_meshes: bool) -> bool:
     return bool(model.geom_group[geom] < COLLISION_GROUP) and not mesh
 
 
-def _spheres(model: mujoco.MjModel, data: mujoco.MjData, geom: int) -> list[tuple[Array, float]]:
+def _spheres(robot: Posed, geom: int) -> list[tuple[Array, float]]:
     """Return two spheres along the longest side of the box around a geom."""
-    rotation, half = data.geom_xmat[geom].reshape(3, 3), model.geom_aabb[geom, 3:]
-    centre = data.geom_xpos[geom] + rotation @ model.geom_aabb[geom, :3]
+    centre, rotation, half = robot.box(geom)
     longest = int(np.argmax(half))
     across = np.delete(half, longest)
-    round_ = model.geom_type[geom] in ROUND
+    round_ = robot.model.geom_type[geom] in ROUND
     radius = float(across.max() if round_ else np.hypot(*across))
     reach = rotation[:, longest] * max(0.0, float(half[longest]) - radius)
     return [(centre - reach, radius), (centre + reach, radius)]
@@ -101,11 +100,10 @@ def robot_radius(robot: Posed) -> float:
     Args:
         robot: robot in the ready posture, the base above the origin.
     """
-    model, data, radius = robot.model, robot.data, 0.0
+    model, radius = robot.model, 0.0
     for geom in range(model.ngeom):
         if model.geom_contype[geom] or model.geom_conaffinity[geom]:
-            rotation, half = data.geom_xmat[geom].reshape(3, 3), model.geom_aabb[geom, 3:]
-            centre = data.geom_xpos[geom] + rotation @ model.geom_aabb[geom, :3]
+            centre, rotation, half = robot.box(geom)
             corners = centre + (CORNERS * half) @ rotation.T
             radius = max(radius, float(np.hypot(corners[:, 0], corners[:, 1]).max()))
     return float(f"{radius:.3g}")

@@ -223,11 +223,8 @@ def _only_robot(spec: mujoco.MjSpec, feet: tuple[str, str] | None) -> tuple[str,
     """
     tops = list(spec.worldbody.bodies)
     root = max(tops, key=lambda body: len(body.find_all("joint")))
-    foot = None if feet is None else spec.body(feet[0])
-    if foot is not None:
-        while foot.parent.name != spec.worldbody.name:
-            foot = foot.parent
-        root = foot
+    if feet is not None:
+        root = _path_up(spec, spec.body(feet[0]))[-1]
     others = [body for body in tops if body.name != root.name]
     shown = [repr(b.name) for b in others if b.find_all("joint") or b.find_all("geom")]
     moving = [body.name for body in others if body.find_all("joint")]
@@ -265,12 +262,7 @@ def _common_link(spec: mujoco.MjSpec, root: str, feet: tuple[str, str] | None) -
     """Return the last body that both legs have in common and that is fixed to the root."""
     if feet is None:
         return root
-    paths = []
-    for foot in feet:
-        path = [spec.body(foot)]
-        while path[-1].name != root and path[-1].name != spec.worldbody.name:
-            path.append(path[-1].parent)
-        paths.append(path[::-1])
+    paths = [_path_up(spec, spec.body(foot))[::-1] for foot in feet]
     base = root
     for one, other in zip(*paths, strict=False):
         if one.name != other.name or (one.joints and one.name != root):
@@ -281,11 +273,17 @@ def _common_link(spec: mujoco.MjSpec, root: str, feet: tuple[str, str] | None) -
 
 def _joints_above(spec: mujoco.MjSpec, body: mujoco.MjsBody | None) -> list[str]:
     """Return the joints from the robot's root down to a body, but for the free one."""
-    names: list[str] = []
+    bodies = reversed(_path_up(spec, body))
+    return [joint.name for body in bodies for joint in body.joints if joint.type != FREE]
+
+
+def _path_up(spec: mujoco.MjSpec, body: mujoco.MjsBody | None) -> list[mujoco.MjsBody]:
+    """Return a body and those above it, without the world."""
+    path = []
     while body is not None and body.name != spec.worldbody.name:
-        names = [j.name for j in body.joints if j.type != FREE] + names
+        path.append(body)
         body = body.parent
-    return names
+    return path
 
 
 def _tied_to(

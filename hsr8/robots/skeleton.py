@@ -82,6 +82,11 @@ class Posed:
         mujoco.mj_forward(model, data)
         return cls(model, data)
 
+    def box(self, geom: int) -> tuple[Array, Array, Array]:
+        """Return centre (3,) [m], axes (3, 3) and half sides (3,) [m] of the box around a geom."""
+        rotation, box = self.data.geom_xmat[geom].reshape(3, 3), self.model.geom_aabb[geom]
+        return self.data.geom_xpos[geom] + rotation @ box[:3], rotation, box[3:]
+
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Skeleton:

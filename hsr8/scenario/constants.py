@@ -11,7 +11,7 @@ from typing import Any
 from hsr8.mistakes import Mistake
 from hsr8.robots.scale import DEFAULT_ROBOT
 from hsr8.scenario.reference import LIBRARIES, parameters, public_keys
-from hsr8.scenario.scaling import PROFILES, followers, under
+from hsr8.scenario.scaling import PROFILES, followers, plain, under
 from hsr8.scenario.schema import Scenario
 from hsr8.suggestion import suggestion
 
@@ -73,7 +73,7 @@ def separated(data: Table) -> Table:
     constants = {
         key: value
         for key, value in values.items()
-        if key not in public_keys() and (scales or value != _plain(usual[key]))
+        if key not in public_keys() and (scales or value != plain(usual[key]))
     }
     return {**settings, CONSTANTS: _nested(constants)} if constants else settings
 
@@ -105,8 +105,3 @@ def _nested(flat: Table) -> Table:
             table = table.setdefault(name, {})
         table[key] = value
     return nested
-
-
-def _plain(value: Any) -> Any:
-    """Tuples as lists, as JSON has them."""
-    return [_plain(v) for v in value] if isinstance(value, list | tuple) else value

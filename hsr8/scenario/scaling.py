@@ -137,7 +137,7 @@ def _completed(table: Table, kind: Any, factor: Factor, defaults: Any = None) ->
             if inner := _completed({}, type(default), factor, default):
                 full[key] = inner
         elif default is not None and _has_unit(hint):
-            full[key] = _scaled(_plain(default), hint, factor)
+            full[key] = _scaled(plain(default), hint, factor)
     return full
 
 
@@ -184,6 +184,6 @@ def _product(value: Any, factor: float) -> Any:
     return value * factor
 
 
-def _plain(value: Any) -> Any:
-    """Tuples as lists, as JSON has them."""
-    return [_plain(v) for v in value] if isinstance(value, list | tuple) else value
+def plain(value: Any) -> Any:
+    """Return a value with lists in the place of tuples, as JSON has them."""
+    return [plain(v) for v in value] if isinstance(value, list | tuple) else value
