@@ -18,7 +18,13 @@ def compare_entries(a: Entry, b: Entry) -> Comparison:
     Raises:
         UsageError: the suites differ, or no world is common.
     """
-    _require_same_suite(a, b)
+    for key, name in SAME.items():
+        x, y = getattr(a, key), getattr(b, key)
+        if x != y:
+            raise UsageError(
+                f"{b.name}: {name} of the suite differs, got {y}; expected {x} as {a.name}: "
+                "only results of one version of a suite are comparable"
+            )
     one, other = _side(a), _side(b)
     worlds = tuple(sorted(one.runs.keys() & other.runs.keys()))
     if not worlds:
@@ -51,21 +57,6 @@ def compare_entries(a: Entry, b: Entry) -> Comparison:
             )
         },
     )
-
-
-def _require_same_suite(a: Entry, b: Entry) -> None:
-    """Check that two entries are comparable.
-
-    Raises:
-        UsageError: they are entries of different suites.
-    """
-    for key, name in SAME.items():
-        x, y = getattr(a, key), getattr(b, key)
-        if x != y:
-            raise UsageError(
-                f"{b.name}: {name} of the suite differs, got {y}; expected {x} as {a.name}: "
-                "only results of one version of a suite are comparable"
-            )
 
 
 def _side(entry: Entry) -> Side:

@@ -155,17 +155,12 @@ def changed_settings(
         wrong += [
             f"{family}: {key}: {value}; expected {expected}"
             for key, (expected, value) in differences.items()
-            if not (_free(key) or is_condition(key))
+            if not (_free(key) or _within(key, CONDITIONS))
         ]
         changed |= differences
     if wrong:
         raise UsageError("\n  ".join(["--set: settings change the suite, got", *wrong]))
     return changed
-
-
-def is_condition(key: str) -> bool:
-    """Return whether a setting belongs to the conditions, which the results of an entry name."""
-    return _within(key, CONDITIONS)
 
 
 def scenario_hash(scenario: Scenario) -> str:

@@ -5,7 +5,6 @@ import os
 import signal
 import time as clock
 from collections import deque
-from dataclasses import dataclass
 from multiprocessing import forkserver
 from multiprocessing.connection import Connection, wait
 from multiprocessing.process import BaseProcess
@@ -18,12 +17,6 @@ from hsr8.parent_watch import ORPHAN, end_with_parent
 PRELOAD = "hsr8.evaluation.sweep.preload"
 GRACE = 5.0  # time that interrupted runs get to close their files [s]
 ONE_THREAD = ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS")
-
-
-@dataclass(frozen=True, slots=True)
-class _Run:
-    child: Child
-    process: BaseProcess
 
 
 class LocalExecutor:
@@ -39,7 +32,7 @@ class LocalExecutor:
         self._workers = workers
         self._work = work
         self._waiting: deque[Job] = deque()
-        self._running: list[_Run] = []
+        self._running: list[tuple[Child, BaseProcess]] = []
         self._context = multiprocessing.get_context("forkserver")
         self._context.set_forkserver_preload([preload])
         for name in ONE_THREAD:
@@ -59,35 +52,35 @@ class LocalExecutor:
                 self._running.append(self._start(job))
             except (OSError, EOFError) as error:  # no process
                 ended.append((job, unfinished(job, f"{type(error).__name__}: {error}")))
-        sources: list[Any] = [run.process.sentinel for run in self._running]
-        sources += [run.child.results for run in self._running if not run.child.ended]
+        sources: list[Any] = [process.sentinel for _, process in self._running]
+        sources += [child.results for child, _ in self._running if not child.ended]
         wait(sources, 0.0 if ended else seconds)
-        for run in list(self._running):
-            while run.child.receive():
+        for child, process in list(self._running):
+            while child.receive():
                 pass
-            exit_code = run.process.exitcode
-            if exit_code is None and run.child.remaining_time > 0.0:
+            exit_code = process.exitcode
+            if exit_code is None and child.remaining_time > 0.0:
                 continue
             if exit_code is None:
-                run.process.kill()
-            run.process.join()
-            self._running.remove(run)
-            ended.append((run.child.job, run.child.close(exit_code)))
+                process.kill()
+            process.join()
+            self._running.remove((child, process))
+            ended.append((child.job, child.close(exit_code)))
         return ended
 
     def close(self) -> None:
         """Stop the jobs that still run."""
-        for run in self._running:
-            run.process.terminate()
+        for _, process in self._running:
+            process.terminate()
         end = clock.monotonic() + GRACE
-        for run in self._running:
-            run.process.join(max(0.0, end - clock.monotonic()))
-            run.process.kill()
-            run.process.join()
-            run.child.results.close()
+        for child, process in self._running:
+            process.join(max(0.0, end - clock.monotonic()))
+            process.kill()
+            process.join()
+            child.results.close()
         self._running.clear()
 
-    def _start(self, job: Job) -> _Run:
+    def _start(self, job: Job) -> tuple[Child, BaseProcess]:
         """Start the process of a job; the first call waits until the server has loaded."""
         # Ctrl-C interrupts the sweep, which then ends its runs: the server and its children
         # inherit that they ignore it.
@@ -100,7 +93,7 @@ class LocalExecutor:
         with sender:
             process = self._context.Process(target=_run, args=(job, sender, self._work))
             process.start()
-        return _Run(Child(job, receiver), process)
+        return Child(job, receiver), process
 
 
 def _run(job: Job, results: "Connection[RunResult, object]", work: Work) -> None:
