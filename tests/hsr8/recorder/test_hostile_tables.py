@@ -10,9 +10,8 @@ import pytest
 
 from hsr8.errors import UsageError
 from hsr8.recorder.rows import TABLES
-from hsr8.recorder.stream import CHECKSUMS, read_table
+from hsr8.recorder.stream import CHECKSUMS, read_table, rows_and_size
 from hsr8.recorder.table import Table
-from hsr8.recorder.unpacked_size import rows_and_size
 
 ROWS = 900_000
 
