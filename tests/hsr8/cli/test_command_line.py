@@ -25,7 +25,7 @@ def test_settings_are_those_of_every_set():
             log=True,
             view="web",
         ),
-        Sweep("quick", seeds="0:3", vary=(("a=1,2", "b=3"),), keep="none", log=True, timeout=1e3),
+        Sweep("quick", seeds="0:3", vary=(("a=1,2", "b=3"),), keep="none", timeout=1e3),
     ],
 )
 def test_the_words_give_the_same_options(options):
