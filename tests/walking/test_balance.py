@@ -19,7 +19,7 @@ from walking.balance import (
     place_foot,
     zmp_shift,
 )
-from walking.command import BALANCE, LANDING_FROZEN
+from walking.command import BALANCE
 from walking.foothold import Foothold, foothold
 from walking.footsteps import STILL, is_same, landing_of, reachable
 from walking.gait import advance, retime, start, support_foot, swing_foot, swing_of
@@ -262,13 +262,3 @@ def test_during_a_capture_step_the_plan_goes_on_without_the_body_until_touchdown
     while not walk.gait.double:
         walk.tick(velocity)
     assert not walk.walk.off_plan
-
-
-@pytest.mark.parametrize("generator", GENERATORS)
-def test_a_late_change_is_reported_as_frozen_landing(models, make_walk, generator):
-    walk = Walk(models[generator], make_walk).to_swing((0.2, 0.0, 0.0), phase=0.9)
-    landing = foothold(walk.gait.landing)
-    for _ in range(3):
-        walk.tick((0.4, 0.0, 0.0))
-    assert foothold(walk.gait.landing) == landing
-    assert walk.placing.bound & LANDING_FROZEN

@@ -30,14 +30,6 @@ def test_before_settling_zero_is_applied(engine, ideal_body):
     assert report.applied == VelocityCommand()
 
 
-def test_acceleration_binds_until_the_speed_is_reached(engine, ideal_body):
-    command = VelocityCommand(0.2)
-    reports = walk(engine, ideal_body, command, 2.0)
-    assert any(Limit.ACCELERATION in r.limits and r.applied.vx < 0.2 for r in reports)
-    assert not any(Limit.ACCELERATION in r.limits for r in reports[-50:])
-    assert any(not r.limited and r.applied == command for r in reports[-50:])
-
-
 @pytest.mark.parametrize(
     ("command", "limit"),
     [
@@ -67,24 +59,3 @@ def test_the_applied_command_state_is_within_the_limits(engine, ideal_body):
     assert applied.swing_height == LIMITS.max_swing_height
     wide = walk(engine, ideal_body, CommandState(side=0.4), 1.0)[-1].applied
     assert wide.side == pytest.approx(2.0 * HALF_STANCE + LIMITS.step_side)
-
-
-def test_a_footstep_within_all_limits_is_applied_as_commanded(engine, ideal_body):
-    command = CommandState(0.3, 0.08, 0.06, 0.09, 0.05, 0.02)
-    reports = walk(engine, ideal_body, command, 3.0)
-    assert sum(not r.limited for r in reports) > 100
-    assert all(r.applied == command for r in reports if not r.limited)
-
-
-def test_nothing_is_altered_by_standing_until_the_body_has_settled(engine, ideal_body):
-    assert not any(r.limited for r in walk(engine, ideal_body, VelocityCommand(), 1.0))
-
-
-def test_a_frozen_landing_is_reported(engine, ideal_body):
-    walk(engine, ideal_body, VelocityCommand(0.1), 2.0)
-    frozen = 0
-    for k in range(200):
-        step = CommandState(forward=0.06 * (k % 2))
-        frozen += Limit.LANDING_FROZEN in walk(engine, ideal_body, step, CONTROL_PERIOD)[0].limits
-    assert 10 < frozen < 150
-    assert engine.state().command_limits == engine.command_limits

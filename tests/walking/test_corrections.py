@@ -5,7 +5,7 @@ from math import cos, exp, pi, sin
 
 import numpy as np
 import pytest
-from hypothesis import given
+from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from walking.corrections import (
@@ -111,12 +111,14 @@ def walk(velocity, slip, *, cycles=25, disturbed=lambda tick: False, record=None
     return result
 
 
+@settings(max_examples=20)
 @given(st.floats(-0.4, 0.4), st.floats(-0.15, 0.15), st.floats(-1.5, 1.5), slips, slips)
 def test_a_steady_walk_on_any_arc_gets_its_velocity(vx, vy, wz, ahead, aside):
     result = walk((vx, vy, wz), (ahead, aside))
     assert result[-1] == pytest.approx((-ahead, -aside), abs=1e-4)
 
 
+@settings(max_examples=20)
 @given(st.floats(-0.4, 0.4), st.floats(-1.5, 1.5), st.floats(-0.2, 0.2))
 def test_sway_of_the_heading_is_not_an_error(forward, turn, sway):
     result = walk((forward, 0.0, turn), (0.0, 0.0), cycles=4, sway=sway)
@@ -153,13 +155,10 @@ def offsets(off, *, cycles=30, sway=0.02, disturbed=lambda tick: False):
     return result
 
 
+@settings(max_examples=20)
 @given(offs, offs)
 def test_the_mean_centre_of_pressure_is_moved_under_the_plan(ahead, aside):
     assert offsets((ahead, aside))[-1] == pytest.approx((-ahead, -aside), abs=2e-4)
-
-
-def test_a_sway_within_the_cycle_is_ignored():
-    assert max(abs(v) for offset in offsets((0.0, 0.0)) for v in offset) < 1e-9
 
 
 def test_the_offset_moves_slowly_and_within_its_limit():

@@ -106,13 +106,6 @@ def test_targets_stay_smooth_and_inside_the_limits_whatever_is_asked(robot, idea
     assert np.abs(np.diff(position, axis=0)).max() / CONTROL_PERIOD < 15.0
 
 
-def test_two_engines_compute_the_same(robot, ideal_body):
-    body = type(ideal_body)(robot)
-    _, one = run(robot, ideal_body, twists, 3.0)
-    _, other = run(robot, body, twists, 3.0, watch=lambda engine, _k: engine.state())
-    assert (one == other).all()
-
-
 def test_a_lying_robot_knows_it_and_does_not_step(robot, ideal_body):
     engine = WalkingEngine(robot, WalkingParameters())
     lying = np.array([np.cos(0.7), np.sin(0.7), 0.0, 0.0])
@@ -192,10 +185,3 @@ def test_without_disturbance_the_measured_motion_is_the_planned(robot, ideal_bod
 
     run(robot, ideal_body, always(0.15, 0.0, 0.0), 3.0, None, watch)
     assert max(apart) < 0.03
-
-
-def test_the_limits_are_those_of_the_report(robot, ideal_body):
-    def watch(engine, _k):
-        assert engine.limits == engine.command_limits.limits
-
-    run(robot, ideal_body, twists, 2.0, None, watch)

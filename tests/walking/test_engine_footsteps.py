@@ -45,13 +45,6 @@ def test_footsteps_are_those_of_the_command_state(robot, ideal_body):
         assert abs(c * dy - s * dx) == pytest.approx(0.1, abs=5e-3)
 
 
-def test_a_direction_turns_every_footstep(robot, ideal_body):
-    engine = WalkingEngine(robot, PARAMETERS)
-    steps, _ = walk(engine, ideal_body, lambda _k: CommandState(direction=0.15), 5.0)
-    turns = [landing.yaw - support[3] for _, support, landing in steps[2:]]
-    assert turns == pytest.approx([0.15] * len(turns), abs=0.03)
-
-
 def test_a_new_command_state_at_every_tick_keeps_the_joints_smooth(robot, ideal_body):
     rng = np.random.default_rng(3)
     engine = WalkingEngine(robot, PARAMETERS)

@@ -5,7 +5,7 @@ from itertools import pairwise
 import numpy as np
 import pytest
 
-from walking.foothold import Foothold, foothold, put
+from walking.foothold import foothold, put
 from walking.footsteps import STILL, is_parallel, landing_of, put_timing
 from walking.gait import (
     advance,
@@ -123,17 +123,6 @@ def test_a_swing_retimed_goes_on_from_its_phase_and_has_time_to_come_down(elapse
     assert single.ticks == ticks or single.last == elapsed + MIN_TICKS
 
 
-def test_phases_follow_each_other(walk):
-    walk.start()
-    phases = []
-    for _ in range(START + 4 * STEP):
-        phase = (bool(walk.gait.double), int(walk.gait.support))
-        if not phases or phases[-1] != phase:
-            phases.append(phase)
-        walk.tick(FORWARD)
-    assert phases[:5] == [(True, 0), (False, 0), (True, 1), (False, 1), (True, 0)]
-
-
 def test_a_footstep_takes_the_footstep_time_and_lands_as_planned(walk):
     walk.start()
     gait, landings = walk.gait, []
@@ -248,13 +237,6 @@ def test_single_support_stretched_or_cut_in_mid_swing_keeps_the_foot_smooth(walk
     assert heights[-1] == 0.0
 
 
-def test_a_frozen_landing_keeps_its_time(walk):
-    walk.start().swing_to(0.85, STILL)
-    left = walk.gait.ticks_left
-    assert not walk.retime(14, 100)
-    assert walk.gait.ticks_left == left
-
-
 def test_a_double_support_under_way_changes_its_length(walk):
     walk.start()
     gait, model = walk.gait, walk.model
@@ -308,12 +290,6 @@ def test_two_footsteps_stop_the_fastest_walk_from_any_phase(
     make_model, strides_of, make_walk, velocity, generator
 ):
     model = make_model(generator)
-    for stop_at in range(400, 540, 34):
+    for stop_at in range(400, 536, 45):
         # The footstep under way when the command comes is finished first.
         assert stop(Walk(model, strides_of, make_walk), velocity, stop_at) <= 3
-
-
-def test_an_aim_before_the_swing_is_taken_at_once(walk):
-    walk.start()
-    far = Foothold(False, 0.3, -0.1, 0.2)
-    assert aimed(walk.gait, walk.landing, far, walk.model.parameters) == far

@@ -63,10 +63,6 @@ def test_a_saccade_arrives_without_overshoot_in_minimum_time(follow):
     assert arrival == pytest.approx(1.2 / 6.0 + 6.0 / 60.0, abs=0.02)
 
 
-def test_left_and_right_mirror(follow):
-    np.testing.assert_allclose(follow([(0.7, 0.1)] * 30)[:, 0], -follow([(-0.7, 0.1)] * 30)[:, 0])
-
-
 def test_a_head_under_another_walker_turns_its_joints(robot):
     head = Head(robot, PARAMETERS)
     for _ in range(200):

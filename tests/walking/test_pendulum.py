@@ -99,14 +99,6 @@ def test_from_the_dcm_of_a_reference_it_is_walked_exactly(model, omega):
     assert (x, y) == pytest.approx((RAMPS[-1].bx, RAMPS[-1].by), abs=1e-9)
 
 
-def test_the_dcm_of_a_reference_moves_with_the_footholds(model):
-    x, y = dcm_reference(RAMPS, 3, model.robot)
-    moved = RAMPS.copy()
-    for name in ("ax", "bx"):
-        moved[name] += 0.1
-    assert dcm_reference(moved, 3, model.robot) == pytest.approx((x + 0.1, y))
-
-
 def test_a_pendulum_on_the_dcm_is_walked_along_the_reference(model, both):
     state = pendulum(*dcm_reference(RAMPS, 3, model.robot))
     track_reference(state, model.robot, 2.0, RAMPS, 3, both)

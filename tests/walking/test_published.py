@@ -137,12 +137,6 @@ def test_points_keep_their_places_about_the_pendulum(model, published):
     assert state.balance.dcm - state.dcm == pytest.approx(R @ error)
 
 
-def test_a_command_without_a_limit_is_reported_as_applied(published):
-    report = published().command_limits
-    assert report.applied == report.commanded == VelocityCommand(0.2)
-    assert not report.limited
-
-
 def test_a_changed_copy_keeps_the_rest(published):
     state = published()
     copy = replace(state, step_count=7)

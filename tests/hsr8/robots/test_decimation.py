@@ -37,10 +37,3 @@ def test_both_sides_of_a_thin_plate_remain():
     a, b, c = vertices[triangles].transpose(1, 0, 2)
     up = np.cross(b - a, c - a)[:, 2]
     assert (up > 0).sum() == (up < 0).sum() > 0
-
-
-def test_a_point_is_left_alone():
-    point = np.zeros((3, 3))
-    vertices, triangles = decimated(point, np.array([[0, 1, 2]]), 1.0)
-    assert vertices is point
-    assert triangles.tolist() == [[0, 1, 2]]

@@ -23,10 +23,6 @@ def hides(arm, point):
     return np.linalg.norm(eye + along * ray - centre) < radius
 
 
-def test_nothing_is_hidden_without_arms():
-    assert not ground_shadow([], HEIGHT).any()
-
-
 @pytest.mark.parametrize("bearing", [-1.5, 0.3, 2.8])
 @pytest.mark.parametrize("z", [0.38, 0.25, 0.1])
 def test_what_a_ball_hides_is_within_its_shadow(bearing, z):

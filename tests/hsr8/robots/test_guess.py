@@ -137,13 +137,6 @@ def test_knees_that_bend_against_the_names_are_reported():
     assert forward.sureness == "likely"
 
 
-def test_legs_of_five_joints_are_reported():
-    feet = findings(SmallHumanoid(ankle="p"))["feet"]
-    assert feet.sureness == "missing"
-    assert "the legs have 5 hinge joints, l_hip_yaw" in feet.reason
-    assert guess(compiled(SmallHumanoid(ankle="p"))).feet is None
-
-
 @pytest.mark.parametrize("hip", HIPS)
 @pytest.mark.parametrize("ankle", ["pr", "rp"])
 def test_toes_are_not_feet(hip, ankle):

@@ -4,14 +4,12 @@ from math import cos, sin
 
 import numpy as np
 import pinocchio as pin
-import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from walking.body.kinematics import FootPose, Leg
-from walking.body.tree import LEFT_LEG, RIGHT_LEG, turn
+from walking.body.tree import turn
 
-LEGS = [(0, LEFT_LEG), (1, RIGHT_LEG)]
 SEEDS = st.integers(0, 10**6)
 ORDERS = ((2, 0, 1), (1, 0, 2), (0, 2, 1))  # axes of the hip joints: z x y and two others
 
@@ -75,17 +73,6 @@ def test_inverse_kinematics_find_the_joints_of_any_leg(seed):
     solved, error = leg.angles(leg.pose(angles))
     assert error < 1e-10
     np.testing.assert_allclose(solved, angles, atol=1e-7)  # the branch of the bent knee
-
-
-@pytest.mark.parametrize(("side", "part"), LEGS)
-def test_the_legs_of_the_robot_are_where_its_tree_has_them(robot, side, part):
-    rng = np.random.default_rng(3)
-    for _ in range(100):
-        q = robot.ready.copy()
-        q[part] = rng.uniform(robot.lower[part], robot.upper[part])
-        pose, (R, p) = robot.legs[side].pose(q[part]), robot.frame_pose(robot.tree.feet[side], q)
-        np.testing.assert_allclose(rotation(pose), R, atol=1e-12)
-        np.testing.assert_allclose([pose.x, pose.y, pose.z], p, atol=1e-12)
 
 
 def test_a_foot_out_of_reach_is_reported_with_a_finite_posture(robot):
