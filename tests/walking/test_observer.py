@@ -1,16 +1,19 @@
-"""State estimation without a plan, compared with that of the walking engine."""
+"""State estimation without a plan: contacts, rolling feet, comparison with the engine."""
 
 from dataclasses import replace
 from math import cos, sin
 
 import numpy as np
 import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+from scipy.spatial.transform import Rotation
 
 from walking.command import HeadTarget, VelocityCommand
 from walking.engine import WalkingEngine
-from walking.observer import BodyObserver
+from walking.observer import BodyObserver, FootContacts, RollingFeet
 from walking.odometry import LegOdometry
-from walking.parameters import WalkingParameters
+from walking.parameters import CONTROL_PERIOD, GRAVITY, GaitParameters, WalkingParameters
 from walking.state import Phase
 
 PARAMETERS = WalkingParameters()
@@ -123,3 +126,99 @@ def test_a_robot_in_the_air_has_a_state(robot, ideal_body):
     state = observer.state(COMMAND)
     assert estimate.on_floor == (False, False)
     assert np.isfinite([*state.zmp, *state.dcm, *state.com, *estimate.velocity]).all()
+
+
+MASS = 5.0
+WEIGHT = MASS * GRAVITY
+GAIT = GaitParameters()
+STEP = round(GAIT.footstep_time / CONTROL_PERIOD)
+ON, OFF, BOTH = (WEIGHT, 0.0), (0.0, WEIGHT), (0.5 * WEIGHT, 0.5 * WEIGHT)
+
+
+def after(*stretches):
+    contacts = FootContacts(MASS, GAIT)
+    for loads, ticks in stretches:
+        for _ in range(ticks):
+            contacts.update(*loads)
+    return contacts
+
+
+@given(st.lists(st.floats(0.2, 0.8), min_size=1, max_size=100))
+def test_a_robot_that_shifts_its_weight_stands(fractions):
+    contacts = after(*(((f * WEIGHT, (1.0 - f) * WEIGHT), 1) for f in fractions))
+    assert contacts.phase is Phase.STANDING
+    assert contacts.step_count == 0
+
+
+@pytest.mark.parametrize(("loads", "phase"), [(ON, "left"), (OFF, "right"), (BOTH, "standing")])
+def test_the_phase_is_that_of_the_loaded_foot(loads, phase):
+    assert after((loads, STEP)).phase == phase
+
+
+def test_every_landing_is_one_footstep():
+    stride = ((ON, STEP), (BOTH, 5), (OFF, STEP), (BOTH, 5))
+    contacts = after(*stride, *stride)
+    assert contacts.step_count == 4
+    assert contacts.phase is Phase.DOUBLE_SUPPORT
+    assert after(*stride, (BOTH, STEP + 1)).phase is Phase.STANDING
+
+
+def test_a_foot_unloaded_for_a_moment_makes_no_footstep():
+    short = int(GAIT.min_swing_time / CONTROL_PERIOD) - 1
+    assert after((ON, short), (BOTH, 20)).step_count == 0
+
+
+@given(st.integers(0, 2**32 - 1))
+def test_noise_of_an_unloaded_foot_makes_no_footstep(seed):
+    noise = np.random.default_rng(seed).normal(0.0, 0.02 * WEIGHT, 200)
+    contacts = after((ON, STEP), *(((WEIGHT, abs(n)), 1) for n in noise))
+    assert contacts.phase is Phase.LEFT_SUPPORT
+    assert contacts.step_count == 0
+
+
+def test_a_robot_in_the_air_keeps_its_phase():
+    assert after((ON, 3), ((0.0, 0.0), 10)).phase is Phase.LEFT_SUPPORT
+
+
+angles = st.tuples(*[st.floats(-0.5, 0.5)] * 3)
+FLAT = np.stack([np.eye(3)] * 2)
+DOWN = np.array([[0.0, 0.1, -0.5], [0.0, -0.1, -0.5]])
+HEEL = np.array([[-0.05, 0.01], [-0.05, -0.01]])
+LOADED = [True, True]
+
+
+def rolled_over(pressure, rotation):
+    """Positions of feet (2, 3) that turn about their contact points from `DOWN`."""
+    arms = np.column_stack([pressure, np.zeros(2)])
+    return DOWN + arms - arms @ rotation.T
+
+
+@given(angles, st.floats(-3.0, 3.0))
+def test_the_contact_point_of_a_foot_that_rolls_does_not_move(turn, yaw):
+    rotation = Rotation.from_rotvec(turn).as_matrix()
+    feet = RollingFeet()
+    feet.update(DOWN, FLAT, HEEL, yaw, LOADED)
+    feet.update(rolled_over(HEEL, rotation), np.stack([rotation] * 2), HEEL, yaw, LOADED)
+    assert feet.motion == pytest.approx(np.zeros((2, 3)), abs=1e-12)
+    assert feet.contact == pytest.approx(DOWN + np.column_stack([HEEL, np.zeros(2)]))
+    moved = rolled_over(HEEL, rotation) - DOWN
+    assert feet.rolled == pytest.approx(-moved[:, :2], abs=1e-12)
+
+
+@given(angles, st.floats(-3.0, 3.0))
+def test_a_flat_foot_moves_against_the_body(motion, yaw):
+    feet = RollingFeet()
+    feet.update(DOWN, FLAT, HEEL, yaw, LOADED)
+    feet.update(DOWN - motion, FLAT, HEEL, yaw, LOADED)
+    expected = -Rotation.from_euler("z", yaw).apply(motion)
+    assert feet.motion == pytest.approx(np.stack([expected] * 2))
+    assert not feet.rolled.any()
+
+
+def test_a_lifted_foot_forgets_how_it_rolled():
+    tilted = np.stack([Rotation.from_euler("y", 0.3).as_matrix()] * 2)
+    feet = RollingFeet()
+    feet.update(DOWN, FLAT, HEEL, 0.0, LOADED)
+    feet.update(DOWN, tilted, HEEL, 0.0, [True, False])
+    assert feet.rolled[0].any()
+    assert not feet.rolled[1].any()

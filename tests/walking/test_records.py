@@ -1,11 +1,15 @@
-"""Records: types of fields, copies, and parameters by name."""
+"""Records and values: types of fields, copies, and parameters by name."""
+
+import pickle
 
 import numpy as np
 import pytest
 
 from walking import records
+from walking.foothold import Foothold
 from walking.parameters import WalkingParameters
 from walking.records import FOOTHOLD, GENERATORS, PLAN, WALK, parameters_record, record
+from walking.signals import comparable_value, value
 
 
 def test_a_field_with_the_name_of_an_attribute_of_arrays_is_refused():
@@ -43,3 +47,26 @@ def test_parameters_have_their_names_and_values():
             expected = getattr(getattr(parameters, section), name)
             found = values[section][name]
             assert found == (GENERATORS.index(expected) if name == "generator" else expected)
+
+
+@value
+class Pair:
+    first: float
+    second: tuple[int, ...] = ()
+
+
+@comparable_value
+class Numbers:
+    first: float
+
+
+def test_a_value_compares_by_identity_a_comparable_one_by_content():
+    one = Pair(1.0)
+    assert one == one != Pair(1.0)
+    assert Numbers(1.0) == Numbers(1.0) != Numbers(2.0)
+    assert repr(one) == "Pair(first=1.0, second=())"
+
+
+def test_a_value_survives_a_copy_to_another_process():
+    step = Foothold(left=True, x=0.1, y=0.2, yaw=0.3)
+    assert pickle.loads(pickle.dumps(step)) == step

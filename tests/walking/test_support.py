@@ -1,4 +1,4 @@
-"""Support region and support polygon against the convex hull of the soles."""
+"""Sole, support region and support polygon against the convex hull of the soles."""
 
 import numpy as np
 import pytest
@@ -6,6 +6,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from scipy.spatial import ConvexHull
 
+from walking.body.tree import Sole
 from walking.foothold import Foothold
 from walking.support import clip, depth, load_fraction, polygon, support_region
 
@@ -78,3 +79,25 @@ def test_the_polygon_of_one_foot_is_its_sole(sole):
     assert depth(corners_of_foot, *centre.tolist()) == pytest.approx(sole.half_width)
     middle = sole.centre
     assert centre == pytest.approx([0.2 + middle * np.cos(0.4), -0.1 + middle * np.sin(0.4)])
+
+
+SOLE = Sole(0.01, 0.11, 0.05)
+
+
+def test_strong_ankles_press_the_whole_sole():
+    assert SOLE.pressed(0.13, 0.06) is SOLE
+
+
+@pytest.mark.parametrize("forward", [0.03, 0.08, 0.11, 0.115, 0.2])
+@pytest.mark.parametrize("side", [0.02, 0.05, 0.1])
+def test_weak_ankles_press_the_part_within_their_torque(forward, side):
+    part = SOLE.pressed(forward, side)
+    front, back = part.centre + part.half_length, part.centre - part.half_length
+    assert front == pytest.approx(min(0.12, forward))
+    assert back == pytest.approx(max(-0.10, -forward))
+    assert part.half_width == min(0.05, side)
+
+
+def test_what_is_pressed_can_be_pressed():
+    part = SOLE.pressed(0.06, 0.03)
+    assert part.pressed(0.06, 0.03) is part

@@ -1,3 +1,5 @@
+"""Descriptions and models of robots are found, and the facts of shipped robots are theirs."""
+
 import sys
 from importlib.machinery import ModuleSpec
 
@@ -7,6 +9,8 @@ from hsr8.errors import ModelError
 from hsr8.robots import locate
 from hsr8.robots.description import RobotDescription, read_description
 from hsr8.robots.files import models_dir
+from hsr8.robots.loaded import load_robot, read_robot
+from hsr8.robots.locate import find_description, installed_model, robot_names
 
 NAMES = ["alexander", "apollo", "berkeley", "g1", "hsr8", "icub", "jvrc1", "op3", "t1"]
 MODEL = "some_robot/robot.xml"
@@ -209,3 +213,19 @@ def test_a_failed_fetch_is_refused_with_its_reason(fetching, module, reason):
     with pytest.raises(ModelError) as caught:
         locate.find_model(description(robot_descriptions=module), fetching / "robot.toml")
     assert reason in str(caught.value)
+
+
+@pytest.mark.parametrize("name", robot_names())
+def test_mass_and_joints_are_those_of_the_model(name):
+    file = find_description(name)
+    description = read_description(file)
+    if installed_model(description, file.parent) is None:
+        pytest.skip("the model is not installed")
+    model = read_robot(description, file).model
+    assert description.about.mass == pytest.approx(model.body_subtreemass[1], rel=0.01)
+    assert description.about.joints == model.njnt - 1
+
+
+def test_the_leg_is_that_of_the_model():
+    robot = load_robot("hsr8")
+    assert robot.description.about.leg == pytest.approx(robot.model.measures().leg, rel=0.01)

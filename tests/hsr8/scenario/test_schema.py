@@ -8,6 +8,7 @@ from pydantic import ValidationError
 
 from hsr8.errors import ScenarioError
 from hsr8.scenario.loader import load_scenario
+from hsr8.scenario.reference import json_schema
 from hsr8.scenario.schema import MAX_SEED
 from navigation.parameters.belief import BeliefParameters
 from navigation.parameters.navigation import NavigationParameters
@@ -70,3 +71,13 @@ def test_a_scenario_is_immutable():
         scenario.duration = 1.0
     with pytest.raises(FrozenInstanceError):
         scenario.walking.gait.swing_height = 1.0
+
+
+def test_every_key_is_explained_and_every_quantity_has_a_unit():
+    schema = json_schema()
+    for table in (schema, *(d for d in schema["$defs"].values() if "properties" in d)):
+        for name, node in table["properties"].items():
+            text = node.get("description", "")
+            assert text or "$ref" in node or name in ("kind", "motion"), (table["title"], name)
+            numeric = node.get("items", node).get("type") in ("number", "integer")
+            assert not numeric or text.rstrip(".").endswith("]"), (table["title"], name, text)

@@ -1,11 +1,15 @@
+"""Scene of a gaze decision, and its votes."""
+
 import numpy as np
 import pytest
 
 from navigation.gaze.integrated import integrated_votes
 from navigation.gaze.planner import GazePlanner
-from navigation.gaze.scene import gaze_scene
+from navigation.gaze.scene import gaze_scene, relative
+from navigation.motion.planner import Planner
 from navigation.parameters.navigation import NavigationParameters
 from navigation.partial_evaluation import SamplePoints
+from navigation.transform import points_to_world
 
 PAPER, EXTENDED = NavigationParameters.paper(), NavigationParameters.extended()
 SAMPLES = SamplePoints.polar(NavigationParameters.paper().evaluation, np.pi / 2)
@@ -64,3 +68,43 @@ def test_obstacles_and_beacons_together_do_not_exceed_one(belief, task, track, v
     v = votes(b, task(), beacons=np.array([[4.0, 0.0]]))
     assert v.value.sum() == pytest.approx(1.0)
     assert gaze.grid.gaze_map(v).max() == pytest.approx(1.0)
+
+
+P = NavigationParameters.extended()
+BEACONS = np.array([[2.9, 0.0], [-2.9, 0.0], [9.0, 0.0]])
+
+
+def scene(belief_, motion=None):
+    return gaze_scene(belief_, motion, SAMPLES, BEACONS, P)
+
+
+def test_relative_undoes_points_to_world():
+    rng = np.random.default_rng(0)
+    pose, points = np.array([1.0, -0.5, 2.0]), rng.normal(size=(40, 2))
+    bearing, distance = relative(points_to_world(pose, points), pose)
+    back = distance[:, None] * np.stack([np.cos(bearing), np.sin(bearing)], axis=1)
+    assert back == pytest.approx(points)
+
+
+def test_an_empty_fresh_world_asks_for_nothing(belief):
+    s = scene(belief(sigma=0.0, turn_sigma=0.0))
+    assert (s.map.psi, s.psi_sf, s.psi_ob_max, s.psi_way) == (0.0, 0.0, 0.0, 1.0)
+
+
+def test_beacons_out_of_range_or_reach_are_dropped(belief):
+    assert scene(belief()).beacon_bearing == pytest.approx([0.0])
+
+
+def test_psi_way_falls_before_an_obstacle_and_psi_ob_rises(belief, track, task, limits):
+    far = scene(belief([track((1.5, 0), sigma=0.05)]))
+    b = belief([track((0.5, 0), sigma=0.05)])
+    near = scene(b, Planner(P, limits).plan(belief(), task()))
+    assert near.psi_way < far.psi_way == 1.0
+    assert near.psi_ob_max > far.psi_ob_max == 0.0
+
+
+def test_ground_in_view_is_not_counted(belief, view):
+    unseen = belief(confidence=lambda x, y: 0.0, camera=view(0.6, -0.5))
+    s = scene(unseen)
+    left = s.samples.bearing > 0.05
+    assert s.map.counted[~left].sum() > s.map.counted[left].sum()
