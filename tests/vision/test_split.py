@@ -1,7 +1,5 @@
 import numpy as np
 import pytest
-from hypothesis import given, settings
-from hypothesis import strategies as st
 
 from tests.vision.scene import CAMERA, Cylinder, at, paint, pose, traced
 from vision.detector import Detector
@@ -15,21 +13,6 @@ GAZE = pose(tilt=-0.3)
 def parts_of(obstacles: list[Cylinder]) -> list[Part]:
     (blob,), padded, (outline,) = traced(obstacles, GAZE)
     return split(blob, outline, padded, View(CAMERA, GAZE), VisionParameters())
-
-
-@settings(max_examples=40)
-@given(
-    distance=st.floats(0.4, 2.0),
-    bearing=st.floats(-35.0, 35.0),
-    radius=st.floats(0.05, 0.12),
-    tilt=st.floats(-0.8, -0.2),
-)
-def test_a_lone_cylinder_is_never_seen_as_two(
-    distance: float, bearing: float, radius: float, tilt: float
-) -> None:
-    gaze = pose(tilt=tilt)
-    image = paint([at(distance, bearing, "red", radius)], gaze)
-    assert len(Detector(CAMERA, VisionParameters()).detect(image, gaze)) <= 1
 
 
 @pytest.mark.parametrize("offset", [-4.0, -2.0, 0.0, 2.0, 4.0])

@@ -78,7 +78,7 @@ def test_the_applied_command_state_is_within_the_limits(engine, ideal_body):
     assert wide.side == pytest.approx(2.0 * HALF_STANCE + LIMITS.step_side)
 
 
-AHEAD, STAND = HeadTarget(), VelocityCommand()
+STAND = VelocityCommand()
 HALF_TICK = 0.5 * CONTROL_PERIOD + 1e-9
 ROUNDING = 1e-9
 WIDE = 10.0  # a limit that never binds

@@ -85,19 +85,3 @@ def test_once_up_it_goes_on_with_the_odometry_and_the_count_of_steps(robot, idea
     assert hidden[0, 0] == pytest.approx(RISING.get_up.displacement_sigma**2, rel=0.1)
     walk(walker, standing, 400)
     assert walker.state().step_count > after.step_count
-
-
-def test_the_engine_can_be_replaced_and_continues_the_odometry_after_a_fall(robot, ideal_body):
-    made = []
-
-    def engine(odometry):
-        made.append(odometry)
-        return WalkingEngine(robot, RISING, odometry)
-
-    walker = Walker(robot, RISING, engine)
-    walk(walker, ideal_body, 10)
-    fall(walker, ideal_body, 100)
-    walker.get_up.outcome = Outcome.UP
-    walker.step(type(ideal_body)(robot).sense(), FORWARD, AHEAD)
-    assert len(made) == 2
-    assert made[0] is made[1]

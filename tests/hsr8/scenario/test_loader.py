@@ -19,7 +19,6 @@ from hsr8.mistakes import MAX_LISTED
 from hsr8.scenario.constants import constant_names
 from hsr8.scenario.layers import built_in_names
 from hsr8.scenario.loader import dump, load_scenario, loads
-from hsr8.scenario.reference import json_schema
 
 COURSE = 'mission = {kind = "course"}\n'
 
@@ -274,47 +273,6 @@ def test_single_keys_take_precedence_over_profile_and_camera():
     assert scenario.walking.head.max_rate == 5.0
     assert load_scenario("course").camera.horizontal_fov_deg == pytest.approx(60.0, abs=0.1)
     assert loads(dump(scenario)) == scenario
-
-
-TABLES = list(json_schema()["properties"])
-keys = st.one_of(st.sampled_from(TABLES), st.text(min_size=1, max_size=8))
-leaves = st.one_of(
-    st.integers(),
-    st.floats(),
-    st.booleans(),
-    st.text(max_size=12),
-    st.sampled_from(["tour", "course", "points", "walk", "rendered", "paper", "shuttle"]),
-)
-inner = st.sampled_from(
-    ["kind", "n_static", "size", "radius", "mover", "motion", "points", "profile", "preset", "gaze"]
-)
-values = st.recursive(
-    leaves, lambda v: st.lists(v, max_size=3) | st.dictionaries(keys | inner, v, max_size=4)
-)
-
-
-@settings(max_examples=150)
-@given(st.dictionaries(keys, values, max_size=5))
-def test_any_table_is_a_scenario_or_a_scenario_error(table):
-    try:
-        scenario = loads(tomlkit.dumps({**table, "name": "x"}))
-    except ScenarioError:
-        return
-    assert loads(dump(scenario)) == scenario
-
-
-@settings(max_examples=150)
-@given(st.text(max_size=60))
-def test_any_text_is_a_scenario_or_a_scenario_error(text):
-    for attempt in (
-        lambda: loads(text),
-        lambda: load_scenario("course", [text]),
-        lambda: load_scenario(text),
-    ):
-        try:
-            attempt()
-        except ScenarioError:
-            continue
 
 
 @settings(max_examples=60)

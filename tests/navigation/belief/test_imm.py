@@ -62,25 +62,6 @@ def watch(modes, positions, R=R, rng=None):
     return modes
 
 
-def line(seconds, velocity, start=(1.0, 0.0)):
-    steps = np.arange(1, round(seconds / DT) + 1)[:, None]
-    return np.array(start) + DT * steps * np.array(velocity)
-
-
-def test_a_reversal_out_of_sight_is_weighed_against_going_on():
-    modes = watch(one(), line(2.0, (0.1, 0.0)))
-    for _ in range(50):
-        modes = predict(modes, DT)
-    on, back = (modes.states[0, m, 0] for m in (FORWARD, REVERSED))
-    assert back < 1.2 < on
-    assert modes.weights[0, REVERSED] == pytest.approx(0.5 - 0.5 * np.exp(-2 * 3 / 12), abs=0.03)
-    assert modes.covariances[0, REVERSED, 0, 0] > 4 * modes.covariances[0, FORWARD, 1, 1]
-    observed = watch(modes, [(1.15, 0.0)])
-    assert observed.weights[0, REVERSED] > 0.7
-    later = watch(observed, line(0.5, (-0.1, 0.0), (1.15, 0.0)))
-    assert later.weights[0, REVERSED] > 0.95
-
-
 def test_covariances_stay_positive_definite_over_100000_updates():
     """400 obstacles, 250 looks each: precise, coarse and needle-shaped, after any gap."""
     rng = np.random.default_rng(4)

@@ -1,5 +1,4 @@
 from dataclasses import replace
-from itertools import permutations
 from math import cos, pi, sin
 
 import numpy as np
@@ -114,40 +113,6 @@ def test_covariance_stays_positive_definite_over_1000_random_updates():
     updates(1000, seed=7)
 
 
-def test_rotating_the_world_rotates_the_estimate():
-    def final(turn):
-        c, s = cos(turn), sin(turn)
-        R = np.array([[c, -s], [s, c]])
-        beacons = {n: tuple((R @ p).tolist()) for n, p in BEACONS.items()}
-        rng = np.random.default_rng(3)
-        localizer = Localizer(LocalizationParameters(), beacons, np.array([0, 0, turn]), P0)
-        for k in range(1, 50):
-            noise = (rng.normal(0, 0.03), rng.normal(0, 0.02))
-            observed = [beacon((0.02 * k, 0, 0), f"b{k % 8}", noise)]
-            localizer.update(frame(k * DT, (0.02 * k, 0, 0), observed))
-        return localizer.pose, localizer.covariance, R
-
-    plain, P, _ = final(0.0)
-    for turn in (0.7, 2.9, -3.1):
-        turned, Q, R = final(turn)
-        assert np.allclose(turned[:2], R @ plain[:2], atol=2e-4)
-        assert abs(wrap(turned[2] - plain[2] - turn)) < 2e-4
-        # Sigma points follow the axes of the Cholesky factor, so only nearly invariant.
-        assert np.allclose(Q[:2, :2], R @ P[:2, :2] @ R.T, rtol=1e-2, atol=1e-6)
-
-
-def test_the_order_of_beacons_in_a_frame_does_not_matter():
-    results = []
-    for order in permutations(["b0", "b2", "b5"]):
-        localizer = Localizer(LocalizationParameters(), BEACONS, np.zeros(3), P0)
-        observed = [beacon((0.02, -0.01, 0.015), n) for n in order]
-        localizer.update(frame(0.1, (0, 0, 0), observed))
-        results.append((localizer.pose, localizer.covariance))
-    for pose, covariance in results[1:]:
-        assert np.allclose(pose, results[0][0], atol=1e-3)
-        assert np.allclose(covariance, results[0][1], atol=1e-5)
-
-
 def test_a_beacon_reported_twice_counts_once():
     results = []
     for names in (["b0"], ["b0", "b0"]):
@@ -162,16 +127,6 @@ def test_an_outlier_is_ignored():
     localizer.update(frame(0.1, (0, 0, 0), [beacon((0, 0, 0), "b0", noise=(1.0, 0.5))]))
     assert np.allclose(localizer.pose, 0, atol=1e-9)
     assert not localizer.lost
-
-
-def test_one_beacon_out_of_place_does_not_lose_the_robot():
-    localizer = Localizer(LocalizationParameters(), BEACONS, np.zeros(3), P0)
-    moved = beacon((0, 0, 0), "b0", position=(3.0, 0.5))
-    for k in range(1, 60):
-        observed = [moved, beacon((0, 0, 0), "b1"), beacon((0, 0, 0), "b2")]
-        localizer.update(frame(k * DT, (0, 0, 0), observed))
-        assert not localizer.lost
-    assert np.allclose(localizer.pose, 0, atol=0.02)
 
 
 def test_a_broken_filter_is_counted_and_started_again():
@@ -232,16 +187,3 @@ def test_a_filter_with_a_number_that_is_none_is_started_again(part):
     assert localizer.faults == 1
     assert np.isfinite(localizer.pose).all()
     assert np.isfinite(localizer.covariance).all()
-
-
-def test_a_moved_beacon_does_not_spoil_finding_back():
-    localizer = Localizer(LocalizationParameters(), BEACONS, np.zeros(3), P0)
-    moved = beacon((0, 0, 0), "b0", position=(3.0, 0.5))
-    for k in range(1, 30):
-        localizer.update(frame(k * DT, (0, 0, 0), [moved]))
-    assert localizer.lost
-    observed = [moved, beacon((0, 0, 0), "b2"), beacon((0, 0, 0), "b5")]
-    localizer.update(frame(3.0, (0, 0, 0), observed[1:]))
-    localizer.update(frame(3.1, (0, 0, 0), observed))
-    assert not localizer.lost
-    assert np.hypot(*localizer.pose[:2]) < 0.05

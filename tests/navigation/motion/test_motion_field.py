@@ -126,18 +126,6 @@ def test_without_obstacles_the_field_leads_to_the_goal():
     assert field.at(np.zeros(2), 0.0, s, ()) == pytest.approx([0.0, 1.0])
 
 
-@pytest.mark.parametrize("lateral", [0.0, 0.004, 0.02, -0.02, 0.1, -0.1])
-def test_the_printed_virtual_obstacle_acts_before_a_mover_head_on(lateral, track):
-    """Fig. 4 (c): its centre lies abeam, where the third condition of (9) would drop it."""
-    field = MotionField(PAPER.univector, PAPER.moving_obstacles)
-    s = scene([track((1.6, lateral), (-0.1, 0.0))], PAPER)
-    virtual = field.printed_obstacles(np.zeros(3), np.array([0.2, 0.0]), s, (0,))
-    without, with_it = (field.at(np.zeros(2), 0.0, s, f) for f in ((), virtual))
-    assert without[1] == pytest.approx(0.0)
-    away = np.copysign(1.0, lateral) if abs(lateral) > 0.01 else 1.0
-    assert -0.25 - 1e-9 <= away * with_it[1] < -0.2
-
-
 @pytest.mark.parametrize("p", [EXTENDED, PAPER], ids=["extended", "paper"])
 def test_rigid_motion_moves_field_and_virtual_obstacles_along(p, track, rotation):
     a, shift = 0.7, np.array([3.0, -1.0])

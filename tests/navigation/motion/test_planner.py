@@ -110,13 +110,6 @@ def test_movers_lost_for_long_are_left_to_the_safety_filter(belief, task, track,
     assert len(Planner(EXTENDED, limits).plan(belief([fresh]), task()).extended_radii) == 1
 
 
-def test_a_crossing_mover_changes_the_speed_in_the_paper(belief, task, track, limits):
-    mover = track((0.9, -0.8), (0.0, 0.12))
-    decision = Planner(PAPER, limits).plan(belief([mover]), task())
-    assert decision.situation in {"accelerate", "brake"}
-    assert decision.speed < limits.vx
-
-
 def test_a_definite_collision_makes_a_virtual_obstacle_in_the_paper(belief, task, track, limits):
     mover = track((0.6, 0.1), (-0.12, 0.0))
     decision = Planner(PAPER, limits).plan(belief([mover]), task())
@@ -138,12 +131,6 @@ def test_an_obstacle_on_the_path_is_passed(motion, belief, task, track, limits, 
             break
     assert np.hypot(*(pose[:2] - [1.6, 0.0])) < 0.15
     assert least > 0.20
-
-
-def test_switches_of_the_movers_can_be_turned_off(belief, task, track, limits):
-    decision = Planner(OFF, limits).plan(belief([track((0.9, 0.1), (-0.12, 0.0))]), task())
-    assert decision.speed == limits.vx
-    assert decision.virtual_obstacles == ()
 
 
 def test_a_wall_is_passed_with_the_waypoint_search_and_not_without(belief, task, track, limits):

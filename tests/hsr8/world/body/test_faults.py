@@ -147,12 +147,6 @@ def test_delayed_setpoints_are_those_of_earlier_ticks():
     assert left == right == [0, 1, 0, 0, 1, 2, 3, 4, 8, 9, 10, 11]
 
 
-def test_a_stuck_servo_keeps_a_delayed_setpoint():
-    late = ServoDelay(kind="servo-delay", magnitude=0.01)
-    stuck = ServoStuck(kind="servo-stuck", joint="l_knee", start=0.03)
-    assert knees([late, stuck])[0] == [0, 0, 0, 1, 2, 3, 3, 3, 3, 3, 3, 3]
-
-
 MOVERS = (
     Obstacle((1.0, 0.0), 0.08, 0.3, "blue", Shuttle((1.0, 0.0), (1.0, 1.0), 0.1)),
     Obstacle((-1.0, 0.0), 0.08, 0.3, "red", Shuttle((-1.0, 0.0), (-1.0, 1.0), 0.1)),
