@@ -108,6 +108,18 @@ def test_a_scrolled_map_equals_a_fixed_one(view):
     assert np.isfinite(rolling.age).mean() > 0.1
 
 
+@pytest.mark.parametrize("rate", [10, 30])
+def test_occupancy_does_not_depend_on_the_frame_rate(view, rate):
+    viewpoint = Viewpoint.of(view(), np.zeros(3), 2.5)
+    position = np.array([[1.0, 0.0]])
+    grid = LocalMap(LocalMapParameters(), (0.0, 0.0), 0.0)
+    for k in range(1, rate // 10 + 1):
+        grid.update(k / rate, viewpoint, (0.0, 0.0), position, np.array([0.08]))
+    odds = 15.0 * 0.1
+    assert occupancy_at(grid, position) == pytest.approx(1 / (1 + np.exp(-odds)))
+    assert occupancy_at(grid, [[1.5, 0.5]]) == pytest.approx(1 / (1 + np.exp(6.0 * 0.1)))
+
+
 def test_free_is_where_the_cell_and_its_four_neighbours_were_seen_empty(view):
     grid = LocalMap(P, (0.0, 0.0), 0.0)
     obstacle = (np.array([[1.0, 0.0]]), np.array([0.1]))

@@ -122,6 +122,28 @@ def test_a_beacon_reported_twice_counts_once():
     assert np.array_equal(*results)
 
 
+def test_odometry_alone_moves_the_pose_and_adds_noise_along_the_body():
+    """By the chord at the middle heading; the noise of the way ahead is that of y in W."""
+    localizer = Localizer(LocalizationParameters(), {}, np.array([1.0, 2.0, pi / 2]), P0 * 1e-4)
+    localizer.update(frame(0.0, (5, 5, 1.0), []))
+    motion = (4e-4, 1e-4, 1e-8)
+    localizer.update(frame(1e-6, (5 + cos(1.1), 5 + sin(1.1), 1.2), [], motion))
+    expected = [1.0 + cos(pi / 2 + 0.1), 2.0 + sin(pi / 2 + 0.1), pi / 2 + 0.2]
+    assert localizer.pose == pytest.approx(expected, abs=1e-6)
+    assert np.diag(localizer.covariance)[:2] == pytest.approx((1e-4, 4e-4), rel=2e-3)
+
+
+def test_a_displaced_beacon_is_detected_and_ignored():
+    localizer = Localizer(LocalizationParameters(), BEACONS, np.zeros(3), P0)
+    moved = beacon((0, 0, 0), "b0", position=(3.0, 0.5))
+    for k in range(1, 40):
+        localizer.update(frame(k * DT, (0, 0, 0), [moved, beacon((0, 0, 0), "b1")]))
+    for k in range(40, 100):
+        localizer.update(frame(k * DT, (0, 0, 0), [moved]))
+    assert not localizer.lost
+    assert np.hypot(*localizer.pose[:2]) < 0.05
+
+
 def test_an_outlier_is_ignored():
     localizer = Localizer(LocalizationParameters(), BEACONS, np.zeros(3), P0)
     localizer.update(frame(0.1, (0, 0, 0), [beacon((0, 0, 0), "b0", noise=(1.0, 0.5))]))
