@@ -35,7 +35,7 @@ def complete_inertias(
     Args:
         spec: specification, changed in place.
         places: places of the bodies without joints.
-        source: its file.
+        source: file of the model.
         repair: whether impossible inertias are replaced by that of a ball of equal mass.
 
     Raises:

@@ -69,7 +69,7 @@ def joint_error(
     """Return the error of a joint: of a key that states its value, else of the model.
 
     Args:
-        joint: its name.
+        joint: name of the joint.
         key: `range` or `effort`.
         description: description of the robot.
         source: model file.

@@ -55,7 +55,7 @@ def drive_serially(
     """Replace rods, couplings, gears and double motors of the legs by one actuator per joint.
 
     Args:
-        prepared: its specification is changed.
+        prepared: prepared model, whose specification is changed.
         description: description of the robot.
         speed: maximum speed by joint, also of cranks [rad/s].
 
@@ -184,7 +184,7 @@ class _Drive:
             model: model with its rods.
             closure: closure of its loops.
             index: index of the joint in the transmission.
-            joint: its name.
+            joint: name of the joint.
             speed: maximum speed by joint [rad/s].
         """
         own = model.joint(joint).id

@@ -46,7 +46,7 @@ class LoadedRobot:
 
     Attributes:
         name: name of its description.
-        file: its model.
+        file: file of the model.
         description: description of its parts.
         roles: roles of its parts.
         spec: MuJoCo model in normal form; copy it before a change.
@@ -128,7 +128,7 @@ def build_robot(
     Args:
         description: description of the robot.
         file: description, or the model of a guessed one; relative paths begin at its folder.
-        raw: its model, if it has been read.
+        raw: model of the robot, if it has been read.
 
     Raises:
         ModelError: as `load_robot`.

@@ -93,7 +93,7 @@ def normalise(
         roles: roles of the robot's parts.
         soles: soles of both feet.
         description: description of the robot.
-        prepared: its model.
+        prepared: prepared model of the robot.
     """
     notes = list(dropped_options(spec))
     before = float(spec.option.timestep)

@@ -103,7 +103,7 @@ def compile_spec(source: ModelFile, spec: mujoco.MjSpec) -> tuple[mujoco.MjModel
     """Compile a model; return notes on the meshes of a URDF file that are left out.
 
     Args:
-        source: its file.
+        source: file of the model.
         spec: cannot be changed afterwards in reasonable time.
 
     Raises:

@@ -43,7 +43,7 @@ def check_roles(
         model: compiled model.
         roles: roles of its parts.
         description: description of the robot.
-        prepared: its model.
+        prepared: prepared model of the robot.
         source: model file, which begins the messages about its elements.
 
     Returns:

@@ -180,7 +180,7 @@ def _add_servos(
         straight: model compiled from `spec`, with straight legs.
         roles: roles of the robot's parts.
         sole_height: height of the soles above the base; negative [m].
-        rule: its numbers.
+        rule: numbers of the rule.
         effort: maximum torque by joint, where one is known [N m].
         speed: maximum speed by joint [rad/s].
 

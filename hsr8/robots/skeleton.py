@@ -25,8 +25,8 @@ class BaseFrame:
     """Frame of the base: x forward, y to the left, z up.
 
     Attributes:
-        rotation: its axes in the body with the free joint, as rows (3, 3).
-        origin: its origin in that body (3,) [m].
+        rotation: axes of the frame in the body with the free joint, as rows (3, 3).
+        origin: origin of the frame in that body (3,) [m].
     """
 
     rotation: Array
@@ -48,7 +48,7 @@ class Posed:
 
     Attributes:
         model: compiled robot.
-        data: its state, with all places computed.
+        data: state of the robot, with all places computed.
     """
 
     model: mujoco.MjModel

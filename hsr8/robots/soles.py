@@ -72,7 +72,7 @@ def soles_of(
         zero: the robot in the zero posture.
         roles: roles of the robot's parts.
         description: description of the robot.
-        prepared: its model.
+        prepared: prepared model of the robot.
 
     Raises:
         KeyMistake: a foot has no shape, its sole is too small or above the ankle, or the soles
@@ -194,7 +194,7 @@ def _of_shapes(
 
     Args:
         zero: the robot in the zero posture.
-        foot: its body.
+        foot: body of the foot.
         geom: name of the geom, if one is stated.
         least: minimum side of a sole [m].
     """
