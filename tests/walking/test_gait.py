@@ -237,6 +237,13 @@ def test_single_support_stretched_or_cut_in_mid_swing_keeps_the_foot_smooth(walk
     assert heights[-1] == 0.0
 
 
+def test_a_frozen_landing_keeps_its_time(walk):
+    walk.start().swing_to(0.85, STILL)
+    left = walk.gait.ticks_left
+    assert not walk.retime(14, 100)
+    assert walk.gait.ticks_left == left
+
+
 def test_a_double_support_under_way_changes_its_length(walk):
     walk.start()
     gait, model = walk.gait, walk.model
