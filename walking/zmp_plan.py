@@ -22,6 +22,7 @@ from typing import NamedTuple
 import numpy as np
 
 from compilation import compiled
+from walking.foothold import equal
 from walking.parameters import CONTROL_PERIOD
 from walking.pendulum import (
     dcm_reference,
@@ -133,20 +134,12 @@ def remains_feasible(live: Record, ramps: Record, count: int) -> bool:
             phase = live.supports[number]
             planned = planned or (
                 phase.end == end
-                and _same_foot(phase.unloading, ramps[k].unloading)
-                and _same_foot(phase.loading, ramps[k].loading)
+                and equal(phase.unloading, ramps[k].unloading)
+                and equal(phase.loading, ramps[k].loading)
             )
         if not planned:
             return False
     return True
-
-
-@compiled
-def _same_foot(one: Record, other: Record) -> bool:
-    same: bool = (
-        one.left == other.left and one.x == other.x and one.y == other.y and one.yaw == other.yaw
-    )
-    return same
 
 
 @compiled
@@ -364,7 +357,7 @@ def _lay_cells(ramps: Record, count: int, sole: Sole, cells: Record, knots: Reco
 @compiled
 def _stands_on(ramp: Record, before: Record) -> bool:
     """Whether a ramp is the single support on the loading foot of the previous ramp."""
-    return _same_foot(ramp.unloading, before.loading) and _same_foot(ramp.loading, before.loading)
+    return equal(ramp.unloading, before.loading) and equal(ramp.loading, before.loading)
 
 
 @compiled
