@@ -42,7 +42,8 @@ class CompilationWatch(event.Listener):
         if self._depth > 1:
             return
         self._started = perf_counter()
-        package = event.data["dispatcher"].py_func.__module__.partition(".")[0]
+        module = event.data["dispatcher"].py_func.__module__ or ""  # None in no module
+        package = module.partition(".")[0]
         if package in PACKAGES:
             self.count += 1
             if self._before is not None:

@@ -8,6 +8,7 @@ import cv2
 import numpy as np
 import pytest
 
+from hsr8.cli.first_compilation import TEXT
 from hsr8.cli.main import entry
 from hsr8.recorder.run.manifest import Manifest
 from hsr8.recorder.run.run_folder import RunFolder
@@ -193,7 +194,7 @@ def test_a_mistake_is_one_message(line, expected, capsys):
     before = sorted(Path.cwd().rglob("*"))
     assert entry(shlex.split(line)) == 2
     printed = capsys.readouterr()
-    message = printed.err.removeprefix("quick, seed 2\n")
+    message = printed.err.removeprefix("quick, seed 2\n").removeprefix(f"{TEXT}\n")
     assert message.startswith("hsr8: ")
     assert message.count("hsr8: ") == 1
     assert expected in " ".join(message.split())
