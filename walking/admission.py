@@ -79,7 +79,7 @@ def admit(
     if not (admission.known and admission.stepping and gait.stepping):
         _take(admission, goal, wanted, moving, 1.0)
         return False
-    if _is_feasible(plans, knots, LIVE, pendulum, region, robot, parameters):
+    if is_feasible(plans, knots, LIVE, pendulum, region, robot, parameters):
         accepted = True
         _take(admission, goal, wanted, moving, 1.0)
     else:
@@ -115,7 +115,7 @@ def _compromise(
     gait.clock = admission.clock
     update_phase(gait, parameters)
     plan_walk(live, last, admission.following, admission.moving, robot, parameters)
-    if remains_feasible(live.zmp, live.ramps, live.ramp_count, parameters):
+    if remains_feasible(live, parameters):
         return _bisect(
             admission, plans, knots, pendulum, region, last, goal, wanted, robot, parameters
         )
@@ -147,7 +147,7 @@ def _end(
         landing = towards(last, goal, fraction)
         trial.gait = plans[LIVE].gait
         plan_walk(trial, landing, wanted, False, robot, parameters)
-        if _is_feasible(plans, knots, TRIAL, pendulum, region, robot, parameters):
+        if is_feasible(plans, knots, TRIAL, pendulum, region, robot, parameters):
             low = fraction
             trial.moving, trial.following = False, wanted
             put(trial.landing, landing)
@@ -191,7 +191,7 @@ def _bisect(
         landing = towards(last, goal, fraction)
         towards_strides(trial.following, admission.following, wanted, fraction)
         plan_walk(trial, landing, trial.following, moving, robot, parameters)
-        if _is_feasible(plans, knots, TRIAL, pendulum, region, robot, parameters):
+        if is_feasible(plans, knots, TRIAL, pendulum, region, robot, parameters):
             low, admitted = fraction, True
             trial.moving = moving
             put(trial.landing, landing)
@@ -203,30 +203,6 @@ def _bisect(
     else:
         _take(admission, last, admission.following, moving, 0.0)
     return admitted
-
-
-@compiled
-def _is_feasible(
-    plans: Record,
-    knots: Record,
-    which: int,
-    pendulum: Record,
-    region: Region,
-    robot: Record,
-    parameters: Record,
-) -> bool:
-    """Whether a plan is feasible; then its ZMP plan is in `BEST`."""
-    return is_feasible(
-        plans[BEST].zmp,
-        plans[LIVE].zmp,
-        knots[BEST],
-        pendulum,
-        plans[which].ramps,
-        plans[which].ramp_count,
-        region,
-        robot,
-        parameters,
-    )
 
 
 @compiled

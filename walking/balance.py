@@ -22,7 +22,8 @@ from walking.parameters import CONTROL_PERIOD
 from walking.patterns import advance_pattern, planned_dcm, rejects_infeasible, reset_plan
 from walking.pendulum import dcm_of, dcm_reference, ramp_weights, track_dcm, track_reference
 from walking.plane import Point, Vector, clamp, dead_zone, rotate, rotate_back
-from walking.records import BEST, LIVE, Record
+from walking.records import LIVE, Record
+from walking.reference import reference_of
 from walking.support import Region, clip
 
 ROUNDING = 1e-6  # rounding error of a time in control ticks [1]
@@ -167,13 +168,12 @@ def _needed_capture(
 ) -> Capture:
     """Return the capture step for the measured DCM."""
     live = plans[LIVE]
-    gait, ramps = live.gait, live.ramps
+    gait, ramps = live.gait, reference_of(live)
     support = support_foot(gait)
     if gait.shortened:
-        x, y = dcm_reference(ramps, live.ramp_count, robot)
+        x, y = dcm_reference(ramps, robot)
     else:
-        pendulum = plan_pendulum(walk)
-        x, y = planned_dcm(live.zmp, pendulum, ramps, live.ramp_count, robot, parameters)
+        x, y = planned_dcm(live, plan_pendulum(walk), robot, parameters)
     body_x, body_y = dcm_of(walk.pendulum, robot)
     off = (body_x + error[0] - x, body_y + error[1] - y)
     if not exceeds(support, off, parameters.stabilizer.capture_dead_zone, robot, parameters):
@@ -354,30 +354,18 @@ def advance_pendulum(
         sums: sums of the gains of preview control.
     """
     live, body, gain = plans[LIVE], walk.pendulum, parameters.pattern.dcm_gain
-    gait, ramps = live.gait, live.ramps
+    gait = live.gait
     selective = rejects_infeasible(parameters)
     if selective and gait.shortened:
-        track_reference(body, robot, gain, ramps, live.ramp_count, region)
+        track_reference(body, robot, gain, reference_of(live), region)
         return
     landing, planned = foothold(gait.landing), foothold(walk.admission.landing)
     if selective and not (gait.double or walk.off_plan or equal(landing, planned)):
         walk.planned, walk.off_plan = body, True
     pendulum = plan_pendulum(walk)
     x, y = dcm_of(pendulum, robot)
-    advance_pattern(
-        live.zmp,
-        knots[LIVE],
-        plans[BEST].zmp,
-        knots[BEST],
-        walk.placing.accepted,
-        pendulum,
-        ramps,
-        live.ramp_count,
-        region,
-        robot,
-        parameters,
-        sums,
-    )
+    accepted: bool = walk.placing.accepted
+    advance_pattern(plans, knots, accepted, pendulum, region, robot, parameters, sums)
     if walk.off_plan:
         # Shift of the DCM by a ramp of the ZMP from the fixed support foot to the new landing.
         wh = robot.omega * CONTROL_PERIOD

@@ -85,23 +85,23 @@ def zmp_function(omega: float, time: float, a: float, b: float) -> Point:
 
 
 @compiled
-def walking_target(ramps: Record, count: int, robot: Record) -> WalkingTarget:
+def walking_target(ramps: Record, robot: Record) -> WalkingTarget:
     """Return the DCM of the planned footholds, and ζ of the periodic walk they lead to."""
-    if count == 1:
+    if len(ramps) == 1:
         return WalkingTarget((0.0, 0.0), (0.0, 0.0), True)
     first = ramps[0]
-    x, y = dcm_reference(ramps[1:], count - 1, robot)
+    x, y = dcm_reference(ramps[1:], robot)
     xi = rotate(-first.unloading.yaw, x - first.bx, y - first.by)
-    zeta, free = _periodic(ramps, count, robot)
+    zeta, free = _periodic(ramps, robot)
     return WalkingTarget(xi, zeta, free)
 
 
 @compiled
-def _periodic(ramps: Record, count: int, robot: Record) -> tuple[Point, bool]:
+def _periodic(ramps: Record, robot: Record) -> tuple[Point, bool]:
     """Return ζ at the end of the last single support on this side, in the frame of its foot."""
     x, y, wh = ramps[0].bx, ramps[0].by, robot.omega * CONTROL_PERIOD
     zeta, free = (0.0, 0.0), True
-    for k in range(1, count):
+    for k in range(1, len(ramps)):
         ramp = ramps[k]
         growth, first, last = ramp_weights(wh, ramp.ticks)
         # ζ is the DCM of reversed time.
@@ -115,7 +115,7 @@ def _periodic(ramps: Record, count: int, robot: Record) -> tuple[Point, bool]:
 
 @compiled
 def admits_target(
-    trial: Record, pendulum: Record, ramps: Record, count: int, region: Region, robot: Record
+    trial: Record, pendulum: Record, ramps: Record, region: Region, robot: Record
 ) -> bool:
     """Aim at the walking state of a reference; return whether the ZMP can stay in the sole.
 
@@ -123,14 +123,13 @@ def admits_target(
         trial: ZMP plan with the last target, set if feasible.
         pendulum: present pendulum.
         ramps: reference.
-        count: number of its ramps.
         region: admissible ZMP.
         robot: constants.
     """
     ramp = ramps[0]
     if not is_single(ramp):
         return True
-    target = walking_target(ramps, count, robot)
+    target = walking_target(ramps, robot)
     if _is_near(trial, target):
         return True
     functions, (along, across) = _solve(pendulum, ramp, target, robot), _room(ramp, region)
@@ -153,7 +152,6 @@ def advance_functions(
     live: Record,
     pendulum: Record,
     ramps: Record,
-    count: int,
     region: Region,
     robot: Record,
     parameters: Record,
@@ -164,7 +162,6 @@ def advance_functions(
         live: ZMP plan in force, changed.
         pendulum: changed.
         ramps: reference.
-        count: number of its ramps.
         region: admissible ZMP.
         robot: constants.
         parameters: parameters of the walk.
@@ -172,10 +169,10 @@ def advance_functions(
     if not is_single(ramps[0]):
         forget_target(live)
         gain = parameters.pattern.dcm_gain
-        track_reference(pendulum, robot, gain, ramps, count, region)
+        track_reference(pendulum, robot, gain, ramps, region)
         return
-    if not admits_target(live, pendulum, ramps, count, region, robot):
-        _approximate(live, pendulum, ramps, count, region, robot)
+    if not admits_target(live, pendulum, ramps, region, robot):
+        _approximate(live, pendulum, ramps, region, robot)
     _follow(live, pendulum, ramps[0], robot)
 
 
@@ -230,11 +227,11 @@ def _solve_axis(
 
 @compiled
 def _approximate(
-    live: Record, pendulum: Record, ramps: Record, count: int, region: Region, robot: Record
+    live: Record, pendulum: Record, ramps: Record, region: Region, robot: Record
 ) -> None:
     """Approximate the DCM of an infeasible reference by a constant ZMP."""
     ramp = ramps[0]
-    target = WalkingTarget(walking_target(ramps, count, robot).xi, (0.0, 0.0), True)
+    target = WalkingTarget(walking_target(ramps, robot).xi, (0.0, 0.0), True)
     growth = exp(robot.omega * ramp.ticks * CONTROL_PERIOD)
     wanted, (along, across) = _solve(pendulum, ramp, target, robot), _room(ramp, region)
     u, v = wanted.level

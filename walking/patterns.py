@@ -27,7 +27,8 @@ from walking.paper_pattern import (
 from walking.parameters import CONTROL_PERIOD, PatternParameters
 from walking.pendulum import dcm_of, dcm_reference, step_pendulum, track_reference
 from walking.plane import Point
-from walking.records import DCM, PAPER, PREVIEW, PREVIEW_SUM, ROBUST, Record
+from walking.records import BEST, DCM, LIVE, PAPER, PREVIEW, PREVIEW_SUM, ROBUST, Record
+from walking.reference import reference_of
 from walking.support import Region
 from walking.zmp_plan import admits_knots, advance_knots
 from walking.zmp_plan import remains_feasible as knots_remain_feasible
@@ -76,20 +77,19 @@ def preview_gains(omega: float, parameters: PatternParameters) -> PreviewGains:
 
 @compiled
 def advance_preview(
-    pendulum: Record, ramps: Record, count: int, region: Region, robot: Record, sums: Record
+    pendulum: Record, ramps: Record, region: Region, robot: Record, sums: Record
 ) -> None:
     """Advance the pendulum by a tick along a reference.
 
     Args:
         pendulum: changed.
         ramps: reference.
-        count: number of its ramps.
         region: admissible ZMP.
         robot: constants.
         sums: see `PreviewGains`.
     """
     p = pendulum
-    ahead_x, ahead_y = preview_sum(ramps, count, robot, sums)
+    ahead_x, ahead_y = preview_sum(ramps, robot, sums)
     px = p.zmp_x * (1.0 - robot.preview_zmp) + ahead_x
     py = p.zmp_y * (1.0 - robot.preview_zmp) + ahead_y
     px -= robot.preview_position * p.x + robot.preview_velocity * p.vx
@@ -98,12 +98,12 @@ def advance_preview(
 
 
 @compiled
-def preview_sum(ramps: Record, count: int, robot: Record, sums: Record) -> Point:
+def preview_sum(ramps: Record, robot: Record, sums: Record) -> Point:
     """Return Σ_j f_j p_ref(j) over the horizon, and with its last point beyond."""
     horizon = sums.shape[0] - 1
     x = y = 0.0
-    begin, end_x, end_y = 0, ramps[count - 1].bx, ramps[count - 1].by
-    for k in range(count):
+    begin, end_x, end_y = 0, ramps[len(ramps) - 1].bx, ramps[len(ramps) - 1].by
+    for k in range(len(ramps)):
         ramp = ramps[k]
         stop = min(begin + ramp.ticks, horizon)
         weight = sums[stop].gain - sums[begin].gain
@@ -127,43 +127,40 @@ def rejects_infeasible(parameters: Record) -> bool:
 
 @compiled
 def is_feasible(
-    trial: Record,
-    live: Record,
+    plans: Record,
     knots: Record,
+    which: int,
     pendulum: Record,
-    ramps: Record,
-    count: int,
     region: Region,
     robot: Record,
     parameters: Record,
 ) -> bool:
-    """Whether the pendulum can follow a reference with the ZMP inside the soles.
+    """Whether the pendulum can follow a plan with the ZMP inside the soles.
 
     Args:
-        trial: ZMP plan of the reference, set if feasible.
-        live: ZMP plan in force.
-        knots: knots of `trial`.
+        plans: plans, see `walking.records.LIVE` (3,); the ZMP plan of `BEST` is set if feasible.
+        knots: knots of the plans (3, k); those of `BEST` are set if feasible.
+        which: index of the plan.
         pendulum: present pendulum.
-        ramps: reference from now on.
-        count: number of its ramps.
         region: admissible ZMP in this tick.
         robot: constants.
         parameters: parameters of the walk.
     """
-    pattern = parameters.pattern
+    pattern, ramps, trial = parameters.pattern, reference_of(plans[which]), plans[BEST].zmp
     if pattern.generator == ROBUST:
-        margin, rate = pattern.plan_margin, pattern.zmp_rate
-        return admits_knots(trial, live, knots, pendulum, ramps, count, robot, margin, rate)
+        live, margin, rate = plans[LIVE].zmp, pattern.plan_margin, pattern.zmp_rate
+        return admits_knots(trial, live, knots[BEST], pendulum, ramps, robot, margin, rate)
     if pattern.generator == PAPER:
-        return admits_target(trial, pendulum, ramps, count, region, robot)
+        return admits_target(trial, pendulum, ramps, region, robot)
     return True
 
 
 @compiled
-def remains_feasible(live: Record, ramps: Record, count: int, parameters: Record) -> bool:
-    """Whether the present plan stays feasible under a reference."""
+def remains_feasible(plan: Record, parameters: Record) -> bool:
+    """Whether the ZMP plan of a plan stays feasible under its reference."""
+    live = plan.zmp
     if parameters.pattern.generator == ROBUST:
-        return knots_remain_feasible(live, ramps, count)
+        return knots_remain_feasible(live, reference_of(plan))
     if parameters.pattern.generator == PAPER:
         reached: bool = live.missed_x == 0.0 and live.missed_y == 0.0
         return reached
@@ -179,14 +176,10 @@ def reset_plan(live: Record) -> None:
 
 @compiled
 def advance_pattern(
-    live: Record,
+    plans: Record,
     knots: Record,
-    trial: Record,
-    tried: Record,
     accepted: bool,
     pendulum: Record,
-    ramps: Record,
-    count: int,
     region: Region,
     robot: Record,
     parameters: Record,
@@ -195,44 +188,39 @@ def advance_pattern(
     """Advance the pendulum by a tick; its ZMP stays in the region.
 
     Args:
-        live: ZMP plan in force, changed.
-        knots: knots of `live`.
-        trial: ZMP plan admitted in this tick, if `accepted`.
-        tried: knots of `trial`.
-        accepted: whether the reference was admitted.
+        plans: plans, see `walking.records.LIVE` (3,); the ZMP plan in force is changed.
+        knots: knots of the plans (3, k); those of the plan in force are changed.
+        accepted: whether the ZMP plan of `BEST` belongs to the reference.
         pendulum: changed.
-        ramps: reference from now on.
-        count: number of its ramps.
         region: admissible ZMP.
         robot: constants.
         parameters: parameters of the walk.
         sums: sums of the gains of preview control.
     """
+    live, ramps = plans[LIVE].zmp, reference_of(plans[LIVE])
     generator = parameters.pattern.generator
     if generator == ROBUST:
+        trial, tried = plans[BEST].zmp, knots[BEST]
         advance_knots(
-            live, knots, trial, tried, accepted, pendulum, ramps, count, region, robot, parameters
+            live, knots[LIVE], trial, tried, accepted, pendulum, ramps, region, robot, parameters
         )
     elif generator == PAPER:
-        advance_functions(live, pendulum, ramps, count, region, robot, parameters)
+        advance_functions(live, pendulum, ramps, region, robot, parameters)
     elif generator == PREVIEW:
-        advance_preview(pendulum, ramps, count, region, robot, sums)
+        advance_preview(pendulum, ramps, region, robot, sums)
     else:
-        gain = parameters.pattern.dcm_gain
-        track_reference(pendulum, robot, gain, ramps, count, region)
+        track_reference(pendulum, robot, parameters.pattern.dcm_gain, ramps, region)
 
 
 @compiled
-def planned_dcm(
-    live: Record, pendulum: Record, ramps: Record, count: int, robot: Record, parameters: Record
-) -> Point:
+def planned_dcm(plan: Record, pendulum: Record, robot: Record, parameters: Record) -> Point:
     """Return the reference of the DCM for balance feedback [m].
 
     With a weight on the ZMP rate, preview control deviates from the DCM of the footholds.
     """
     generator = parameters.pattern.generator
     if generator == PAPER:
-        return reachable_dcm(live, pendulum, robot)
-    if generator == DCM or (generator == ROBUST and not live.exists):
-        return dcm_reference(ramps, count, robot)
+        return reachable_dcm(plan.zmp, pendulum, robot)
+    if generator == DCM or (generator == ROBUST and not plan.zmp.exists):
+        return dcm_reference(reference_of(plan), robot)
     return dcm_of(pendulum, robot)

@@ -41,7 +41,7 @@ def ramp_weights(wh: float, ticks: int) -> Vector:
 
 
 @compiled
-def dcm_reference(ramps: Record, count: int, robot: Record) -> Point:
+def dcm_reference(ramps: Record, robot: Record) -> Point:
     """Return the DCM from which a reference can be walked for ever: the backward recursion [m].
 
     Beyond the last ramp the ZMP stays and the DCM rests on it. A reference s seconds ahead has the
@@ -49,12 +49,12 @@ def dcm_reference(ramps: Record, count: int, robot: Record) -> Point:
 
     Args:
         ramps: reference, see `walking.records.RAMP` (n,).
-        count: number of its ramps.
         robot: constants.
     """
     wh = robot.omega * CONTROL_PERIOD
-    x, y = ramps[count - 1].bx, ramps[count - 1].by
-    for k in range(count - 1, -1, -1):
+    end = len(ramps) - 1
+    x, y = ramps[end].bx, ramps[end].by
+    for k in range(end, -1, -1):
         ramp = ramps[k]
         growth, first, last = ramp_weights(wh, ramp.ticks)
         x = (x + first * ramp.ax + last * ramp.bx) / growth
@@ -110,14 +110,14 @@ def track_dcm(
 
 @compiled
 def track_reference(
-    pendulum: Record, robot: Record, gain: float, ramps: Record, count: int, region: Region
+    pendulum: Record, robot: Record, gain: float, ramps: Record, region: Region
 ) -> None:
     """Advance by a tick towards the DCM of a reference, see `track_dcm`."""
     ramp = ramps[0]
     middle = 0.5 / ramp.ticks
     x = ramp.ax + (ramp.bx - ramp.ax) * middle
     y = ramp.ay + (ramp.by - ramp.ay) * middle
-    track_dcm(pendulum, robot, gain, dcm_reference(ramps, count, robot), (x, y), region)
+    track_dcm(pendulum, robot, gain, dcm_reference(ramps, robot), (x, y), region)
 
 
 @compiled

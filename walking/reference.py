@@ -113,6 +113,13 @@ def reference_ramps(
 
 
 @compiled
+def reference_of(plan: Record) -> Record:
+    """Return the ramps of a plan from now on, see `walking.records.RAMP` (n,)."""
+    reference: Record = plan.ramps[: plan.ramp_count]
+    return reference
+
+
+@compiled
 def set_ramp(
     ramp: Record, ticks: int, start: Point, end: Point, unloading: Foothold, loading: Foothold
 ) -> None:

@@ -80,7 +80,6 @@ def admits_knots(
     knots: Record,
     pendulum: Record,
     ramps: Record,
-    count: int,
     robot: Record,
     margin: float,
     rate: float,
@@ -93,14 +92,13 @@ def admits_knots(
         knots: set if feasible (n,).
         pendulum: present pendulum.
         ramps: reference.
-        count: number of its ramps.
         robot: constants.
         margin: margin of the knots in the soles [m].
         rate: maximum rate of the ZMP in single support [m/s].
     """
     support = robot.support
     sole = Sole(support.centre, support.half_length - margin, support.half_width - margin)
-    program = lay_out(ramps, count, pendulum, sole, robot, rate * CONTROL_PERIOD)
+    program = lay_out(ramps, pendulum, sole, robot, rate * CONTROL_PERIOD)
     guess = (0.0, 0.0)
     if live.exists:
         growth, _, _ = ramp_weights(robot.omega * CONTROL_PERIOD, live.age)
@@ -113,7 +111,7 @@ def admits_knots(
     trial.count = program.knots.shape[0]
     for k in range(trial.count):
         knots[k] = program.knots[k]
-    trial.phases, end = min(COMPARED, count), 0
+    trial.phases, end = min(COMPARED, len(ramps)), 0
     for k in range(trial.phases):
         end += ramps[k].ticks
         phase = trial.supports[k]
@@ -122,12 +120,12 @@ def admits_knots(
 
 
 @compiled
-def remains_feasible(live: Record, ramps: Record, count: int) -> bool:
+def remains_feasible(live: Record, ramps: Record) -> bool:
     """Whether the plan in force stays feasible under a reference, by its next supports."""
     if not live.exists or live.next == live.count:
         return False
     end = live.age
-    for k in range(min(CHECKED, count)):
+    for k in range(min(CHECKED, len(ramps))):
         end += ramps[k].ticks
         planned = False
         for number in range(live.phases):
@@ -151,7 +149,6 @@ def advance_knots(
     accepted: bool,
     pendulum: Record,
     ramps: Record,
-    count: int,
     region: Region,
     robot: Record,
     parameters: Record,
@@ -166,7 +163,6 @@ def advance_knots(
         accepted: whether `trial` is the plan of this tick.
         pendulum: changed.
         ramps: reference.
-        count: number of its ramps.
         region: admissible ZMP.
         robot: constants.
         parameters: parameters of the walk.
@@ -174,12 +170,10 @@ def advance_knots(
     pattern = parameters.pattern
     rate = pattern.zmp_rate
     new = accepted or admits_knots(
-        trial, live, tried, pendulum, ramps, count, robot, pattern.plan_margin, rate
+        trial, live, tried, pendulum, ramps, robot, pattern.plan_margin, rate
     )
-    if not new and not remains_feasible(live, ramps, count):
-        new = admits_knots(
-            trial, live, tried, pendulum, ramps, count, robot, pattern.sole_margin, rate
-        )
+    if not new and not remains_feasible(live, ramps):
+        new = admits_knots(trial, live, tried, pendulum, ramps, robot, pattern.sole_margin, rate)
         live.exists, live.age = False, 0
     if new:
         live.exists, live.age, live.next = True, 0, 0
@@ -190,7 +184,7 @@ def advance_knots(
         for k in range(live.count):
             knots[k] = tried[k]
     if not live.exists:
-        track_reference(pendulum, robot, pattern.dcm_gain, ramps, count, region)
+        track_reference(pendulum, robot, pattern.dcm_gain, ramps, region)
         return
     _follow(live, knots, pendulum, robot)
     live.age += 1
@@ -221,26 +215,23 @@ def max_knots(ticks: int, supports: int) -> int:
 
 
 @compiled
-def lay_out(
-    ramps: Record, count: int, pendulum: Record, sole: Sole, robot: Record, reach: float
-) -> Program:
+def lay_out(ramps: Record, pendulum: Record, sole: Sole, robot: Record, reach: float) -> Program:
     """Set up the program of a plan near a reference.
 
     Args:
         ramps: reference.
-        count: number of its ramps.
         pendulum: present pendulum.
         sole: sole of each foot.
         robot: constants.
         reach: maximum change of the ZMP per tick in single support [m].
     """
-    planned = _planned_ramps(ramps, count)
+    planned, count = _planned_ramps(ramps), len(ramps)
     ends = planned > count
     last = ramps[min(planned, count) - 1]
     end_x, end_y = last.bx, last.by
     rest = (end_x, end_y)
     if planned < count:
-        rest = dcm_reference(ramps[planned:], count - planned, robot)
+        rest = dcm_reference(ramps[planned:], robot)
     table = ramps[:planned]
     if ends:
         # Extended by standing at its end, with the feet of the last ramp.
@@ -255,7 +246,7 @@ def lay_out(
         total += table[k].ticks
     capacity = max_knots(total, planned)
     cells, knots = np.empty(capacity, CELL), np.zeros(capacity, KNOT)
-    number = _lay_cells(table, planned, sole, cells, knots)
+    number = _lay_cells(table, sole, cells, knots)
     if number > 0 and is_single(table[0]):
         number = _limit_first(cells, number, pendulum.zmp_x, pendulum.zmp_y, reach * knots[0].ticks)
     inner = cells[number - 1].end if number > 0 else 0
@@ -286,23 +277,23 @@ def along_sides(cell: Record, x: float, y: float) -> Point:
 
 
 @compiled
-def _planned_ramps(ramps: Record, count: int) -> int:
+def _planned_ramps(ramps: Record) -> int:
     """Return the number of ramps whose ZMP is planned.
 
     They end with the double support after the second single support. For a shorter reference the
     number is one more than its ramps: `lay_out` appends standing.
     """
     singles = 0
-    for k in range(count - 1):
+    for k in range(len(ramps) - 1):
         if is_single(ramps[k]):
             singles += 1
         if singles == 2:
             return k + 2
-    return count + 1
+    return len(ramps) + 1
 
 
 @compiled
-def _lay_cells(ramps: Record, count: int, sole: Sole, cells: Record, knots: Record) -> int:
+def _lay_cells(ramps: Record, sole: Sole, cells: Record, knots: Record) -> int:
     """Set cells and times of the knots; return the number of cells.
 
     A single support has one cell, shared with the last knot of the double support before it; every
@@ -310,7 +301,6 @@ def _lay_cells(ramps: Record, count: int, sole: Sole, cells: Record, knots: Reco
 
     Args:
         ramps: ramps whose ZMP is planned.
-        count: number of these.
         sole: sole of each foot.
         cells: set, except for the sums of weights.
         knots: ticks since the previous knot are set.
@@ -318,9 +308,9 @@ def _lay_cells(ramps: Record, count: int, sole: Sole, cells: Record, knots: Reco
     # Ticks from the last knot to the begin of the ramp; knots pending for the next sole's cell.
     since, carried = 0, 0
     every, number, knot, begin = SINGLE_SPACING, 0, 0, 0
-    for k in range(count):
+    for k in range(len(ramps)):
         ramp, ticks = ramps[k], ramps[k].ticks
-        final, single = k == count - 1, is_single(ramp)
+        final, single = k == len(ramps) - 1, is_single(ramp)
         # The last knot is on the next sole, in the cell of the single support there.
         lands = not (single or final) and _stands_on(ramps[k + 1], ramp)
         spacing = every if single else DOUBLE_SPACING

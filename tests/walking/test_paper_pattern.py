@@ -72,8 +72,8 @@ class Paper:
         self.plan, self.pendulum = np.zeros(1, ZMP_PLAN)[0], np.zeros(1, PENDULUM)[0]
         growth = exp(W * 54 * CONTROL_PERIOD)
         # Under a ZMP at rest ζ only decays.
-        zeta = [growth * z for z in walking_target(ramps, RAMPS, robot).zeta]
-        x, y = dcm_reference(ramps, RAMPS, robot)
+        zeta = [growth * z for z in walking_target(ramps, robot).zeta]
+        x, y = dcm_reference(ramps, robot)
         dx, dy, p = x - 0.01, y - 0.042, self.pendulum
         p.x, p.y = 0.01 + 0.5 * (dx + zeta[0]), 0.042 + 0.5 * (dy + zeta[1])
         p.vx, p.vy = 0.5 * W * (dx - zeta[0]), 0.5 * W * (dy - zeta[1])
@@ -84,9 +84,9 @@ class Paper:
         """Whether the reference is admitted, and the ZMP."""
         robot, p = self.model.robot, self.pendulum
         trial = self.plan.copy()
-        admitted = admits_target(trial, p, ramps, RAMPS, self.region, robot)
+        admitted = admits_target(trial, p, ramps, self.region, robot)
         rest = (self.region, robot, self.model.parameters)
-        advance_functions(self.plan, p, ramps, RAMPS, *rest)
+        advance_functions(self.plan, p, ramps, *rest)
         zmp = (float(p.zmp_x), float(p.zmp_y))
         assert clip(self.region, *zmp) == pytest.approx(zmp, abs=1e-12)
         return admitted, *zmp
@@ -109,7 +109,7 @@ def test_a_walk_that_goes_on_unchanged_needs_no_function(paper):
 def test_position_and_velocity_of_a_new_walk_are_reached_at_touchdown(paper, tick, stride):
     path = [paper.tick(reference(54 - k, 0.05 if k < tick else stride)) for k in range(54)]
     assert all(row[0] for row in path)
-    target, p = walking_target(reference(1, stride), RAMPS, paper.model.robot), paper.pendulum
+    target, p = walking_target(reference(1, stride), paper.model.robot), paper.pendulum
     dx, dy = p.x - 0.01, p.y - 0.042
     assert (dx + p.vx / W, dy + p.vy / W) == pytest.approx(target.xi, abs=1e-5)
     assert (dx - p.vx / W, dy - p.vy / W) == pytest.approx(target.zeta, abs=1e-5)

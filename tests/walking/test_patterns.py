@@ -10,7 +10,7 @@ from walking.gait import start, update_phase
 from walking.parameters import PatternParameters
 from walking.patterns import advance_pattern, is_feasible, preview_gains, rejects_infeasible
 from walking.pendulum import dcm_of, dcm_reference
-from walking.records import BEST, KNOT, LIVE, PENDULUM, RAMP, ZMP_PLAN
+from walking.records import BEST, KNOT, LIVE, PENDULUM, PLAN, RAMP
 from walking.reference import set_ramp
 from walking.support import clip, support_region
 
@@ -27,22 +27,13 @@ class Tracker:
         p = self.pendulum
         p.x, p.y, p.vy, p.zmp_x, p.zmp_y = x, y, vy, x, y
         self.region = support_region(model.robot.support, RIGHT, LEFT, 0.005)
-        self.plans, self.knots = np.zeros(2, ZMP_PLAN), np.zeros((2, 200), KNOT)
+        self.plans, self.knots = np.zeros(3, PLAN), np.zeros((3, 200), KNOT)
 
     def advance(self, ramps):
-        model, (live, trial) = self.model, self.plans
-        rest = (self.pendulum, ramps, len(ramps), self.region)
-        advance_pattern(
-            live,
-            self.knots[0],
-            trial,
-            self.knots[1],
-            False,
-            *rest,
-            model.robot,
-            model.parameters,
-            model.sums,
-        )
+        live, model = self.plans[LIVE], self.model
+        live.ramps[: len(ramps)], live.ramp_count = ramps, len(ramps)
+        rest = (False, self.pendulum, self.region, model.robot, model.parameters, model.sums)
+        advance_pattern(self.plans, self.knots, *rest)
         zmp = (self.pendulum.zmp_x, self.pendulum.zmp_y)
         assert clip(self.region, *zmp) == zmp
 
@@ -98,8 +89,8 @@ class Admission:
     def on_reference(self, strides):
         """Put the pendulum on the DCM of a plan with these strides."""
         self.admit(strides)
-        ramps, p = self.live.ramps, self.walk.pendulum
-        x, y = dcm_reference(ramps, self.live.ramp_count, self.model.robot)
+        ramps, p = self.live.ramps[: self.live.ramp_count], self.walk.pendulum
+        x, y = dcm_reference(ramps, self.model.robot)
         p.x, p.y, p.vx, p.vy = x, y, 0.0, 0.0
         p.zmp_x, p.zmp_y = ramps[0].ax, ramps[0].ay
 
@@ -112,10 +103,8 @@ class Admission:
 
     def feasible(self):
         """Whether the plan in force is feasible by itself."""
-        live, model = self.live, self.model
-        trial, knots = np.zeros(1, ZMP_PLAN)[0], np.zeros(200, KNOT)
-        rest = (self.walk.pendulum, live.ramps, live.ramp_count, self.region)
-        return is_feasible(trial, live.zmp, knots, *rest, model.robot, model.parameters)
+        rest = (LIVE, self.walk.pendulum, self.region, *self.model[:2])
+        return is_feasible(self.plans.copy(), self.knots.copy(), *rest)
 
 
 @pytest.fixture

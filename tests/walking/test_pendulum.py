@@ -91,7 +91,7 @@ def test_the_dcm_under_a_ramp(omega, ticks):
 
 
 def test_from_the_dcm_of_a_reference_it_is_walked_exactly(model, omega):
-    x, y = dcm_reference(RAMPS, 3, model.robot)
+    x, y = dcm_reference(RAMPS, model.robot)
     for ramp in RAMPS:
         growth, first, last = ramp_weights(omega * CONTROL_PERIOD, ramp.ticks)
         x = growth * x - first * ramp.ax - last * ramp.bx
@@ -100,14 +100,14 @@ def test_from_the_dcm_of_a_reference_it_is_walked_exactly(model, omega):
 
 
 def test_a_pendulum_on_the_dcm_is_walked_along_the_reference(model, both):
-    state = pendulum(*dcm_reference(RAMPS, 3, model.robot))
-    track_reference(state, model.robot, 2.0, RAMPS, 3, both)
+    state = pendulum(*dcm_reference(RAMPS, model.robot))
+    track_reference(state, model.robot, 2.0, RAMPS, both)
     left, first = RAMPS.copy(), RAMPS[0]
     # Held for a tick, the ZMP is that of the tick's middle.
     assert state.zmp_x == pytest.approx(0.5 / first.ticks * first.bx)
     left[0].ticks -= 1
     left[0].ax, left[0].ay = first.bx / first.ticks, first.by / first.ticks
-    due = dcm_reference(left, 3, model.robot)
+    due = dcm_reference(left, model.robot)
     assert dcm_of(state, model.robot) == pytest.approx(due, abs=1e-6)
 
 

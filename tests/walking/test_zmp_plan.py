@@ -180,44 +180,44 @@ def walk_on(rng, *, double, steps):
         set_ramp(ramps[count + 1], 14, under[k], under[k + 1], one, other)
         set_ramp(ramps[count + 2], 58, under[k + 1], under[k + 1], other, other)
         count += 2
-    return ramps, count + 1
+    return ramps[: count + 1]
 
 
 def problem(model, seed):
     """Reference, and a pendulum near to it."""
     rng = np.random.default_rng(seed)
-    ramps, count = walk_on(rng, double=bool(rng.integers(2)), steps=int(rng.integers(1, 5)))
-    x, y = dcm_reference(ramps, count, model.robot)
+    ramps = walk_on(rng, double=bool(rng.integers(2)), steps=int(rng.integers(1, 5)))
+    x, y = dcm_reference(ramps, model.robot)
     off, w = rng.uniform(-0.006, 0.006, 4), float(model.robot.omega)
     p = np.zeros(1, PENDULUM)[0]
     p.x, p.y = x - 0.02 + off[0], y + 0.01 + off[1]
     p.vx, p.vy = w * (0.02 + off[2]), w * (-0.01 + off[3])
     p.zmp_x, p.zmp_y = ramps[0].ax + 0.1 * off[0], ramps[0].ay + 0.1 * off[1]
-    return ramps, count, p
+    return ramps, p
 
 
-def planned(model, ramps, count, pendulum):
-    program = lay_out(ramps, count, pendulum, SOLE, model.robot, REACH)
+def planned(model, ramps, pendulum):
+    program = lay_out(ramps, pendulum, SOLE, model.robot, REACH)
     feasible, _, _ = solve(program.cells, program.weights, program.dcm, START, program.knots)
     return feasible, program.knots
 
 
 @given(st.integers(0, 10**6))
 def test_along_the_knots_the_dcm_comes_to_the_reference_and_the_zmp_stays_in_the_soles(model, seed):
-    ramps, count, p = problem(model, seed)
-    feasible, knots = planned(model, ramps, count, p)
+    ramps, p = problem(model, seed)
+    feasible, knots = planned(model, ramps, p)
     if not feasible:
         return
     w = float(model.robot.omega)
     dcm, now = np.array(dcm_of(p, model.robot)), np.array([p.zmp_x, p.zmp_y])
-    ends, time = np.cumsum(ramps["ticks"][:count]), 0.0
+    ends, time = np.cumsum(ramps["ticks"]), 0.0
     for ticks, *place in knots.tolist():
         after, h = np.array(place), ticks * CONTROL_PERIOD
         slope = (after - now) / h
         dcm = after + slope / w + np.exp(w * h) * (dcm - now - slope / w)
         now, time = after, time + ticks
         index = int(np.searchsorted(ends, time))
-        if index < count and is_single(ramps[index]):
+        if index < len(ramps) and is_single(ramps[index]):
             foot = foothold(ramps[index].unloading)
             c, s = np.cos(foot.yaw), np.sin(foot.yaw)
             dx, dy = after - (foot.x, foot.y)
@@ -225,8 +225,8 @@ def test_along_the_knots_the_dcm_comes_to_the_reference_and_the_zmp_stays_in_the
             assert abs(c * dy - s * dx) <= SOLE.width + 1e-12
     done = int(np.searchsorted(ends, time, side="right"))
     goal = now
-    if done < count:
-        goal = dcm_reference(ramps[done:], count - done, model.robot)
+    if done < len(ramps):
+        goal = dcm_reference(ramps[done:], model.robot)
     np.testing.assert_allclose(dcm, goal, atol=1e-6)  # a walk of a second multiplies by 1000
 
 
@@ -253,7 +253,7 @@ class Robust:
     def __init__(self, model, stride=0.05):
         self.model, self.plans = model, np.zeros(2, ZMP_PLAN)
         self.knots, self.pendulum = np.zeros((2, 200), KNOT), np.zeros(1, PENDULUM)[0]
-        x, y = dcm_reference(straight(stride, 54), 11, model.robot)
+        x, y = dcm_reference(straight(stride, 54), model.robot)
         p, w = self.pendulum, float(model.robot.omega)
         p.x, p.y, p.zmp_x, p.zmp_y = -0.02, 0.042, 0.01, 0.042
         p.vx, p.vy = w * (x + 0.02), w * (y - 0.042)
@@ -264,14 +264,14 @@ class Robust:
         live, trial = self.plans
         pattern, ramps = self.model.parameters.pattern, straight(stride, left)
         margin, rate = pattern.plan_margin, pattern.zmp_rate
-        rest = (self.pendulum, ramps, 11, self.model.robot, margin, rate)
+        rest = (self.pendulum, ramps, self.model.robot, margin, rate)
         return admits_knots(trial, live, self.knots[1], *rest)
 
     def tick(self, stride, left):
         """Whether the reference is admitted, and the ZMP."""
         live, trial = self.plans
         accepted, ramps = self.admits(stride, left), straight(stride, left)
-        rest = (self.pendulum, ramps, 11, self.region, self.model.robot, self.model.parameters)
+        rest = (self.pendulum, ramps, self.region, self.model.robot, self.model.parameters)
         advance_knots(live, self.knots[0], trial, self.knots[1], accepted, *rest)
         zmp = (float(self.pendulum.zmp_x), float(self.pendulum.zmp_y))
         assert clip(self.region, *zmp) == pytest.approx(zmp, abs=1e-12)
@@ -300,8 +300,8 @@ def test_an_infeasible_landing_is_rejected_and_the_last_plan_remains_feasible(mo
         generator.tick(0.05, 54 - k)
     assert not generator.admits(0.15, 14)
     live = generator.plans[0]
-    assert remains_feasible(live, straight(0.05, 14), 11)
-    assert not remains_feasible(live, straight(0.15, 14), 11)
+    assert remains_feasible(live, straight(0.05, 14))
+    assert not remains_feasible(live, straight(0.15, 14))
 
 
 def test_after_a_push_no_plan_is_feasible_and_the_zmp_stays_in_the_sole(model):
