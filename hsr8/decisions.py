@@ -5,13 +5,13 @@ from typing import Protocol
 import numpy as np
 from numpy.typing import NDArray
 
+from compilation.value import value
 from navigation.belief.belief import Belief
 from navigation.belief.estimator import predict
 from navigation.decision import GazeDecision, MotionDecision, Task
 from navigation.motion.landmark_obstacles import LandmarkObstacles
 from navigation.observation import CameraView, Frame
 from vision.detection import Detection
-from walking.signals import value
 
 Array = NDArray[np.float64]
 Image = NDArray[np.uint8]

@@ -11,13 +11,13 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from compilation.value import value
 from hsr8.decisions import GazeController, MotionPlanner
 from hsr8.errors import UsageError
 from hsr8.plugin_file import start_plugin
 from hsr8.plugin_method import PluginMethod, number, numbers, shown
 from navigation.belief.belief import Belief
 from navigation.decision import GazeDecision, MotionDecision, SpeedLimits, Task
-from walking.signals import value
 
 Array = NDArray[np.float64]
 

@@ -12,6 +12,7 @@ from typing import Protocol
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from compilation.value import value
 from hsr8.errors import UsageError
 from hsr8.plugin_file import start_plugin
 from hsr8.plugin_method import PluginMethod, numbers, shown
@@ -21,7 +22,7 @@ from walking.head import Head
 from walking.observer import BodyEstimate, BodyObserver
 from walking.odometry import LegOdometry
 from walking.parameters import CONTROL_PERIOD, WalkingParameters
-from walking.signals import BodySensors, JointTargets, value
+from walking.signals import BodySensors, JointTargets
 from walking.state import WalkingState
 
 Array = NDArray[np.float64]

@@ -7,12 +7,13 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from compilation.value import value
 from hsr8.decisions import FrameRecord
 from hsr8.scenario.fault import Fault
 from hsr8.world.truth.saturation import Saturation
 from hsr8.world.truth.truth import CollisionCounter, Falls, Truth
 from walking.command import Command, HeadTarget, Limit
-from walking.signals import BodySensors, value
+from walking.signals import BodySensors
 from walking.state import WalkingState
 
 SAME_TIME = 1e-6  # times closer than this are equal [s]

@@ -8,6 +8,7 @@ from typing import Protocol
 
 import numpy as np
 
+from compilation.value import value
 from hsr8.decisions import Decision, DecisionContext, Decisions, FrameRecord, Image, Situation
 from navigation.angles import wrap
 from navigation.belief.belief import Belief
@@ -18,7 +19,7 @@ from vision.detection import Detection
 from vision.parameters import PoseParameters
 from walking.command import Command, HeadTarget, VelocityCommand
 from walking.odometry import Odometry, increment
-from walking.signals import BodySensors, JointTargets, value
+from walking.signals import BodySensors, JointTargets
 from walking.state import WalkingState
 from walking.walker import Walker
 

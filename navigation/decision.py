@@ -8,7 +8,7 @@ from typing import Literal, Protocol
 import numpy as np
 from numpy.typing import NDArray
 
-from navigation.value import value
+from compilation.value import value
 
 Array = NDArray[np.float64]
 

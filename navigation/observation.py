@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from compilation import compiled
-from navigation.value import value
+from compilation.value import value
 
 Array = NDArray[np.float64]
 

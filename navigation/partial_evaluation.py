@@ -6,9 +6,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from compilation import compiled
+from compilation.value import value
 from navigation.belief.tracks import Tracks, max_deviation
 from navigation.parameters.gaze import EvaluationParameters
-from navigation.value import value
 
 Array = NDArray[np.float64]
 Mask = NDArray[np.bool_]

@@ -3,11 +3,11 @@
 from collections.abc import Sequence
 from dataclasses import replace
 
+from compilation.value import value
 from vision.blob import Blob
 from vision.cylinder import Candidate, RimCue
 from vision.outline import Outline, Rim, Side
 from vision.parameters import VisionParameters
-from vision.value import value
 
 
 @value

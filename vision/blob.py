@@ -4,7 +4,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from compilation import compiled
-from vision.value import value
+from compilation.value import value
 
 Table = NDArray[np.int32]
 

@@ -16,9 +16,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from compilation import compiled
+from compilation.value import value
 from vision.cylinder_fit import fit
 from vision.outline import Rim, Side
-from vision.value import value
 from vision.view import View
 
 Array = NDArray[np.float64]

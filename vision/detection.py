@@ -5,7 +5,7 @@ from typing import Literal
 import numpy as np
 from numpy.typing import NDArray
 
-from vision.value import value
+from compilation.value import value
 
 Array = NDArray[np.float64]
 

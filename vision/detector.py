@@ -9,6 +9,7 @@ from typing import Literal
 import numpy as np
 from numpy.typing import NDArray
 
+from compilation.value import value
 from vision.beacon import find_posts
 from vision.blob import Blob, find_blobs
 from vision.camera import CameraPose, PinholeCamera
@@ -20,7 +21,6 @@ from vision.outline import Outline, trace
 from vision.parameters import VisionParameters
 from vision.self_mask import BodyPart, apply_self_mask
 from vision.split import split
-from vision.value import value
 from vision.view import View
 
 

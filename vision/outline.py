@@ -13,8 +13,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from compilation import compiled
+from compilation.value import value
 from vision.blob import Blob
-from vision.value import value
 from vision.view import View, angles, level, project, resolution, upright
 
 Array = NDArray[np.float64]

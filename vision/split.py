@@ -13,11 +13,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from compilation import compiled
+from compilation.value import value
 from vision.blob import Blob
 from vision.cylinder import MIN_CLEARANCE, Candidate, RimCue
 from vision.outline import Outline, Rim, Side, envelopes
 from vision.parameters import VisionParameters
-from vision.value import value
 from vision.view import View
 
 Array = NDArray[np.float64]

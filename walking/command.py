@@ -4,8 +4,8 @@ from dataclasses import dataclass
 from enum import StrEnum
 from typing import Annotated
 
+from compilation.value import comparable_value
 from walking import dimension
-from walking.signals import comparable_value
 
 
 @dataclass(frozen=True, slots=True)

@@ -4,6 +4,7 @@ from math import asin, atan2
 
 import numpy as np
 
+from compilation.value import value
 from walking.body.robot_model import RobotModel
 from walking.command import CommandLimits, VelocityCommand
 from walking.constants import robot_record
@@ -20,7 +21,7 @@ from walking.parameters import (
 from walking.plane import Array, Frame, Point, Vector, from_frame, norm, rotate, rotate_back
 from walking.published import incline
 from walking.records import WALK, parameters_record
-from walking.signals import BodySensors, value
+from walking.signals import BodySensors
 from walking.state import Balance, HeadCameraPose, Phase, WalkingState
 from walking.support import depth, polygon
 from walking.tick import watch

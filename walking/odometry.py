@@ -12,10 +12,10 @@ from math import cos, pi, sin
 import numpy as np
 
 from compilation import compiled
+from compilation.value import value
 from walking.parameters import CONTROL_PERIOD, OdometryParameters
 from walking.plane import Array, Point, norm
 from walking.records import ODOMETRY, Record
-from walking.signals import value
 
 RELEASED = 0.2  # load fraction below which a foot is not the stance foot [1]
 

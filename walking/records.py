@@ -72,8 +72,9 @@ def _section(cls: type) -> np.dtype[Any]:
 
 
 def _sections() -> dict[str, np.dtype[Any]]:
-    types = {field.name: field.default_factory for field in fields(WalkingParameters)}
-    return {name: _section(type(make())) for name, make in types.items()}  # type: ignore[operator]
+    parameters = WalkingParameters()
+    names = [field.name for field in fields(parameters)]
+    return {name: _section(type(getattr(parameters, name))) for name in names}
 
 
 PARAMETERS = record(**_sections())

@@ -1,27 +1,7 @@
 """Signals of a control tick: sensor readings in, joint targets out."""
 
-from dataclasses import dataclass
-from typing import TypeVar, dataclass_transform
-
+from compilation.value import value
 from walking.plane import Array
-
-T = TypeVar("T")
-
-
-@dataclass_transform(eq_default=False, frozen_default=True)
-def value(cls: type[T]) -> type[T]:
-    """Make an immutable dataclass with slots; values compare by identity.
-
-    Only the type checker forbids assignment: a check at run time makes the constructor
-    ten times as slow.
-    """
-    return dataclass(slots=True, eq=False)(cls)
-
-
-@dataclass_transform(frozen_default=True)
-def comparable_value(cls: type[T]) -> type[T]:
-    """Make a value that compares by content; for fields without arrays."""
-    return dataclass(slots=True)(cls)
 
 
 @value

@@ -2,11 +2,11 @@
 
 from enum import StrEnum
 
+from compilation.value import value
 from walking.command import CommandLimits
 from walking.foothold import Foothold
 from walking.odometry import Odometry
 from walking.plane import Array
-from walking.signals import value
 
 
 class Phase(StrEnum):

@@ -10,13 +10,13 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
+from compilation.value import value
 from hsr8.decisions import FrameRecord
 from hsr8.record import Tick
 from navigation.belief.belief import Belief
 from navigation.belief.tracks import Tracks
 from navigation.decision import DirectionField, GazeDecision, MotionDecision
 from navigation.motion.univector import normalized
-from walking.signals import value
 
 Array = NDArray[np.float64]
 

@@ -1,7 +1,7 @@
 """Sections ``[camera]`` and ``[sensors]``: head camera, noise of encoders, IMU and foot pads."""
 
 from dataclasses import dataclass
-from math import atan, degrees, radians, tan
+from math import radians
 from typing import Annotated, Literal
 
 from annotated_types import Ge, Interval, Le, MultipleOf, doc
@@ -93,12 +93,6 @@ class Camera(Section):
     def vertical_fov(self) -> float:
         """Vertical field of view [rad]."""
         return radians(self.vertical_fov_deg)
-
-    @property
-    def horizontal_fov_deg(self) -> float:
-        """Horizontal field of view [deg]."""
-        half = tan(0.5 * self.vertical_fov) * self.width / self.height
-        return degrees(2.0 * atan(half))
 
     @model_validator(mode="after")
     def _exposed_within_a_period(self) -> "Camera":

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from navigation.value import value
+from compilation.value import value
 
 if TYPE_CHECKING:
     from navigation.belief.local_map import LocalMap

@@ -6,10 +6,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from compilation import compiled
+from compilation.value import value
 from navigation.observation import CameraView, shadow_at
 from navigation.record import record_type
 from navigation.transform import yaw_rotation
-from navigation.value import value
 
 Array = NDArray[np.float64]
 Mask = NDArray[np.bool_]

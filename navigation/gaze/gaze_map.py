@@ -4,8 +4,8 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy import ndimage
 
+from compilation.value import value
 from navigation.parameters.gaze import GazeParameters
-from navigation.value import value
 
 Array = NDArray[np.float64]
 

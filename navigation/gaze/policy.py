@@ -6,11 +6,11 @@ from typing import Protocol
 import numpy as np
 from numpy.typing import NDArray
 
+from compilation.value import value
 from navigation.angles import wrap
 from navigation.belief.belief import Belief
 from navigation.decision import MotionDecision, Task
 from navigation.gaze.scene import GazeScene
-from navigation.value import value
 
 Array = NDArray[np.float64]
 Gaze = tuple[float, float]

@@ -6,6 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from compilation import compiled
+from compilation.value import value
 from navigation.angles import wrap_array
 from navigation.belief.belief import Belief
 from navigation.belief.tracks import Tracks
@@ -23,7 +24,6 @@ from navigation.partial_evaluation import (
     psi_way,
 )
 from navigation.transform import in_robot, points_to_world
-from navigation.value import value
 
 Array = NDArray[np.float64]
 Mask = NDArray[np.bool_]

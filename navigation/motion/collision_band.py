@@ -7,8 +7,8 @@ from math import hypot, inf, isfinite, sqrt
 import numpy as np
 from numpy.typing import NDArray
 
+from compilation.value import value
 from navigation.transform import rotate
-from navigation.value import value
 
 Array = NDArray[np.float64]
 

@@ -5,6 +5,7 @@ from math import atan2, cos, hypot, pi, sin
 import numpy as np
 from numpy.typing import NDArray
 
+from compilation.value import value
 from navigation.belief.tracks import Tracks
 from navigation.decision import VirtualObstacle
 from navigation.motion.avoid_obstacle import avoid_obstacle, spiral_turn, turning_sign
@@ -25,7 +26,6 @@ from navigation.motion.virtual_obstacle import (
     printed_radius,
 )
 from navigation.parameters.motion import MovingObstacleParameters, UnivectorParameters
-from navigation.value import value
 
 Array = NDArray[np.float64]
 

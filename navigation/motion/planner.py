@@ -6,6 +6,7 @@ from math import atan2, cos, hypot, sin
 import numpy as np
 from numpy.typing import NDArray
 
+from compilation.value import value
 from navigation.belief.belief import Belief
 from navigation.belief.tracks import Tracks
 from navigation.decision import (
@@ -38,7 +39,6 @@ from navigation.parameters.navigation import NavigationParameters
 from navigation.partial_evaluation import psi_obstacle, psi_self
 from navigation.record import record
 from navigation.transform import velocity_in_world
-from navigation.value import value
 
 Array = NDArray[np.float64]
 

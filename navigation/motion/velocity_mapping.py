@@ -5,10 +5,10 @@ from math import hypot
 import numpy as np
 from numpy.typing import NDArray
 
+from compilation.value import value
 from navigation.angles import wrap
 from navigation.decision import SpeedLimits, Task
 from navigation.motion import rollout
-from navigation.value import value
 
 Array = NDArray[np.float64]
 

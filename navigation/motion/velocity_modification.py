@@ -2,10 +2,10 @@
 
 from math import inf
 
+from compilation.value import value
 from navigation.decision import Situation, SpeedLimits
 from navigation.motion.collision_band import Encounter, free_intervals
 from navigation.parameters.motion import MovingObstacleParameters
-from navigation.value import value
 
 _TOUCH = 1e-9
 

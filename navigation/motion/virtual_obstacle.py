@@ -5,8 +5,8 @@ from math import expm1, hypot, log
 import numpy as np
 from numpy.typing import NDArray
 
+from compilation.value import value
 from navigation.parameters.motion import MovingObstacleParameters
-from navigation.value import value
 
 Array = NDArray[np.float64]
 

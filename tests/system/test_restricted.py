@@ -17,10 +17,10 @@ NAMESPACE = r"""
 set -e
 mount --make-rprivate /
 python=$(dirname "$(dirname "$(readlink -f "$PYTHON")")")
-if [ "${python#/root/}" != "$python" ]; then  # an interpreter in a private home
+if [ "${python#"$PRIVATE"/}" != "$python" ]; then  # an interpreter in a private home
     mkdir -p "$WORK/python"
     mount --bind "$python" "$WORK/python"
-    mount -t tmpfs -o mode=755 none /root
+    mount -t tmpfs -o mode=755 none "$PRIVATE"
     mkdir -p "$python"
     mount --move "$WORK/python" "$python"
 fi
@@ -45,6 +45,7 @@ def in_container(commands):
         "PYTHON": sys.executable,
         "TREE": str(ROOT),
         "WORK": "/run/hsr8-test",
+        "PRIVATE": str(Path.home()),
         "OWNER": str(USER),
         "COMMANDS": f'python() {{ {sys.executable} "$@"; }}; hsr8() {{ python -m hsr8 "$@"; }}; '
         + commands,

@@ -5,11 +5,11 @@ import pickle
 import numpy as np
 import pytest
 
+from compilation.value import comparable_value, value
 from walking import records
 from walking.foothold import Foothold
 from walking.parameters import WalkingParameters
 from walking.records import FOOTHOLD, GENERATORS, PLAN, WALK, parameters_record, record
-from walking.signals import comparable_value, value
 
 
 def test_a_field_with_the_name_of_an_attribute_of_arrays_is_refused():

@@ -11,8 +11,8 @@ from math import asin, atan2, cos, sin, sqrt
 import numpy as np
 
 from compilation import compiled
+from compilation.value import value
 from walking.plane import Array, Indices, Vector
-from walking.signals import value
 
 Matrix = tuple[float, float, float, float, float, float, float, float, float]
 """Rotation, row by row."""

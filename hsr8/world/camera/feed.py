@@ -7,6 +7,7 @@ from math import ceil, prod
 import numpy as np
 from numpy.typing import NDArray
 
+from compilation.value import value
 from hsr8.scenario.fault import (
     CameraBlack,
     CameraDrops,
@@ -20,7 +21,6 @@ from hsr8.scenario.fault import (
 from hsr8.scenario.section import CONTROL_PERIOD_MS
 from hsr8.scenario.sensors import Camera
 from vision.detection import Detection
-from walking.signals import value
 
 Image = NDArray[np.uint8]
 Kind = type[CameraDrops | CameraLatency | FalseDetections | Lighting | MissedDetections]

@@ -3,7 +3,7 @@
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from math import hypot, inf
-from typing import Any, Protocol
+from typing import Any, Protocol, cast
 
 import numpy as np
 from numpy.typing import NDArray
@@ -23,7 +23,7 @@ class _Law:
 
     def positions(self, times: Array) -> Array:
         """Return the positions at `times` (...) [s] (..., 2) [m]."""
-        positions: Array = Movers((self,)).positions(times)[..., 0, :]  # type: ignore[arg-type]
+        positions: Array = self._alone().positions(times)[..., 0, :]
         return positions
 
     def position(self, time: float) -> Point:
@@ -33,8 +33,11 @@ class _Law:
 
     def velocity(self, time: float) -> Point:
         """Return the velocity at `time` [m/s]; where it jumps, the velocity after it."""
-        x, y = Movers((self,)).velocities(time)[0].tolist()  # type: ignore[arg-type]
+        x, y = self._alone().velocities(time)[0].tolist()
         return x, y
+
+    def _alone(self) -> "Movers":
+        return Movers((cast("MotionLaw", self),))  # every subclass is one
 
 
 @dataclass(frozen=True, slots=True)

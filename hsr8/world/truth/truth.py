@@ -6,7 +6,7 @@ from math import degrees, hypot
 import numpy as np
 from numpy.typing import NDArray
 
-from walking.signals import value
+from compilation.value import value
 
 Array = NDArray[np.float64]
 
