@@ -45,7 +45,6 @@ def admit(
     moving: bool,
     off_plan: bool,
     robot: Record,
-    parameters: Record,
 ) -> bool:
     """Give the plan in force the admitted timing, footholds and reference.
 
@@ -59,7 +58,6 @@ def admit(
         moving: whether the walk goes on in the wanted plan.
         off_plan: whether the swing foot makes a capture step that leaves this plan.
         robot: constants.
-        parameters: parameters of the walk.
 
     Returns:
         whether the ZMP plan in `BEST` belongs to the reference.
@@ -73,20 +71,20 @@ def admit(
     last = foothold(admission.landing)
     goal = last
     if gait.adjustable:
-        goal = aimed(gait, last, landing_of(support_foot(gait), wanted), parameters)
-    plan_walk(live, goal, wanted, moving, robot, parameters)
+        goal = aimed(gait, last, landing_of(support_foot(gait), wanted), robot)
+    plan_walk(live, goal, wanted, moving, robot)
     best.zmp = live.zmp
     if not (admission.known and admission.stepping and gait.stepping):
         _take(admission, goal, wanted, moving, 1.0)
         return False
-    if is_feasible(plans, knots, LIVE, pendulum, region, robot, parameters):
+    if is_feasible(plans, knots, LIVE, pendulum, region, robot):
         accepted = True
         _take(admission, goal, wanted, moving, 1.0)
     else:
         accepted = _compromise(
-            admission, plans, knots, pendulum, region, last, goal, wanted, moving, robot, parameters
+            admission, plans, knots, pendulum, region, last, goal, wanted, moving, robot
         )
-    if parameters.pattern.generator == PAPER:
+    if robot.pattern.generator == PAPER:
         live.zmp = best.zmp
     return accepted
 
@@ -103,25 +101,20 @@ def _compromise(
     wanted: Record,
     moving: bool,
     robot: Record,
-    parameters: Record,
 ) -> bool:
     """Take a feasible plan between the last one, landing at `last`, and the wanted one."""
     live = plans[LIVE]
     gait, admission.goal = live.gait, live.gait.clock
-    if not moving and _end(
-        admission, plans, knots, pendulum, region, last, goal, wanted, robot, parameters
-    ):
+    if not moving and _end(admission, plans, knots, pendulum, region, last, goal, wanted, robot):
         return True
     gait.clock = admission.clock
-    update_phase(gait, parameters)
-    plan_walk(live, last, admission.following, admission.moving, robot, parameters)
-    if remains_feasible(live, parameters):
-        return _bisect(
-            admission, plans, knots, pendulum, region, last, goal, wanted, robot, parameters
-        )
+    update_phase(gait, robot)
+    plan_walk(live, last, admission.following, admission.moving, robot)
+    if remains_feasible(live, robot):
+        return _bisect(admission, plans, knots, pendulum, region, last, goal, wanted, robot)
     gait.clock = admission.goal
-    update_phase(gait, parameters)
-    plan_walk(live, goal, wanted, moving, robot, parameters)
+    update_phase(gait, robot)
+    plan_walk(live, goal, wanted, moving, robot)
     _take(admission, goal, wanted, moving, 1.0)
     return False
 
@@ -137,7 +130,6 @@ def _end(
     goal: Foothold,
     wanted: Record,
     robot: Record,
-    parameters: Record,
 ) -> bool:
     """Take a walk that ends after the next footstep, if one is feasible."""
     trial = plans[TRIAL]
@@ -146,8 +138,8 @@ def _end(
         fraction = 0.5 * (low + high) if attempt > 0 else 0.0
         landing = towards(last, goal, fraction)
         trial.gait = plans[LIVE].gait
-        plan_walk(trial, landing, wanted, False, robot, parameters)
-        if is_feasible(plans, knots, TRIAL, pendulum, region, robot, parameters):
+        plan_walk(trial, landing, wanted, False, robot)
+        if is_feasible(plans, knots, TRIAL, pendulum, region, robot):
             low = fraction
             trial.moving, trial.following = False, wanted
             put(trial.landing, landing)
@@ -171,7 +163,6 @@ def _bisect(
     goal: Foothold,
     wanted: Record,
     robot: Record,
-    parameters: Record,
 ) -> bool:
     """Take the plan with the maximum admitted fraction of the change, or keep the last plan.
 
@@ -187,11 +178,11 @@ def _bisect(
         change = after.swing_height - before.swing_height
         between.swing_height = before.swing_height + fraction * change
         trial.gait = plans[LIVE].gait
-        retime(trial.gait, between, robot, parameters)
+        retime(trial.gait, between, robot)
         landing = towards(last, goal, fraction)
         towards_strides(trial.following, admission.following, wanted, fraction)
-        plan_walk(trial, landing, trial.following, moving, robot, parameters)
-        if is_feasible(plans, knots, TRIAL, pendulum, region, robot, parameters):
+        plan_walk(trial, landing, trial.following, moving, robot)
+        if is_feasible(plans, knots, TRIAL, pendulum, region, robot):
             low, admitted = fraction, True
             trial.moving = moving
             put(trial.landing, landing)

@@ -58,16 +58,16 @@ def zmp_shift(zmp: Point, error: Point, region: Region, robot: Record) -> Point:
 
 
 @compiled
-def sole_margins(robot: Record, parameters: Record) -> Point:
+def sole_margins(robot: Record) -> Point:
     """Return the ZMP margins of a sole, forward and lateral [m]."""
-    support, margin = robot.support, parameters.stabilizer.sole_margin
+    support, margin = robot.support, robot.stabilizer.sole_margin
     return support.half_length - margin, support.half_width - margin
 
 
 @compiled
-def exceeds(foot: Foothold, error: Point, ratio: float, robot: Record, parameters: Record) -> bool:
+def exceeds(foot: Foothold, error: Point, ratio: float, robot: Record) -> bool:
     """Whether a DCM error [m] exceeds a ratio [1] of the ZMP margins of the sole."""
-    length, width = sole_margins(robot, parameters)
+    length, width = sole_margins(robot)
     x, y = rotate_back(foot.yaw, error[0], error[1])
     return abs(x) > ratio * length or abs(y) > ratio * width
 
@@ -118,13 +118,7 @@ def capture_time(omega: float, time: float, off: float, ahead: float, reach: flo
 
 @compiled
 def capture_step(
-    support: Foothold,
-    landing: Foothold,
-    error: Point,
-    ahead: Point,
-    ticks_left: int,
-    robot: Record,
-    parameters: Record,
+    support: Foothold, landing: Foothold, error: Point, ahead: Point, ticks_left: int, robot: Record
 ) -> Capture:
     """Return the capture step for the DCM error beyond the dead zone of the ankles.
 
@@ -137,17 +131,16 @@ def capture_step(
         ahead: planned DCM minus ZMP of the support foot [m].
         ticks_left: control ticks until the end of single support [1].
         robot: constants.
-        parameters: parameters of the walk.
     """
-    p, omega, yaw = parameters.stabilizer, robot.omega, support.yaw
-    length, width = sole_margins(robot, parameters)
+    p, omega, yaw = robot.stabilizer, robot.omega, support.yaw
+    length, width = sole_margins(robot)
     off_x, off_y = rotate_back(yaw, error[0], error[1])
     x = dead_zone(off_x, p.capture_dead_zone * length)
     y = dead_zone(off_y, p.capture_dead_zone * width)
     planned = ticks_left * CONTROL_PERIOD
     growth = exp(omega * ticks_left * CONTROL_PERIOD)
     dx, dy = rotate(yaw, clamp(growth * x, p.capture_forward), clamp(growth * y, p.capture_side))
-    reached = reachable(support, landing, dx, dy, robot, parameters)
+    reached = reachable(support, landing, dx, dy, robot)
     ahead_x, ahead_y = rotate_back(yaw, ahead[0], ahead[1])
     reach_x, reach_y = rotate_back(yaw, reached.x - landing.x, reached.y - landing.y)
     missing_x, missing_y = dead_zone(off_x, length), dead_zone(off_y, width)
@@ -164,7 +157,7 @@ def plan_pendulum(walk: Record) -> Record:
 
 @compiled
 def _needed_capture(
-    walk: Record, plans: Record, landing: Foothold, error: Point, robot: Record, parameters: Record
+    walk: Record, plans: Record, landing: Foothold, error: Point, robot: Record
 ) -> Capture:
     """Return the capture step for the measured DCM."""
     live = plans[LIVE]
@@ -173,13 +166,13 @@ def _needed_capture(
     if gait.shortened:
         x, y = dcm_reference(ramps, robot)
     else:
-        x, y = planned_dcm(live, plan_pendulum(walk), robot, parameters)
+        x, y = planned_dcm(live, plan_pendulum(walk), robot)
     body_x, body_y = dcm_of(walk.pendulum, robot)
     off = (body_x + error[0] - x, body_y + error[1] - y)
-    if not exceeds(support, off, parameters.stabilizer.capture_dead_zone, robot, parameters):
+    if not exceeds(support, off, robot.stabilizer.capture_dead_zone, robot):
         return Capture(False, landing, 0)
     ahead = (x - ramps[0].bx, y - ramps[0].by)
-    return capture_step(support, landing, off, ahead, gait.ticks_left, robot, parameters)
+    return capture_step(support, landing, off, ahead, gait.ticks_left, robot)
 
 
 # Foot placement
@@ -196,7 +189,6 @@ def place_foot(
     region: Region,
     moving: bool,
     robot: Record,
-    parameters: Record,
 ) -> None:
     """Choose landing and timing of the swing foot in this tick: the plan in force.
 
@@ -210,27 +202,26 @@ def place_foot(
         region: admissible ZMP in this tick.
         moving: whether the walk is to go on.
         robot: constants.
-        parameters: parameters of the walk.
     """
     placing, gait = walk.placing, plans[LIVE].gait
     adjustable = gait.adjustable
     placing.bound, placing.moving, placing.accepted = 0, moving, False
     placing.moved_x = placing.moved_y = 0.0
-    landing = _reference(walk, plans, knots, wanted, velocity, region, robot, parameters)
+    landing = _reference(walk, plans, knots, wanted, velocity, region, robot)
     if adjustable:
-        _capture(walk, plans, landing, wanted, error, robot, parameters)
+        _capture(walk, plans, landing, wanted, error, robot)
     elif gait.stepping:
         nominal = landing_of(support_foot(gait), wanted)
-        if not is_same(nominal, foothold(gait.landing), parameters):
+        if not is_same(nominal, foothold(gait.landing), robot):
             placing.bound |= LANDING_FROZEN
-    if _selects(gait, parameters):
+    if _selects(gait, robot):
         placing.moving = walk.admission.moving
 
 
 @compiled
-def _selects(gait: Record, parameters: Record) -> bool:
+def _selects(gait: Record, robot: Record) -> bool:
     """Whether the generator may limit the footsteps; not in a shortened footstep."""
-    return rejects_infeasible(parameters) and not gait.shortened
+    return rejects_infeasible(robot) and not gait.shortened
 
 
 @compiled
@@ -242,37 +233,27 @@ def _reference(
     velocity: Vector,
     region: Region,
     robot: Record,
-    parameters: Record,
 ) -> Foothold:
     """Put the reference that the generator admits in force; return the landing of the plan."""
     placing, admission, gait = walk.placing, walk.admission, plans[LIVE].gait
-    if not _selects(gait, parameters):
+    if not _selects(gait, robot):
         for k in range(3):
             placing.applied[k] = velocity[k]
         skip(admission, wanted, placing.moving)
         landing = foothold(gait.landing)
         if gait.adjustable:
             landing = landing_of(support_foot(gait), wanted)
-        plan_walk(plans[LIVE], landing, wanted, placing.moving, robot, parameters)
+        plan_walk(plans[LIVE], landing, wanted, placing.moving, robot)
         return landing
     admission.before = gait.clock
     pendulum = plan_pendulum(walk)
     placing.accepted = admit(
-        admission,
-        plans,
-        knots,
-        pendulum,
-        region,
-        wanted,
-        placing.moving,
-        walk.off_plan,
-        robot,
-        parameters,
+        admission, plans, knots, pendulum, region, wanted, placing.moving, walk.off_plan, robot
     )
     fraction = admission.fraction
     if fraction < 1.0:
         retimed = not equal_clocks(gait.clock, admission.before)
-        if retimed or _differs(walk, gait, wanted, parameters):
+        if retimed or _differs(walk, gait, wanted, robot):
             placing.bound |= ZMP_REGION
         for k in range(3):
             now = placing.applied[k]
@@ -284,49 +265,41 @@ def _reference(
 
 
 @compiled
-def _differs(walk: Record, gait: Record, wanted: Record, parameters: Record) -> bool:
+def _differs(walk: Record, gait: Record, wanted: Record, robot: Record) -> bool:
     """Whether the footsteps of the admitted plan differ from the wanted ones."""
     admission = walk.admission
     if not equal_strides(admission.following, wanted) or admission.moving != walk.placing.moving:
         return True
     nominal, landing = landing_of(support_foot(gait), wanted), foothold(admission.landing)
-    differs: bool = gait.adjustable and not is_same(nominal, landing, parameters)
+    differs: bool = gait.adjustable and not is_same(nominal, landing, robot)
     return differs
 
 
 @compiled
 def _capture(
-    walk: Record,
-    plans: Record,
-    landing: Foothold,
-    wanted: Record,
-    error: Point,
-    robot: Record,
-    parameters: Record,
+    walk: Record, plans: Record, landing: Foothold, wanted: Record, error: Point, robot: Record
 ) -> None:
     """Aim at the landing of a capture step if one is needed."""
     placing, live = walk.placing, plans[LIVE]
     gait, goal = live.gait, landing
-    capture = _needed_capture(walk, plans, landing, error, robot, parameters)
-    if capture.needed and shorten(
-        gait, walk.limbs.feet, capture.ticks, capture.landing, robot, parameters
-    ):
+    capture = _needed_capture(walk, plans, landing, error, robot)
+    if capture.needed and shorten(gait, walk.limbs.feet, capture.ticks, capture.landing, robot):
         # The timing has changed: plan again.
         merge_pendulums(walk, plans)
         placing.accepted = False
-        plan_walk(plans[LIVE], landing, wanted, placing.moving, robot, parameters)
-        capture = _needed_capture(walk, plans, landing, error, robot, parameters)
+        plan_walk(plans[LIVE], landing, wanted, placing.moving, robot)
+        capture = _needed_capture(walk, plans, landing, error, robot)
     if capture.needed and not gait.double:
         goal = capture.landing
         placing.moved_x, placing.moved_y = goal.x - landing.x, goal.y - landing.y
-    put(gait.landing, aimed(gait, foothold(gait.landing), goal, parameters))
+    put(gait.landing, aimed(gait, foothold(gait.landing), goal, robot))
     now, nominal = foothold(gait.landing), landing_of(support_foot(gait), wanted)
-    if gait.shortened or not is_same(goal, landing, parameters):
+    if gait.shortened or not is_same(goal, landing, robot):
         placing.bound |= BALANCE
-    elif not placing.bound & ZMP_REGION and not is_same(nominal, now, parameters):
+    elif not placing.bound & ZMP_REGION and not is_same(nominal, now, robot):
         placing.bound |= LANDING_SPEED
-    if not _selects(gait, parameters) and not equal(now, landing):
-        plan_walk(plans[LIVE], now, wanted, placing.moving, robot, parameters)
+    if not _selects(gait, robot) and not equal(now, landing):
+        plan_walk(plans[LIVE], now, wanted, placing.moving, robot)
 
 
 # Pendulum
@@ -334,13 +307,7 @@ def _capture(
 
 @compiled
 def advance_pendulum(
-    walk: Record,
-    plans: Record,
-    knots: Record,
-    region: Region,
-    robot: Record,
-    parameters: Record,
-    sums: Record,
+    walk: Record, plans: Record, knots: Record, region: Region, robot: Record, sums: Record
 ) -> None:
     """Advance the pendulums of plan and body by one tick.
 
@@ -350,12 +317,11 @@ def advance_pendulum(
         knots: knots of the plans (3, k); those of the plan in force are changed.
         region: admissible ZMP.
         robot: constants.
-        parameters: parameters of the walk.
         sums: sums of the gains of preview control.
     """
-    live, body, gain = plans[LIVE], walk.pendulum, parameters.pattern.dcm_gain
+    live, body, gain = plans[LIVE], walk.pendulum, robot.pattern.dcm_gain
     gait = live.gait
-    selective = rejects_infeasible(parameters)
+    selective = rejects_infeasible(robot)
     if selective and gait.shortened:
         track_reference(body, robot, gain, reference_of(live), region)
         return
@@ -365,7 +331,7 @@ def advance_pendulum(
     pendulum = plan_pendulum(walk)
     x, y = dcm_of(pendulum, robot)
     accepted: bool = walk.placing.accepted
-    advance_pattern(plans, knots, accepted, pendulum, region, robot, parameters, sums)
+    advance_pattern(plans, knots, accepted, pendulum, region, robot, sums)
     if walk.off_plan:
         # Shift of the DCM by a ramp of the ZMP from the fixed support foot to the new landing.
         wh = robot.omega * CONTROL_PERIOD

@@ -11,7 +11,7 @@ from walking.footsteps import STILL, velocity_strides
 from walking.parameters import CONTROL_PERIOD, GRAVITY, LIGHT_LOAD, WalkingParameters
 from walking.patterns import preview_gains
 from walking.pendulum import natural_frequency
-from walking.records import JOINT, PREVIEW_SUM, ROBOT, Record, parameters_record
+from walking.records import JOINT, PREVIEW_SUM, Record, parameters_record
 from walking.swing_reaction import leg_reaction
 
 LEGS = slice(0, 12)  # joints
@@ -24,7 +24,7 @@ def robot_record(robot: RobotModel, parameters: WalkingParameters) -> tuple[Reco
         robot: model of the robot.
         parameters: parameters of its walk.
     """
-    records = np.zeros(1, ROBOT)
+    records = parameters_record(parameters)
     r, p, leg = records[0], parameters, robot.legs[0]
     r.omega = omega = natural_frequency(p.pattern.lipm_height)
     r.cosh, r.sinh = cosh(omega * CONTROL_PERIOD), sinh(omega * CONTROL_PERIOD)
@@ -51,7 +51,7 @@ def robot_record(robot: RobotModel, parameters: WalkingParameters) -> tuple[Reco
         gains = preview_gains(omega, p.pattern)
         r.preview_position, r.preview_velocity = gains.position, gains.velocity
         r.preview_zmp, r.preview_total, sums = gains.zmp, gains.total, gains.sums
-    velocity_strides(r.still, STILL, p.gait.footstep_time, r, parameters_record(p)[0])
+    velocity_strides(r.still, STILL, p.gait.footstep_time, r)
     return records, sums
 
 

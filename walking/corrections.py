@@ -31,9 +31,9 @@ def cycle_begins(corrections: Record, support: int) -> bool:
 
 
 @compiled
-def speed_ratio(corrections: Record, error: float, parameters: Record) -> float:
+def speed_ratio(corrections: Record, error: float, robot: Record) -> float:
     """Return the speed ratio [1]: slowdown by the decaying maximum of the DCM error [m]."""
-    p = parameters.stabilizer
+    p = robot.stabilizer
     decay = exp(-CONTROL_PERIOD / p.slowdown_time)
     corrections.max_error = max(error, decay * corrections.max_error)
     if corrections.max_error <= p.slowdown_start_error:
@@ -45,7 +45,7 @@ def speed_ratio(corrections: Record, error: float, parameters: Record) -> float:
 
 
 @compiled
-def heading_rate(corrections: Record, ahead: float, renew: bool, parameters: Record) -> float:
+def heading_rate(corrections: Record, ahead: float, renew: bool, robot: Record) -> float:
     """Return the yaw rate against yaw slip of the feet [rad/s].
 
     Proportional feedback of the heading error, constant over a gait cycle: one footstep of a cycle
@@ -56,10 +56,10 @@ def heading_rate(corrections: Record, ahead: float, renew: bool, parameters: Rec
         ahead: planned minus measured heading [rad].
         renew: whether to update the rate: at the begin of a gait cycle, and in every tick while
             balance changes the footsteps.
-        parameters: parameters of the walk.
+        robot: constants.
     """
     if renew:
-        p = parameters.stabilizer
+        p = robot.stabilizer
         corrections.turn = clamp(p.heading_gain * (ahead - corrections.held), p.max_heading_rate)
     corrections.held += corrections.turn * CONTROL_PERIOD
     rate: float = corrections.turn
@@ -80,7 +80,7 @@ def speed_correction(
     velocity: Vector,
     begins: bool,
     disturbed: bool,
-    parameters: Record,
+    robot: Record,
 ) -> Point:
     """Return the correction of (vx, vy) [m/s, m/s] against slip and short landings of the feet.
 
@@ -94,7 +94,7 @@ def speed_correction(
         velocity: wanted (vx, vy, wz) [m/s, m/s, rad/s].
         begins: whether a gait cycle begins.
         disturbed: whether balance changes the footsteps.
-        parameters: parameters of the walk.
+        robot: constants.
     """
     c = corrections
     if not c.steady or velocity != (c.command[0], c.command[1], c.command[2]):
@@ -110,7 +110,7 @@ def speed_correction(
     c.whole = c.whole and not disturbed
     if begins:
         if c.whole:
-            p, time = parameters.stabilizer, c.ticks * CONTROL_PERIOD
+            p, time = robot.stabilizer, c.ticks * CONTROL_PERIOD
             for k in range(2):
                 missing = c.displacement[k] / time - velocity[k]
                 c.speed[k] = clamp(c.speed[k] - p.speed_gain * missing, p.max_speed_correction)
@@ -139,7 +139,7 @@ def discard_offset_cycle(corrections: Record) -> None:
 
 @compiled
 def correct_offset(
-    corrections: Record, error: Point, begins: bool, disturbed: bool, parameters: Record
+    corrections: Record, error: Point, begins: bool, disturbed: bool, robot: Record
 ) -> None:
     """Correct the CoM offset from the measured centre of pressure, once per gait cycle.
 
@@ -151,9 +151,9 @@ def correct_offset(
         error: centre of pressure minus planned ZMP, forward and left [m].
         begins: whether a gait cycle begins.
         disturbed: whether balance changes the footsteps.
-        parameters: parameters of the walk.
+        robot: constants.
     """
-    c, p = corrections, parameters.stabilizer
+    c, p = corrections, robot.stabilizer
     if begins:
         if c.errors > 0:
             for k in range(2):
@@ -173,9 +173,9 @@ def correct_offset(
 
 
 @compiled
-def detects_touchdown(corrections: Record, phase: float, force: float, parameters: Record) -> bool:
+def detects_touchdown(corrections: Record, phase: float, force: float, robot: Record) -> bool:
     """Whether the swing foot is down, given the phase of its swing [1] and its load [N]."""
-    p = parameters.estimator
+    p = robot.estimator
     contact = phase >= p.contact_phase and force > p.contact_force
     corrections.contact = corrections.contact + 1 if contact else 0
     down: bool = corrections.contact >= p.contact_ticks

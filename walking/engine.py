@@ -20,7 +20,7 @@ from walking.odometry import LegOdometry
 from walking.parameters import CONTROL_PERIOD, WalkingParameters
 from walking.plane import Array
 from walking.published import Publication, publish, report
-from walking.records import KNOT, LIVE, PLAN, WALK, parameters_record
+from walking.records import KNOT, LIVE, PLAN, WALK
 from walking.signals import BodySensors, JointTargets
 from walking.state import WalkingState
 from walking.tick import begin, finish, stand_ready, watch
@@ -55,7 +55,6 @@ class WalkingEngine:
         self._neck = robot.neck.chain
         self._feet = robot.feet_chains
         self._robots, self._sums = robot_record(robot, parameters)
-        self._parameters = parameters_record(parameters)
         self._joints = joint_records(robot, parameters)
         self._odometry = odometry or LegOdometry(parameters.odometry)
         self._walks, self._plans = np.zeros(1, WALK), np.zeros(PLANS, PLAN)
@@ -72,8 +71,7 @@ class WalkingEngine:
     @property
     def command_limits(self) -> CommandLimits:
         """How the last command was limited."""
-        rest = (self._plans, self._robots, self._parameters)
-        report(self._publication.records, self._walks, *rest)
+        report(self._publication.records, self._walks, self._plans, self._robots)
         return self._publication.report(self._command)
 
     @property
@@ -141,7 +139,6 @@ class WalkingEngine:
             self._knots,
             self._joints,
             self._robots,
-            self._parameters,
             self._sums,
             self._legs,
             self._axes,
@@ -163,7 +160,6 @@ class WalkingEngine:
             self._plans,
             self._joints,
             self._robots,
-            self._parameters,
             self._axes,
             self._origins,
             dynamics.forces(),
@@ -187,7 +183,6 @@ class WalkingEngine:
             sensors.foot_force,
             *self._feet,
             self._robots,
-            self._parameters,
         )
 
     def state(self) -> WalkingState:
@@ -207,7 +202,6 @@ class WalkingEngine:
             self._plans,
             self._odometry.records,
             self._robots,
-            self._parameters,
             sensors.joint_position,
             sensors.joint_velocity,
             sensors.gyro,
@@ -221,13 +215,7 @@ class WalkingEngine:
         limbs.com = robot.com(robot.ready)[:2]
         limbs.leg_angles = robot.ready[:12]
         limbs.head = robot.neck.angles(robot.ready)
-        stand_ready(
-            self._walks,
-            self._plans,
-            _ready_stance(robot),
-            self._robots,
-            self._parameters,
-        )
+        stand_ready(self._walks, self._plans, _ready_stance(robot), self._robots)
 
 
 def _ready_stance(robot: RobotModel) -> Array:

@@ -41,7 +41,6 @@ def measure(
     gyro: Array,
     pads: Array,
     robot: Record,
-    parameters: Record,
 ) -> None:
     """Measure the body and filter its tilt.
 
@@ -53,11 +52,10 @@ def measure(
         gyro: angular velocity (3,) [rad/s].
         pads: load on front left, front right, back left and back right of each sole (2, 4) [N].
         robot: constants.
-        parameters: parameters of the walk.
     """
     w, x, y, z = orientation[0], orientation[1], orientation[2], orientation[3]
     roll, pitch, sensing.heading = roll_pitch_yaw(w, x, y, z)
-    follow_tilt(sensing, roll, pitch, gyro, parameters.estimator.tilt_gain)
+    follow_tilt(sensing, roll, pitch, gyro, robot.estimator.tilt_gain)
     sensing.turn_rate = gyro[2]
     tilt = (sensing.roll, sensing.pitch)
     for side in range(2):

@@ -22,7 +22,7 @@ def set_motion(
     a: Array,
     yaw: float,
     acceleration: Point,
-    parameters: Record,
+    robot: Record,
 ) -> None:
     """Differentiate the joint angles and set the motion of the dynamic model.
 
@@ -34,9 +34,9 @@ def set_motion(
         a: acceleration of the dynamic model, set.
         yaw: heading of the pelvis in the plan frame [rad].
         acceleration: planned acceleration of the base in the plan frame [m/s²].
-        parameters: parameters of the walk.
+        robot: constants.
     """
-    p = parameters.stabilizer
+    p = robot.stabilizer
     a[0], a[1] = rotate_back(yaw, acceleration[0], acceleration[1])
     for k in range(angles.size):
         joint = joints[k]
@@ -58,7 +58,6 @@ def set_offsets(
     gyro: Array,
     foot_zmps: tuple[Point, Point],
     robot: Record,
-    parameters: Record,
 ) -> None:
     """Set the feed-forward offsets of all setpoints.
 
@@ -72,7 +71,6 @@ def set_offsets(
         gyro: angular velocity of the trunk (3,) [rad/s].
         foot_zmps: planned ZMP under each foot, in the plan frame [m].
         robot: constants.
-        parameters: parameters of the walk.
     """
     limbs, height = walk.limbs, robot.height
     right_load = limbs.load
@@ -104,7 +102,7 @@ def set_offsets(
             for k in range(robot.ankle, LEG_JOINTS):
                 joint = joints[LEG_JOINTS * side + k]
                 axis, compliance = axes[side, k], joint.compliance
-                offset = ankle_offset(axis, shift, gyro, compliance, robot, parameters)
+                offset = ankle_offset(axis, shift, gyro, compliance, robot)
                 joint.offset += load * offset
 
 
@@ -127,9 +125,7 @@ def support_torque(axis: Array, origin: Array, point: Vector, force: Vector) -> 
 
 
 @compiled
-def ankle_offset(
-    axis: Array, shift: Point, gyro: Array, compliance: float, robot: Record, parameters: Record
-) -> float:
+def ankle_offset(axis: Array, shift: Point, gyro: Array, compliance: float, robot: Record) -> float:
     """Return the offset of an ankle joint [rad] that shifts the ZMP of a foot and damps the trunk.
 
     Args:
@@ -138,10 +134,9 @@ def ankle_offset(
         gyro: angular velocity of the trunk to damp (3,) [rad/s].
         compliance: compliance of the servo [rad/(N m)].
         robot: constants.
-        parameters: parameters of the walk.
     """
     moved = robot.weight * compliance * (axis[1] * shift[0] - axis[0] * shift[1])
-    damping = parameters.stabilizer.gyro_gain * (axis[0] * gyro[0] + axis[1] * gyro[1])
+    damping = robot.stabilizer.gyro_gain * (axis[0] * gyro[0] + axis[1] * gyro[1])
     offset: float = moved + damping
     return offset
 

@@ -44,13 +44,13 @@ def landing_of(support: Foothold, strides: Record) -> Foothold:
 
 
 @compiled
-def is_parallel(support: Foothold, other: Foothold, robot: Record, parameters: Record) -> bool:
+def is_parallel(support: Foothold, other: Foothold, robot: Record) -> bool:
     """Whether the stance is parallel within tolerance.
 
     After an early touchdown or a capture step the foot is off its planned landing, with the
     pendulum at rest: another footstep would start it again from an infeasible state.
     """
-    rest, near = landing_of(support, robot.still), STANCE_TOLERANCE * parameters.gait.half_stance
+    rest, near = landing_of(support, robot.still), STANCE_TOLERANCE * robot.gait.half_stance
     return (
         abs(other.x - rest.x) < near
         and abs(other.y - rest.y) < near
@@ -59,9 +59,9 @@ def is_parallel(support: Foothold, other: Foothold, robot: Record, parameters: R
 
 
 @compiled
-def is_same(one: Foothold, other: Foothold, parameters: Record) -> bool:
+def is_same(one: Foothold, other: Foothold, robot: Record) -> bool:
     """Whether two footholds of a foot are equal within tolerance."""
-    near = POSITION_TOLERANCE * parameters.gait.half_stance
+    near = POSITION_TOLERANCE * robot.gait.half_stance
     return (
         abs(one.x - other.x) < near
         and abs(one.y - other.y) < near
@@ -80,12 +80,12 @@ def duration(timing: Record) -> float:
 
 
 @compiled
-def cadence(velocity: Vector, parameters: Record) -> Timing:
+def cadence(velocity: Vector, robot: Record) -> Timing:
     """Return the timing for a velocity (vx, vy, wz) [m/s, m/s, rad/s].
 
     Footsteps that would exceed their limits are made faster instead.
     """
-    gait, limits = parameters.gait, parameters.limits
+    gait, limits = robot.gait, robot.limits
     vx, vy, wz = velocity
     x, y = vx / limits.step_forward, 2.0 * vy / limits.step_side
     turned = 2.0 * wz / limits.step_turn
@@ -97,9 +97,9 @@ def cadence(velocity: Vector, parameters: Record) -> Timing:
 
 
 @compiled
-def command_timing(command: Array, parameters: Record) -> tuple[Timing, int]:
+def command_timing(command: Array, robot: Record) -> tuple[Timing, int]:
     """Return the timing of a command state and the limits that bind."""
-    limits, bound = parameters.limits, 0
+    limits, bound = robot.limits, 0
     single_support, double_support, swing_height = command[0], command[1], command[5]
     double = min(limits.max_double, max(CONTROL_PERIOD, double_support))
     single = min(limits.max_single, max(limits.min_single, single_support))
@@ -160,10 +160,10 @@ def clear_of(y: float, turned: float, side: float, gap: float, sole: Record) -> 
 
 
 @compiled
-def within_reach(x: float, y: float, side: float, parameters: Record) -> Point:
+def within_reach(x: float, y: float, side: float, robot: Record) -> Point:
     """Scale a landing in the frame of the support foot into the ellipse of reach [m]."""
-    limits = parameters.limits
-    centre = side * 2.0 * parameters.gait.half_stance
+    limits = robot.limits
+    centre = side * 2.0 * robot.gait.half_stance
     along, across = x / limits.reach_forward, (y - centre) / limits.reach_side
     square = along * along + across * across
     if square > 1.0:
@@ -173,9 +173,7 @@ def within_reach(x: float, y: float, side: float, parameters: Record) -> Point:
 
 
 @compiled
-def velocity_strides(
-    strides: Record, velocity: Vector, time: float, robot: Record, parameters: Record
-) -> bool:
+def velocity_strides(strides: Record, velocity: Vector, time: float, robot: Record) -> bool:
     """Set the strides of a velocity.
 
     Args:
@@ -183,42 +181,39 @@ def velocity_strides(
         velocity: velocity of the middle of the stance (vx, vy, wz) [m/s, m/s, rad/s].
         time: duration of a footstep [s].
         robot: constants.
-        parameters: parameters of the walk.
 
     Returns:
         whether one is shifted to clear the other foot.
     """
-    gap = parameters.gait.foot_clearance
-    x, y, turned = _opened(velocity, time, RIGHT, parameters)
+    gap = robot.gait.foot_clearance
+    x, y, turned = _opened(velocity, time, RIGHT, robot)
     right = clear_of(y, turned, RIGHT, gap, robot.sole)
     strides.right.x, strides.right.y, strides.right.yaw = x, right, turned
     shifted = right != y
-    x, y, turned = _opened(velocity, time, LEFT, parameters)
+    x, y, turned = _opened(velocity, time, LEFT, robot)
     left = clear_of(y, turned, LEFT, gap, robot.sole)
     strides.left.x, strides.left.y, strides.left.yaw = x, left, turned
     return shifted or left != y
 
 
 @compiled
-def _opened(velocity: Vector, time: float, side: float, parameters: Record) -> Vector:
+def _opened(velocity: Vector, time: float, side: float, robot: Record) -> Vector:
     """Return the landing on a side; it opens the stance if the motion is to that side."""
-    limits, (vx, vy, wz) = parameters.limits, velocity
+    limits, (vx, vy, wz) = robot.limits, velocity
     dx = clamp(vx * time, limits.step_forward)
     dy = clamp(2.0 * vy * time if vy * side > 0.0 else 0.0, limits.step_side)
     turned = clamp(2.0 * wz * time if wz * side > 0.0 else 0.0, limits.step_turn)
-    x, y = stance_after(dx, dy, turned, side * parameters.gait.half_stance)
+    x, y = stance_after(dx, dy, turned, side * robot.gait.half_stance)
     return x, y, turned
 
 
 @compiled
-def command_strides(
-    strides: Record, command: Array, turn: float, robot: Record, parameters: Record
-) -> int:
+def command_strides(strides: Record, command: Array, turn: float, robot: Record) -> int:
     """Set the strides of a command state, turned by `turn` [rad]; return the limits that bind."""
-    limits, gap, bound = parameters.limits, parameters.gait.foot_clearance, 0
+    limits, gap, bound = robot.limits, robot.gait.foot_clearance, 0
     forward, side_by, direction = command[2], command[3], command[4]
     dx = clamp(forward, limits.step_forward)
-    apart = min(2.0 * parameters.gait.half_stance + limits.step_side, side_by)
+    apart = min(2.0 * robot.gait.half_stance + limits.step_side, side_by)
     turned = clamp(direction + turn, limits.step_turn)
     if dx != forward:
         bound |= STEP_LENGTH
@@ -231,7 +226,7 @@ def command_strides(
         clear = clear_of(y, turned, side, gap, robot.sole)
         if clear != y:
             bound |= CLEARANCE
-        rx, ry = within_reach(x, clear, side, parameters)
+        rx, ry = within_reach(x, clear, side, robot)
         if rx != x or ry != clear:
             bound |= REACH
         placement = strides.right if side == RIGHT else strides.left
@@ -256,9 +251,7 @@ def command_of(strides: Record, timing: Record) -> Command:
 
 
 @compiled
-def stride_limits(
-    strides: Record, velocity: Vector, time: float, robot: Record, parameters: Record
-) -> int:
+def stride_limits(strides: Record, velocity: Vector, time: float, robot: Record) -> int:
     """Return the limits that bind on footsteps of a velocity.
 
     Args:
@@ -266,26 +259,25 @@ def stride_limits(
         velocity: velocity (vx, vy, wz) [m/s, m/s, rad/s].
         time: duration of a footstep [s].
         robot: constants.
-        parameters: parameters of the walk.
     """
-    (vx, vy, wz), limits, bound = velocity, parameters.limits, 0
+    (vx, vy, wz), limits, bound = velocity, robot.limits, 0
     if abs(vx) * time > limits.step_forward:
         bound |= STEP_LENGTH
     if 2.0 * abs(vy) * time > limits.step_side:
         bound |= STEP_SIDE
     if 2.0 * abs(wz) * time > limits.step_turn:
         bound |= STEP_TURN
-    if velocity_strides(strides, velocity, time, robot, parameters):
+    if velocity_strides(strides, velocity, time, robot):
         bound |= CLEARANCE
     return bound
 
 
 @compiled
-def mean_velocity(strides: Record, time: float, parameters: Record) -> Vector:
+def mean_velocity(strides: Record, time: float, robot: Record) -> Vector:
     """Return the mean velocity of strides of duration `time` [s], inverse of `velocity_strides`."""
     vx = vy = wz = 0.0
     for side in (RIGHT, LEFT):
-        stance = side * parameters.gait.half_stance
+        stance = side * robot.gait.half_stance
         placement = strides.right if side == RIGHT else strides.left
         dx = placement.x + stance * sin(placement.yaw)
         dy = placement.y - stance - stance * cos(placement.yaw)
@@ -324,21 +316,21 @@ def _equal(one: Record, other: Record) -> bool:
 
 @compiled
 def reachable(
-    support: Foothold, landing: Foothold, dx: float, dy: float, robot: Record, parameters: Record
+    support: Foothold, landing: Foothold, dx: float, dy: float, robot: Record
 ) -> Foothold:
     """Shift a landing by dx, dy [m], within reach and clear of the support foot."""
     side = LEFT if landing.left else RIGHT
     wx, wy = landing.x + dx - support.x, landing.y + dy - support.y
     ahead, across = rotate_back(support.yaw, wx, wy)
-    x, y = within_reach(ahead, across, side, parameters)
+    x, y = within_reach(ahead, across, side, robot)
     turned = landing.yaw - support.yaw
-    clear = clear_of(y, turned, side, parameters.gait.capture_clearance, robot.sole)
+    clear = clear_of(y, turned, side, robot.gait.capture_clearance, robot.sole)
     return placed(support, x, clear, turned)
 
 
 @compiled
-def tendency(velocity: Vector, parameters: Record) -> float:
+def tendency(velocity: Vector, robot: Record) -> float:
     """Return the motion across the stance: positive if the left foot opens it, zero for none."""
     _, vy, wz = velocity
-    sideways: float = vy / parameters.limits.vy + wz / parameters.limits.wz
+    sideways: float = vy / robot.limits.vy + wz / robot.limits.wz
     return sideways

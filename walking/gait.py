@@ -33,9 +33,9 @@ def ticks_of(time: float) -> int:
 
 
 @compiled
-def put_single_support(single: Record, ticks: int, parameters: Record) -> None:
+def put_single_support(single: Record, ticks: int, robot: Record) -> None:
     """Set a single support of a duration in control ticks."""
-    gait = parameters.gait
+    gait = robot.gait
     single.ticks, single.origin = ticks, 0.0
     single.first, single.last = round(gait.swing_start * ticks), round(gait.swing_end * ticks)
 
@@ -50,16 +50,16 @@ def phase_of(single: Record, elapsed: int) -> float:
 
 
 @compiled
-def retime_single_support(single: Record, elapsed: int, ticks: int, parameters: Record) -> None:
+def retime_single_support(single: Record, elapsed: int, ticks: int, robot: Record) -> None:
     """Change the total duration of a single support that began `elapsed` ticks ago.
 
     The swing continues from its present phase, and takes at least the minimum ticks.
     """
-    gait, phase = parameters.gait, phase_of(single, elapsed)
+    gait, phase = robot.gait, phase_of(single, elapsed)
     min_ticks = ticks_of(gait.min_swing_time)
     while round(gait.swing_end * ticks) < elapsed + min_ticks:
         ticks += 1
-    put_single_support(single, ticks, parameters)
+    put_single_support(single, ticks, robot)
     if phase > 0.0 or elapsed > single.first:
         single.first, single.origin = elapsed, phase
 
@@ -101,7 +101,7 @@ def equal_clocks(one: Record, other: Record) -> bool:
 
 
 @compiled
-def update_phase(gait: Record, parameters: Record) -> None:
+def update_phase(gait: Record, robot: Record) -> None:
     """Update the phase after a change of clock, tick or `landed_early`."""
     shift, single, stepping = gait.clock.shift, gait.clock.single, gait.stepping
     elapsed = gait.tick - shift.end
@@ -112,7 +112,7 @@ def update_phase(gait: Record, parameters: Record) -> None:
     gait.right_weight = weight + shift_fraction(shift, gait.tick) * (goal - weight)
     gait.ticks_left = single.ticks - elapsed
     gait.swing_phase = phase_of(single, elapsed) if stepping else 1.0
-    freeze = parameters.gait.landing_freeze
+    freeze = robot.gait.landing_freeze
     gait.adjustable = stepping and not gait.landed_early and gait.swing_phase < freeze
 
 
@@ -148,13 +148,13 @@ def is_airborne(gait: Record) -> bool:
 
 
 @compiled
-def scheduled_zmp(gait: Record, robot: Record, parameters: Record) -> Point:
+def scheduled_zmp(gait: Record, robot: Record) -> Point:
     """Return the scheduled ZMP [m]."""
     if gait.stepping:
-        x, y = zmp_under(support_foot(gait), robot, parameters)
+        x, y = zmp_under(support_foot(gait), robot)
     else:
         left, right = foothold(gait.footholds[0]), foothold(gait.footholds[1])
-        x, y = zmp_between(left, right, robot, parameters)
+        x, y = zmp_between(left, right, robot)
     shift = gait.clock.shift
     fraction = shift_fraction(shift, gait.tick)
     return (
@@ -167,26 +167,26 @@ def scheduled_zmp(gait: Record, robot: Record, parameters: Record) -> Point:
 
 
 @compiled
-def stand(gait: Record, robot: Record, parameters: Record) -> None:
+def stand(gait: Record, robot: Record) -> None:
     """Begin to stand on the footholds, with the usual timing in `gait.clock.timing`."""
     left, right = foothold(gait.footholds[0]), foothold(gait.footholds[1])
-    gait.tick = stop_ticks(parameters)
-    put_shift(gait.clock.shift, 0, gait.tick, zmp_between(left, right, robot, parameters), 0.5)
-    put_single_support(gait.clock.single, gait.clock.timing.single, parameters)
+    gait.tick = stop_ticks(robot)
+    put_shift(gait.clock.shift, 0, gait.tick, zmp_between(left, right, robot), 0.5)
+    put_single_support(gait.clock.single, gait.clock.timing.single, robot)
     gait.shift_fixed = True
     gait.swing_height = gait.clock.timing.swing_height
     put(gait.landing, right)
-    update_phase(gait, parameters)
+    update_phase(gait, robot)
 
 
 @compiled
-def stop_ticks(parameters: Record) -> int:
+def stop_ticks(robot: Record) -> int:
     """Return the control ticks of the last double support."""
-    return max(1, ticks_of(parameters.gait.stop_time))
+    return max(1, ticks_of(robot.gait.stop_time))
 
 
 @compiled
-def start(gait: Record, support: int, at_once: bool, robot: Record, parameters: Record) -> None:
+def start(gait: Record, support: int, at_once: bool, robot: Record) -> None:
     """Start to walk.
 
     Args:
@@ -194,38 +194,31 @@ def start(gait: Record, support: int, at_once: bool, robot: Record, parameters: 
         support: index of the first support foot.
         at_once: whether to skip the long first double support.
         robot: constants.
-        parameters: parameters of the walk.
     """
-    ticks = max(1, ticks_of(parameters.gait.start_time))
+    ticks = max(1, ticks_of(robot.gait.start_time))
     if at_once:
         ticks = gait.clock.timing.double
-    zmp, weight = scheduled_zmp(gait, robot, parameters), gait.right_weight
-    _begin(gait, support, ticks, zmp, weight, robot, parameters)
+    zmp, weight = scheduled_zmp(gait, robot), gait.right_weight
+    _begin(gait, support, ticks, zmp, weight, robot)
     gait.shift_fixed = not at_once
 
 
 @compiled
 def _begin(
-    gait: Record,
-    support: int,
-    double: int,
-    zmp: Point,
-    right_weight: float,
-    robot: Record,
-    parameters: Record,
+    gait: Record, support: int, double: int, zmp: Point, right_weight: float, robot: Record
 ) -> None:
     gait.stepping, gait.support = True, support
     gait.landed_early = gait.shortened = gait.shift_fixed = False
     gait.tick = 0
     put_shift(gait.clock.shift, 0, double, zmp, right_weight)
-    put_single_support(gait.clock.single, gait.clock.timing.single, parameters)
-    update_phase(gait, parameters)
+    put_single_support(gait.clock.single, gait.clock.timing.single, robot)
+    update_phase(gait, robot)
     gait.swing_height = gait.clock.timing.swing_height
     put(gait.landing, landing_of(support_foot(gait), robot.still))
 
 
 @compiled
-def retime(gait: Record, timing: Record, robot: Record, parameters: Record) -> bool:
+def retime(gait: Record, timing: Record, robot: Record) -> bool:
     """Change the timing as far as the present footstep allows.
 
     A double support ends in the next tick at the earliest, a foot in the air takes at least
@@ -238,15 +231,15 @@ def retime(gait: Record, timing: Record, robot: Record, parameters: Record) -> b
     free = gait.stepping and not gait.shortened
     if free and gait.double:
         if not gait.shift_fixed and timing.double != shift.end:
-            _shift_until(gait, max(timing.double, gait.tick + 1), robot, parameters)
+            _shift_until(gait, max(timing.double, gait.tick + 1), robot)
         if timing.single != single.ticks:
-            put_single_support(single, timing.single, parameters)
+            put_single_support(single, timing.single, robot)
     elif free and timing.single != single.ticks and gait.adjustable:
-        retime_single_support(single, gait.elapsed, timing.single, parameters)
+        retime_single_support(single, gait.elapsed, timing.single, robot)
     now = gait.clock.timing
     now.double, now.single = timing.double, timing.single
     now.swing_height = timing.swing_height
-    update_phase(gait, parameters)
+    update_phase(gait, robot)
     if not free:
         return not gait.stepping
     timed: bool = shift.end == timing.double if gait.double else single.ticks == timing.single
@@ -254,9 +247,7 @@ def retime(gait: Record, timing: Record, robot: Record, parameters: Record) -> b
 
 
 @compiled
-def shorten(
-    gait: Record, feet: Record, ticks: int, landing: Foothold, robot: Record, parameters: Record
-) -> bool:
+def shorten(gait: Record, feet: Record, ticks: int, landing: Foothold, robot: Record) -> bool:
     """Shorten the footstep for a capture step.
 
     Args:
@@ -265,12 +256,11 @@ def shorten(
         ticks: wanted ticks until the end of single support, as far as the foot can be down by then.
         landing: foothold of the swing foot.
         robot: constants.
-        parameters: parameters of the walk.
 
     Returns:
         whether the footstep ends earlier.
     """
-    p, before, elapsed = parameters.gait, gait.ticks_left, gait.elapsed
+    p, before, elapsed = robot.gait, gait.ticks_left, gait.elapsed
     if ticks >= before or gait.shift_fixed or not gait.adjustable:
         return False
     swing_ticks = min_swing_ticks(feet[swing_of(gait)], landing, p.swing_speed)
@@ -281,56 +271,50 @@ def shorten(
         duration = max(swing_ticks, ticks - double)
         if double + duration >= before:
             return False
-        _shift_until(gait, gait.tick + double, robot, parameters)
-        put_single_support(single, duration, parameters)
+        _shift_until(gait, gait.tick + double, robot)
+        put_single_support(single, duration, robot)
     else:
         rest = round((1.0 - gait.swing_phase) * min_single)
         duration = elapsed + max(swing_ticks, ticks_of(p.min_swing_time), rest, ticks)
         if duration >= single.ticks:
             return False
-        retime_single_support(single, elapsed, duration, parameters)
-    update_phase(gait, parameters)
+        retime_single_support(single, elapsed, duration, robot)
+    update_phase(gait, robot)
     gait.shortened = True
     shorter: bool = gait.ticks_left < before
     return shorter
 
 
 @compiled
-def _shift_until(gait: Record, end: int, robot: Record, parameters: Record) -> None:
+def _shift_until(gait: Record, end: int, robot: Record) -> None:
     """Give the present weight shift another end."""
-    zmp = scheduled_zmp(gait, robot, parameters)
+    zmp = scheduled_zmp(gait, robot)
     put_shift(gait.clock.shift, gait.tick, end, zmp, gait.right_weight)
 
 
 @compiled
-def aimed(gait: Record, landing: Foothold, wanted: Foothold, parameters: Record) -> Foothold:
+def aimed(gait: Record, landing: Foothold, wanted: Foothold, robot: Record) -> Foothold:
     """Return a landing moved towards `wanted` by at most one tick's change."""
     if gait.swing_phase == 0.0:
         return wanted
-    p = parameters.gait
+    p = robot.gait
     shift, turn = p.landing_speed * CONTROL_PERIOD, p.landing_turn * CONTROL_PERIOD
     return moved(landing, wanted, shift, turn)
 
 
 @compiled
-def touch_down(gait: Record, feet: Record, parameters: Record) -> None:
+def touch_down(gait: Record, feet: Record, robot: Record) -> None:
     """Stop the swing foot at an early touchdown."""
     swing = swing_of(gait)
     foot = feet[swing]
     gait.landed_early = True
     put(gait.landing, Foothold(swing == 0, foot.x, foot.y, foot.yaw))
-    update_phase(gait, parameters)
+    update_phase(gait, robot)
 
 
 @compiled
 def advance(
-    gait: Record,
-    feet: Record,
-    steps: Record,
-    count: int,
-    moving: bool,
-    robot: Record,
-    parameters: Record,
+    gait: Record, feet: Record, steps: Record, count: int, moving: bool, robot: Record
 ) -> None:
     """Move the feet by one tick and start the next footstep at the end of this one.
 
@@ -341,18 +325,17 @@ def advance(
         count: number of these.
         moving: whether the walk goes on.
         robot: constants.
-        parameters: parameters of the walk.
     """
     gait.tick += 1
-    update_phase(gait, parameters)
+    update_phase(gait, robot)
     single, swing = gait.clock.single, NO_FOOT
     if gait.stepping and not gait.landed_early and single.first < gait.elapsed <= single.last:
         swing = swing_of(gait)
         change = gait.clock.timing.swing_height - gait.swing_height
-        gait.swing_height += clamp(change, parameters.gait.swing_height_rate * CONTROL_PERIOD)
+        gait.swing_height += clamp(change, robot.gait.swing_height_rate * CONTROL_PERIOD)
     move_feet(
         feet,
-        parameters.stabilizer.contact_decay,
+        robot.stabilizer.contact_decay,
         swing,
         foothold(gait.landing),
         single.last - gait.elapsed + 1,
@@ -360,31 +343,25 @@ def advance(
         gait.swing_phase,
     )
     if gait.stepping and gait.ticks_left == 0:
-        _land(gait, feet, steps, count, moving, robot, parameters)
+        _land(gait, feet, steps, count, moving, robot)
 
 
 @compiled
 def _land(
-    gait: Record,
-    feet: Record,
-    steps: Record,
-    count: int,
-    moving: bool,
-    robot: Record,
-    parameters: Record,
+    gait: Record, feet: Record, steps: Record, count: int, moving: bool, robot: Record
 ) -> None:
     support, swing, landing = gait.support, swing_of(gait), foothold(gait.landing)
     put(gait.footholds[swing], landing)
     rest_at(feet[swing], landing)
     gait.completed += 1
-    here = zmp_under(support_foot(gait), robot, parameters)
-    if not moving and is_parallel(support_foot(gait), landing, robot, parameters):
+    here = zmp_under(support_foot(gait), robot)
+    if not moving and is_parallel(support_foot(gait), landing, robot):
         gait.stepping, gait.tick = False, 0
-        put_shift(gait.clock.shift, 0, stop_ticks(parameters), here, float(support))
-        update_phase(gait, parameters)
+        put_shift(gait.clock.shift, 0, stop_ticks(robot), here, float(support))
+        update_phase(gait, robot)
         return
     double = gait.clock.timing.double
-    _begin(gait, swing, double, here, float(support), robot, parameters)
+    _begin(gait, swing, double, here, float(support), robot)
     if count > 1:
         put(gait.landing, foothold(steps[1]))
 
@@ -394,12 +371,7 @@ def _land(
 
 @compiled
 def plan_walk(
-    plan: Record,
-    landing: Foothold,
-    following: Record,
-    moving: bool,
-    robot: Record,
-    parameters: Record,
+    plan: Record, landing: Foothold, following: Record, moving: bool, robot: Record
 ) -> None:
     """Set footholds and ZMP reference of a plan from now on.
 
@@ -409,24 +381,21 @@ def plan_walk(
         following: strides of the footsteps after it.
         moving: whether the walk goes on.
         robot: constants.
-        parameters: parameters of the walk.
     """
     gait, ramps, steps = plan.gait, plan.ramps, plan.steps
     support, swing = support_foot(gait), swing_foot(gait)
     if not gait.stepping:
         left, right = foothold(gait.footholds[0]), foothold(gait.footholds[1])
-        centre = zmp_between(left, right, robot, parameters)
-        zmp = scheduled_zmp(gait, robot, parameters)
+        centre = zmp_between(left, right, robot)
+        zmp = scheduled_zmp(gait, robot)
         set_ramp(ramps[0], max(1, -gait.elapsed), zmp, centre, support, swing)
         plan.ramp_count, plan.step_count = 1, NO_STEPS
         return
     timing, single = gait.clock.timing, gait.clock.single.ticks
-    count, ends = chain_footholds(steps, support, landing, following, moving, robot, parameters)
+    count, ends = chain_footholds(steps, support, landing, following, moving, robot)
     shift, carry, zmp = 0, gait.ticks_left, (0.0, 0.0)
     if gait.double:
-        shift, carry, zmp = -gait.elapsed, single, scheduled_zmp(gait, robot, parameters)
-    ticks = (shift, carry, timing.double, timing.single, stop_ticks(parameters))
+        shift, carry, zmp = -gait.elapsed, single, scheduled_zmp(gait, robot)
+    ticks = (shift, carry, timing.double, timing.single, stop_ticks(robot))
     plan.step_count = count
-    plan.ramp_count = reference_ramps(
-        ramps, swing, support, steps, count, ends, zmp, ticks, robot, parameters
-    )
+    plan.ramp_count = reference_ramps(ramps, swing, support, steps, count, ends, zmp, ticks, robot)

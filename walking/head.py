@@ -9,7 +9,7 @@ from walking.body.robot_model import RobotModel
 from walking.command import HeadTarget
 from walking.parameters import CONTROL_PERIOD, WalkingParameters
 from walking.plane import Array, Point
-from walking.records import JOINT, LIMBS, ROBOT, Record, parameters_record
+from walking.records import JOINT, LIMBS, Record, parameters_record
 
 
 class Head:
@@ -21,8 +21,7 @@ class Head:
     """
 
     def __init__(self, robot: RobotModel, parameters: WalkingParameters) -> None:
-        self._limbs, self._robot = np.zeros(1, LIMBS)[0], np.zeros(1, ROBOT)[0]
-        self._parameters = parameters_record(parameters)[0]
+        self._limbs, self._robot = np.zeros(1, LIMBS)[0], parameters_record(parameters)[0]
         self._joints = np.zeros(robot.ready.size, JOINT)
         self._joints["lower"], self._joints["upper"] = robot.lower, robot.upper
         robot.neck.describe(self._robot.neck)
@@ -30,7 +29,7 @@ class Head:
 
     def advance(self, target: HeadTarget) -> Array:
         """Run one tick; return the setpoints of pan and tilt joint [rad], none if it is fixed."""
-        advance_head(self._limbs, (target.pan, target.tilt), self._robot, self._parameters)
+        advance_head(self._limbs, (target.pan, target.tilt), self._robot)
         return self.joints(*self._limbs.head.tolist())
 
     @property
@@ -51,16 +50,15 @@ class Head:
 
 
 @compiled
-def advance_head(limbs: Record, target: Point, robot: Record, parameters: Record) -> None:
+def advance_head(limbs: Record, target: Point, robot: Record) -> None:
     """Run one tick: time-optimal approach to the target on each axis, without overshoot.
 
     Args:
         limbs: pan and tilt and their rates, changed.
         target: pan and tilt [rad].
         robot: constants.
-        parameters: parameters of the walk.
     """
-    p, neck = parameters.head, robot.neck
+    p, neck = robot.head, robot.neck
     step = p.max_acceleration * CONTROL_PERIOD
     for axis in range(2):
         goal = min(neck.upper[axis], max(neck.lower[axis], target[axis]))

@@ -20,7 +20,7 @@ from walking.parameters import (
 )
 from walking.plane import Array, Frame, Point, Vector, from_frame, norm, rotate, rotate_back
 from walking.published import incline
-from walking.records import WALK, parameters_record
+from walking.records import WALK
 from walking.signals import BodySensors
 from walking.state import Balance, HeadCameraPose, Phase, WalkingState
 from walking.support import depth, polygon
@@ -166,7 +166,6 @@ class BodyObserver:
         self._odometry = odometry
         self._dynamics = robot.dynamics
         self._robots, _ = robot_record(robot, parameters)
-        self._parameters = parameters_record(parameters)
         self._walks = np.zeros(1, WALK)
         self._sensing = self._walks[0].sensing
         self._contacts = FootContacts(robot.mass, parameters.gait)
@@ -196,7 +195,6 @@ class BodyObserver:
             sensors.foot_force,
             *self._robot.feet_chains,
             self._robots,
-            self._parameters,
         )
 
     def update(self, sensors: BodySensors) -> BodyEstimate:

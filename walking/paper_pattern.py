@@ -149,12 +149,7 @@ def forget_target(live: Record) -> None:
 
 @compiled
 def advance_functions(
-    live: Record,
-    pendulum: Record,
-    ramps: Record,
-    region: Region,
-    robot: Record,
-    parameters: Record,
+    live: Record, pendulum: Record, ramps: Record, region: Region, robot: Record
 ) -> None:
     """Advance the pendulum by a tick along the ZMP functions, in double support along the DCM.
 
@@ -164,11 +159,10 @@ def advance_functions(
         ramps: reference.
         region: admissible ZMP.
         robot: constants.
-        parameters: parameters of the walk.
     """
     if not is_single(ramps[0]):
         forget_target(live)
-        gain = parameters.pattern.dcm_gain
+        gain = robot.pattern.dcm_gain
         track_reference(pendulum, robot, gain, ramps, region)
         return
     if not admits_target(live, pendulum, ramps, region, robot):

@@ -119,21 +119,15 @@ def preview_sum(ramps: Record, robot: Record, sums: Record) -> Point:
 
 
 @compiled
-def rejects_infeasible(parameters: Record) -> bool:
+def rejects_infeasible(robot: Record) -> bool:
     """Whether the generator rejects some references."""
-    selective: bool = parameters.pattern.generator >= PAPER
+    selective: bool = robot.pattern.generator >= PAPER
     return selective
 
 
 @compiled
 def is_feasible(
-    plans: Record,
-    knots: Record,
-    which: int,
-    pendulum: Record,
-    region: Region,
-    robot: Record,
-    parameters: Record,
+    plans: Record, knots: Record, which: int, pendulum: Record, region: Region, robot: Record
 ) -> bool:
     """Whether the pendulum can follow a plan with the ZMP inside the soles.
 
@@ -144,9 +138,8 @@ def is_feasible(
         pendulum: present pendulum.
         region: admissible ZMP in this tick.
         robot: constants.
-        parameters: parameters of the walk.
     """
-    pattern, ramps, trial = parameters.pattern, reference_of(plans[which]), plans[BEST].zmp
+    pattern, ramps, trial = robot.pattern, reference_of(plans[which]), plans[BEST].zmp
     if pattern.generator == ROBUST:
         live, margin, rate = plans[LIVE].zmp, pattern.plan_margin, pattern.zmp_rate
         return admits_knots(trial, live, knots[BEST], pendulum, ramps, robot, margin, rate)
@@ -156,12 +149,12 @@ def is_feasible(
 
 
 @compiled
-def remains_feasible(plan: Record, parameters: Record) -> bool:
+def remains_feasible(plan: Record, robot: Record) -> bool:
     """Whether the ZMP plan of a plan stays feasible under its reference."""
     live = plan.zmp
-    if parameters.pattern.generator == ROBUST:
+    if robot.pattern.generator == ROBUST:
         return knots_remain_feasible(live, reference_of(plan))
-    if parameters.pattern.generator == PAPER:
+    if robot.pattern.generator == PAPER:
         reached: bool = live.missed_x == 0.0 and live.missed_y == 0.0
         return reached
     return True
@@ -182,7 +175,6 @@ def advance_pattern(
     pendulum: Record,
     region: Region,
     robot: Record,
-    parameters: Record,
     sums: Record,
 ) -> None:
     """Advance the pendulum by a tick; its ZMP stays in the region.
@@ -194,31 +186,28 @@ def advance_pattern(
         pendulum: changed.
         region: admissible ZMP.
         robot: constants.
-        parameters: parameters of the walk.
         sums: sums of the gains of preview control.
     """
     live, ramps = plans[LIVE].zmp, reference_of(plans[LIVE])
-    generator = parameters.pattern.generator
+    generator = robot.pattern.generator
     if generator == ROBUST:
         trial, tried = plans[BEST].zmp, knots[BEST]
-        advance_knots(
-            live, knots[LIVE], trial, tried, accepted, pendulum, ramps, region, robot, parameters
-        )
+        advance_knots(live, knots[LIVE], trial, tried, accepted, pendulum, ramps, region, robot)
     elif generator == PAPER:
-        advance_functions(live, pendulum, ramps, region, robot, parameters)
+        advance_functions(live, pendulum, ramps, region, robot)
     elif generator == PREVIEW:
         advance_preview(pendulum, ramps, region, robot, sums)
     else:
-        track_reference(pendulum, robot, parameters.pattern.dcm_gain, ramps, region)
+        track_reference(pendulum, robot, robot.pattern.dcm_gain, ramps, region)
 
 
 @compiled
-def planned_dcm(plan: Record, pendulum: Record, robot: Record, parameters: Record) -> Point:
+def planned_dcm(plan: Record, pendulum: Record, robot: Record) -> Point:
     """Return the reference of the DCM for balance feedback [m].
 
     With a weight on the ZMP rate, preview control deviates from the DCM of the footholds.
     """
-    generator = parameters.pattern.generator
+    generator = robot.pattern.generator
     if generator == PAPER:
         return reachable_dcm(plan.zmp, pendulum, robot)
     if generator == DCM or (generator == ROBUST and not plan.zmp.exists):

@@ -39,7 +39,6 @@ def set_posture(
     axes: Array,
     origins: Array,
     robot: Record,
-    parameters: Record,
 ) -> None:
     """Set the planned angles of all joints, and the pelvis.
 
@@ -54,7 +53,6 @@ def set_posture(
         axes: axes of the leg joints in the base frame, set (2, 6, 3).
         origins: origins of the leg joints in the base frame, set (2, 6, 3) [m].
         robot: constants.
-        parameters: parameters of the walk.
     """
     limbs, neck = walk.limbs, robot.neck
     for k in range(angles.size):
@@ -63,7 +61,7 @@ def set_posture(
     for k in range(3):
         limbs.pelvis[k] = pelvis[k]
     airborne = swing_of(gait) if is_airborne(gait) else NO_FOOT
-    level_feet(limbs, airborne, (walk.sensing.roll, walk.sensing.pitch), parameters)
+    level_feet(limbs, airborne, (walk.sensing.roll, walk.sensing.pitch), robot)
     support = limbs.feet[gait.support]
     left = _foot_pose(limbs, 0, support, pelvis, robot.height)
     right = _foot_pose(limbs, 1, support, pelvis, robot.height)
@@ -82,12 +80,12 @@ def set_posture(
     if neck.movable:
         angles[neck.pan_joint], angles[neck.tilt_joint] = head
     if robot.shoulders[0] >= 0:
-        _swing_arms(angles, limbs.feet, pelvis[2], robot, parameters)
+        _swing_arms(angles, limbs.feet, pelvis[2], robot)
 
 
 @compiled
-def _swing_arms(angles: Array, feet: Record, yaw: float, robot: Record, parameters: Record) -> None:
-    arms, signs = parameters.arms, robot.shoulder_signs
+def _swing_arms(angles: Array, feet: Record, yaw: float, robot: Record) -> None:
+    arms, signs = robot.arms, robot.shoulder_signs
     apart, _ = rotate_back(yaw, feet[0].x - feet[1].x, feet[0].y - feet[1].y)
     # Counter-swing, backward positive on the side of the foot ahead.
     swing = clamp(arms.swing_gain * apart, arms.max_swing)
@@ -96,24 +94,24 @@ def _swing_arms(angles: Array, feet: Record, yaw: float, robot: Record, paramete
 
 
 @compiled
-def level_feet(limbs: Record, airborne: int, tilt: Point, parameters: Record) -> None:
+def level_feet(limbs: Record, airborne: int, tilt: Point, robot: Record) -> None:
     """Update the tilts of the feet: of the foot in the air against that of the trunk.
 
     Args:
         limbs: tilts are changed.
         airborne: index of the foot in the air, -1 for none.
         tilt: roll and pitch of the trunk [rad].
-        parameters: parameters of the walk.
+        robot: constants.
     """
     for side in range(2):
         in_air = side == airborne
-        limbs.foot_roll[side] = _levelled(limbs.foot_roll[side], in_air, tilt[0], parameters)
-        limbs.foot_pitch[side] = _levelled(limbs.foot_pitch[side], in_air, tilt[1], parameters)
+        limbs.foot_roll[side] = _levelled(limbs.foot_roll[side], in_air, tilt[0], robot)
+        limbs.foot_pitch[side] = _levelled(limbs.foot_pitch[side], in_air, tilt[1], robot)
 
 
 @compiled
-def _levelled(own: float, in_air: bool, tilt: float, parameters: Record) -> float:
-    p = parameters.stabilizer
+def _levelled(own: float, in_air: bool, tilt: float, robot: Record) -> float:
+    p = robot.stabilizer
     if in_air:
         excess = max(0.0, tilt - p.tilt_dead_zone) + min(0.0, tilt + p.tilt_dead_zone)
         levelled: float = own + p.tilt_pull * (p.tilt_gain * excess - own)

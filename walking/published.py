@@ -196,7 +196,6 @@ def publish(
     plans: Record,
     odometry: Record,
     robots: Record,
-    parameters: Record,
     angles: Array,
     rates: Array,
     gyro: Array,
@@ -212,7 +211,6 @@ def publish(
         plans: plans of the walk (3,).
         odometry: dead reckoning (1,).
         robots: constants (1,).
-        parameters: parameters of the walk (1,).
         angles: measured angles of all joints (n,) [rad].
         rates: measured rates of all joints (n,) [rad/s].
         gyro: angular velocity of the trunk (3,) [rad/s].
@@ -221,7 +219,7 @@ def publish(
     """
     published, walk, robot = records[0], walks[0], robots[0]
     publish_camera(published, walk.sensing, angles, rates, gyro, chain, moving, robot)
-    return publish_plan(published, footsteps, walk, plans[LIVE], odometry[0], robot, parameters[0])
+    return publish_plan(published, footsteps, walk, plans[LIVE], odometry[0], robot)
 
 
 @compiled
@@ -230,10 +228,9 @@ def report(
     walks: Record,
     plans: Record,
     robots: Record,
-    parameters: Record,
 ) -> None:
     """Publish the applied command and the limits that bind, see `publish`."""
-    publish_limits(records[0], walks[0], plans[LIVE], robots[0], parameters[0])
+    publish_limits(records[0], walks[0], plans[LIVE], robots[0])
 
 
 @compiled
@@ -244,7 +241,6 @@ def publish_plan(
     plan: Record,
     odometry: Record,
     robot: Record,
-    parameters: Record,
 ) -> int:
     """Publish all but the camera; return the number of footsteps.
 
@@ -257,7 +253,6 @@ def publish_plan(
         plan: plan in force.
         odometry: dead reckoning.
         robot: constants.
-        parameters: parameters of the walk.
     """
     out, gait, sensing, o = published, plan.gait, walk.sensing, odometry
     out.phase = _phase(gait)
@@ -289,7 +284,7 @@ def publish_plan(
     c, s = cos(o.yaw), sin(o.yaw)
     out.com[0] = o.x + c * sensing.com[0] - s * sensing.com[1]
     out.com[1] = o.y + s * sensing.com[0] + c * sensing.com[1]
-    publish_limits(out, walk, plan, robot, parameters)
+    publish_limits(out, walk, plan, robot)
     _put_foothold(footsteps[0], frame, support_foot(gait))
     if not gait.stepping:
         _put_foothold(footsteps[1], frame, swing_foot(gait))
@@ -301,9 +296,7 @@ def publish_plan(
 
 
 @compiled
-def publish_limits(
-    published: Record, walk: Record, plan: Record, robot: Record, parameters: Record
-) -> None:
+def publish_limits(published: Record, walk: Record, plan: Record, robot: Record) -> None:
     """Publish the applied command and the limits that bind."""
     admission, placing = walk.admission, walk.placing
     bound = walk.steering.bound | walk.bound | placing.bound
@@ -317,7 +310,6 @@ def publish_limits(
         admission.following,
         plan.gait.clock.timing,
         robot,
-        parameters,
     )
     published.bound, published.explicit = bound, walk.applied.explicit
     for k in range(6):

@@ -1,12 +1,12 @@
-"""Records: the state of the walk, its plan, and the constants of robot and parameters.
+"""Records: the state of the walk, its plan, and the constants of robot and walk.
 
 A record is a structure of numbers of fixed size, as in a header of C. Compiled functions read and
 change records in place; an assignment of a record copies it. A function that gets a record from
 another one shares it.
 
-    walk        state of the walk, see `WALK`.
-    robot       constants of the robot, see `ROBOT`.
-    parameters  `walking.parameters.WalkingParameters`, section by section under the same names.
+    walk   state of the walk, see `WALK`.
+    robot  constants of the robot and of its walk, see `ROBOT`; among them all parameters of
+           `walking.parameters.WalkingParameters`, section by section under the same names.
 
 Fields of variable length are arrays next to the record, so the compiled code is the same for every
 robot. A field must not have the name of an attribute of arrays (``base``, ``size``, ``data`` ...),
@@ -77,21 +77,6 @@ def _sections() -> dict[str, np.dtype[Any]]:
     return {name: _section(type(getattr(parameters, name))) for name in names}
 
 
-PARAMETERS = record(**_sections())
-"""`WalkingParameters`."""
-
-
-def parameters_record(parameters: WalkingParameters) -> Record:
-    """Return parameters as an array of one record (1,)."""
-    array = np.zeros(1, PARAMETERS)
-    for name in PARAMETERS.fields or ():
-        section = getattr(parameters, name)
-        for key in PARAMETERS[name].fields or ():
-            value = getattr(section, key)
-            array[name][key] = GENERATORS.index(value) if isinstance(value, str) else value
-    return array
-
-
 # Robot
 
 SOLE = record(centre=float, half_length=float, half_width=float)
@@ -147,7 +132,11 @@ PLACEMENT = record(x=float, y=float, yaw=float)
 STRIDES = record(right=PLACEMENT, left=PLACEMENT)
 """Landing of either foot in the frame of the other."""
 
+SECTIONS = _sections()
+
 ROBOT = record(
+    # Parameters: gait, pattern, estimator, ...
+    **SECTIONS,
     # Pendulum: ω [1/s], cosh and sinh of ω times the control period [1].
     omega=float,
     cosh=float,
@@ -187,6 +176,17 @@ ROBOT = record(
     preview_total=float,
 )
 """Constants of the robot and of its walk."""
+
+
+def parameters_record(parameters: WalkingParameters) -> Record:
+    """Return constants of which only the parameters are set (1,)."""
+    robots = np.zeros(1, ROBOT)
+    for name, section in SECTIONS.items():
+        for key in section.names or ():
+            value = getattr(getattr(parameters, name), key)
+            robots[name][key] = GENERATORS.index(value) if isinstance(value, str) else value
+    return robots
+
 
 TIMING = record(double=int, single=int, swing_height=float)
 """Control ticks in double and single support [1], height of the swing foot at mid-swing [m]."""

@@ -8,9 +8,9 @@ from walking.records import Record
 
 
 @compiled
-def zmp_under(foot: Foothold, robot: Record, parameters: Record) -> Point:
+def zmp_under(foot: Foothold, robot: Record) -> Point:
     """Return the ZMP of single support on a foot [m]."""
-    pattern = parameters.pattern
+    pattern = robot.pattern
     inward = -pattern.zmp_inward if foot.left else pattern.zmp_inward
     return from_frame(
         (foot.x, foot.y, foot.yaw), robot.support.centre + pattern.zmp_forward, inward
@@ -18,10 +18,10 @@ def zmp_under(foot: Foothold, robot: Record, parameters: Record) -> Point:
 
 
 @compiled
-def zmp_between(one: Foothold, other: Foothold, robot: Record, parameters: Record) -> Point:
+def zmp_between(one: Foothold, other: Foothold, robot: Record) -> Point:
     """Return the ZMP of equal loads on two feet [m]."""
-    ax, ay = zmp_under(one, robot, parameters)
-    bx, by = zmp_under(other, robot, parameters)
+    ax, ay = zmp_under(one, robot)
+    bx, by = zmp_under(other, robot)
     return 0.5 * (ax + bx), 0.5 * (ay + by)
 
 
@@ -33,7 +33,6 @@ def chain_footholds(
     following: Record,
     moving: bool,
     robot: Record,
-    parameters: Record,
 ) -> tuple[int, bool]:
     """Set the footholds of a walk, that of the swing foot first.
 
@@ -44,7 +43,6 @@ def chain_footholds(
         following: strides of the footsteps after it.
         moving: whether the walk goes on; if not, it ends as soon as the stance is parallel.
         robot: constants.
-        parameters: parameters of the walk.
 
     Returns:
         number of footholds, and whether the walk ends after the last.
@@ -53,7 +51,7 @@ def chain_footholds(
     number = steps.shape[0]
     for k in range(number):
         put(steps[k], last)
-        if k + 1 < number and not moving and is_parallel(before, last, robot, parameters):
+        if k + 1 < number and not moving and is_parallel(before, last, robot):
             return k + 1, True
         before, last = last, landing_of(last, following)
     return number, False
@@ -70,7 +68,6 @@ def reference_ramps(
     zmp: Point,
     ticks: tuple[int, int, int, int, int],
     robot: Record,
-    parameters: Record,
 ) -> int:
     """Set the ZMP reference of a walk from now on; return the number of its ramps.
 
@@ -86,10 +83,9 @@ def reference_ramps(
             single support after it; ticks of later double and single supports; of the last
             double support.
         robot: constants.
-        parameters: parameters of the walk.
     """
     shift, carry, double, single, stop = ticks
-    px, py = zmp_under(support, robot, parameters)
+    px, py = zmp_under(support, robot)
     row = 0
     if shift > 0:
         set_ramp(ramps[row], shift, zmp, (px, py), unloading, support)
@@ -99,9 +95,9 @@ def reference_ramps(
     before = support
     for k in range(count):
         step = foothold(steps[k])
-        x, y = zmp_under(step, robot, parameters)
+        x, y = zmp_under(step, robot)
         if ends and k == count - 1:
-            bx, by = zmp_under(before, robot, parameters)
+            bx, by = zmp_under(before, robot)
             set_ramp(ramps[row], stop, (px, py), (0.5 * (bx + x), 0.5 * (by + y)), before, step)
             row += 1
         else:

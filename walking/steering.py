@@ -49,15 +49,15 @@ def moves(steering: Record) -> bool:
 
 
 @compiled
-def limited(velocity: Vector, parameters: Record) -> Vector:
+def limited(velocity: Vector, robot: Record) -> Vector:
     """Clip a velocity to the limits of each component and to the ellipsoid of all.
 
     Returns:
         (vx, vy, wz) [m/s, m/s, rad/s]; the direction of the command is kept when the ellipsoid
         binds.
     """
-    limits = parameters.limits
-    vx, vy, wz = _within(velocity, parameters)
+    limits = robot.limits
+    vx, vy, wz = _within(velocity, robot)
     max_vx = limits.vx if vx >= 0.0 else limits.vx_backward
     x, y, turned = vx / max_vx, vy / limits.vy, wz / limits.wz
     size = sqrt(x * x + y * y + turned * turned)
@@ -68,20 +68,20 @@ def limited(velocity: Vector, parameters: Record) -> Vector:
 
 
 @compiled
-def speed_limits(velocity: Vector, parameters: Record) -> int:
+def speed_limits(velocity: Vector, robot: Record) -> int:
     """Return the speed limits that bind on a velocity command."""
-    bound, within = 0, _within(velocity, parameters)
+    bound, within = 0, _within(velocity, robot)
     if within != velocity:
         bound |= SPEED
-    if limited(velocity, parameters) != within:
+    if limited(velocity, robot) != within:
         bound |= COMBINED_SPEED
     return bound
 
 
 @compiled
-def _within(velocity: Vector, parameters: Record) -> Vector:
+def _within(velocity: Vector, robot: Record) -> Vector:
     """Clip every component to its limit."""
-    limits = parameters.limits
+    limits = robot.limits
     return (
         min(limits.vx, max(-limits.vx_backward, velocity[0])),
         clamp(velocity[1], limits.vy),
@@ -94,7 +94,6 @@ def follow_command(
     steering: Record,
     scratch: Record,
     robot: Record,
-    parameters: Record,
     speed_ratio: float,
     settled: bool,
     balanced: bool,
@@ -105,7 +104,6 @@ def follow_command(
         steering: changed.
         scratch: strides, changed.
         robot: constants.
-        parameters: parameters of the walk.
         speed_ratio: ratio of a velocity command to walk at [1].
         settled: whether the robot may start to move.
         balanced: whether the motion may change.
@@ -114,15 +112,15 @@ def follow_command(
     explicit, values = steering.command.explicit, steering.command.values
     velocity = (values[0], values[1], values[2])
     if not balanced:
-        _hold(steering, scratch, robot, parameters)
+        _hold(steering, scratch, robot)
     elif not settled:
         if explicit or velocity != STILL:
             steering.bound |= SETTLING
-        _approach(steering, STILL, parameters)
+        _approach(steering, STILL, robot)
     elif explicit:
-        _follow_state(steering, scratch, robot, parameters)
+        _follow_state(steering, scratch, robot)
     else:
-        _follow_velocity(steering, velocity, scratch, robot, parameters, speed_ratio)
+        _follow_velocity(steering, velocity, scratch, robot, speed_ratio)
 
 
 @compiled
@@ -145,9 +143,7 @@ def use_next_timing(timing: Record, steering: Record, before: Record, stepping: 
 
 
 @compiled
-def wanted_strides(
-    strides: Record, steering: Record, correction: Vector, robot: Record, parameters: Record
-) -> None:
+def wanted_strides(strides: Record, steering: Record, correction: Vector, robot: Record) -> None:
     """Set the wanted strides.
 
     Args:
@@ -156,15 +152,14 @@ def wanted_strides(
         correction: correction of the velocity (vx, vy, wz) [m/s, m/s, rad/s]; command states use
             only wz.
         robot: constants.
-        parameters: parameters of the walk.
     """
     time = duration(steering.timing)
     if steering.state.explicit:
-        command_strides(strides, steering.state.values, correction[2] * time, robot, parameters)
+        command_strides(strides, steering.state.values, correction[2] * time, robot)
     else:
         vx, vy, wz = wanted_velocity(steering)
         velocity = (vx + correction[0], vy + correction[1], wz + correction[2])
-        velocity_strides(strides, velocity, time, robot, parameters)
+        velocity_strides(strides, velocity, time, robot)
 
 
 @compiled
@@ -178,7 +173,6 @@ def report_applied(
     following: Record,
     timing: Record,
     robot: Record,
-    parameters: Record,
 ) -> None:
     """Set the command that the next footsteps follow.
 
@@ -192,7 +186,6 @@ def report_applied(
         following: strides of the plan.
         timing: timing of the footsteps.
         robot: constants.
-        parameters: parameters of the walk.
     """
     applied.explicit = steering.command.explicit
     for k in range(6):
@@ -202,7 +195,7 @@ def report_applied(
     if steering.state.explicit:
         applied.explicit = True
         if not admitted:
-            command_strides(scratch, steering.state.values, 0.0, robot, parameters)
+            command_strides(scratch, steering.state.values, 0.0, robot)
         command = command_of(following if admitted else scratch, timing)
         for k in range(6):
             applied.values[k] = command[k]
@@ -210,14 +203,14 @@ def report_applied(
     applied.explicit = False
     if bound & STRIDE_LIMITS:
         time = duration(timing)
-        velocity_strides(scratch, velocity, time, robot, parameters)
-        velocity = mean_velocity(scratch, time, parameters)
+        velocity_strides(scratch, velocity, time, robot)
+        velocity = mean_velocity(scratch, time, robot)
     for k in range(3):
         applied.values[k] = velocity[k]
 
 
 @compiled
-def _hold(steering: Record, scratch: Record, robot: Record, parameters: Record) -> None:
+def _hold(steering: Record, scratch: Record, robot: Record) -> None:
     """Keep the present motion; balance limits any other command."""
     command, state = steering.command, steering.state
     if command.explicit:
@@ -227,16 +220,16 @@ def _hold(steering: Record, scratch: Record, robot: Record, parameters: Record) 
         if not same:
             steering.bound |= BALANCE
             return
-        steering.bound |= command_strides(scratch, command.values, 0.0, robot, parameters)
-        steering.bound |= command_timing(command.values, parameters)[1]
+        steering.bound |= command_strides(scratch, command.values, 0.0, robot)
+        steering.bound |= command_timing(command.values, robot)[1]
         return
     velocity = (command.values[0], command.values[1], command.values[2])
-    if state.explicit or _differs(steering, limited(velocity, parameters)):
+    if state.explicit or _differs(steering, limited(velocity, robot)):
         steering.bound |= BALANCE
-    steering.bound |= speed_limits(velocity, parameters)
+    steering.bound |= speed_limits(velocity, robot)
     if not state.explicit:
         time, wanted = duration(steering.timing), wanted_velocity(steering)
-        steering.bound |= stride_limits(scratch, wanted, time, robot, parameters)
+        steering.bound |= stride_limits(scratch, wanted, time, robot)
 
 
 @compiled
@@ -254,39 +247,34 @@ def _differs(steering: Record, wanted: Vector) -> bool:
 
 @compiled
 def _follow_velocity(
-    steering: Record,
-    velocity: Vector,
-    scratch: Record,
-    robot: Record,
-    parameters: Record,
-    speed_ratio: float,
+    steering: Record, velocity: Vector, scratch: Record, robot: Record, speed_ratio: float
 ) -> None:
     steering.state.explicit = False
     wanted = velocity
     if speed_ratio < 1.0 and velocity != STILL:
-        vx, vy, wz = limited(velocity, parameters)
+        vx, vy, wz = limited(velocity, robot)
         wanted = (speed_ratio * vx, speed_ratio * vy, speed_ratio * wz)
         steering.bound |= BALANCE
-    if parameters.pattern.generator >= PAPER and velocity == STILL:
+    if robot.pattern.generator >= PAPER and velocity == STILL:
         # These generators limit the change themselves.
         _jump(steering, STILL)
-    limit = _approach(steering, wanted, parameters)
-    steering.bound |= speed_limits(velocity, parameters)
+    limit = _approach(steering, wanted, robot)
+    steering.bound |= speed_limits(velocity, robot)
     now = wanted_velocity(steering)
-    put_timing(steering.timing, cadence(now, parameters))
+    put_timing(steering.timing, cadence(now, robot))
     if _differs(steering, limit):
         steering.bound |= ACCELERATION
     time = duration(steering.timing)
-    steering.bound |= stride_limits(scratch, now, time, robot, parameters)
+    steering.bound |= stride_limits(scratch, now, time, robot)
 
 
 @compiled
-def _follow_state(steering: Record, scratch: Record, robot: Record, parameters: Record) -> None:
+def _follow_state(steering: Record, scratch: Record, robot: Record) -> None:
     command = steering.command.values
     steering.state = steering.command
-    timing, late = command_timing(command, parameters)
+    timing, late = command_timing(command, robot)
     put_timing(steering.timing, timing)
-    steering.bound |= command_strides(scratch, command, 0.0, robot, parameters) | late
+    steering.bound |= command_strides(scratch, command, 0.0, robot) | late
     time = duration(steering.timing)
     # A later velocity command starts from this velocity.
     start = command_of(scratch, steering.timing)
@@ -300,9 +288,9 @@ def _jump(steering: Record, velocity: Vector) -> None:
 
 
 @compiled
-def _approach(steering: Record, velocity: Vector, parameters: Record) -> Vector:
+def _approach(steering: Record, velocity: Vector, robot: Record) -> Vector:
     """Approach a velocity by one tick; return it within the speed limits."""
-    limits, wanted = parameters.limits, limited(velocity, parameters)
+    limits, wanted = robot.limits, limited(velocity, robot)
     braking = CONTROL_PERIOD / limits.braking_time
     acceleration = (
         limits.forward_acceleration * CONTROL_PERIOD,

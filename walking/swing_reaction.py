@@ -135,17 +135,16 @@ def previewed(ticks: int, tick: int, robot: Record) -> Moments:
 
 
 @compiled
-def compensate(limbs: Record, plan: Record, robot: Record, parameters: Record) -> None:
+def compensate(limbs: Record, plan: Record, robot: Record) -> None:
     """Run one tick of the compensation along a plan.
 
     Args:
         limbs: offset of the pelvis and its acceleration, changed.
         plan: plan in force.
         robot: constants.
-        parameters: parameters of the walk.
     """
     w = robot.omega
-    ahead_x, ahead_y, now_x, now_y = _previewed_shift(plan, robot, parameters)
+    ahead_x, ahead_y, now_x, now_y = _previewed_shift(plan, robot)
     gain = 1.0 - exp(-w * CONTROL_PERIOD)
     offset, ahead = limbs.offset, limbs.ahead
     x = offset[0] + gain * (0.5 * (ahead[0] + ahead_x) - offset[0])
@@ -156,9 +155,7 @@ def compensate(limbs: Record, plan: Record, robot: Record, parameters: Record) -
 
 
 @compiled
-def _previewed_shift(
-    plan: Record, robot: Record, parameters: Record
-) -> tuple[float, float, float, float]:
+def _previewed_shift(plan: Record, robot: Record) -> tuple[float, float, float, float]:
     """Return ξ x, y [m] and the present shift of the ZMP x, y [m]; zero while standing."""
     gait, timing, single = plan.gait, plan.gait.clock.timing, plan.gait.clock.single
     ahead_x = ahead_y = now_x = now_y = 0.0
@@ -169,12 +166,12 @@ def _previewed_shift(
         # Retimed in the air: extrapolate back to a swing of constant speed.
         ticks = round(ticks / (1.0 - single.origin))
         begin = -round(gait.swing_phase * ticks)
-    first = round(parameters.gait.swing_start * timing.single)
-    usual = round(parameters.gait.swing_end * timing.single) - first
+    first = round(robot.gait.swing_start * timing.single)
+    usual = round(robot.gait.swing_end * timing.single) - first
     support, origin, landing = support_foot(gait), swing_foot(gait), foothold(gait.landing)
     if not gait.landed_early:
         elapsed = min(ticks, max(0, -begin))
-        zmp = zmp_under(support, robot, parameters)
+        zmp = zmp_under(support, robot)
         lift = gait.swing_height
         moments = previewed(ticks, elapsed, robot)
         dx, dy = _zmp_shift(origin, landing, zmp, lift, moments, robot)
@@ -186,7 +183,7 @@ def _previewed_shift(
     begin = gait.ticks_left + timing.double + first
     whole = previewed(usual, 0, robot)
     for k in range(1, plan.step_count):
-        step, zmp = foothold(plan.steps[k]), zmp_under(landing, robot, parameters)
+        step, zmp = foothold(plan.steps[k]), zmp_under(landing, robot)
         dx, dy = _zmp_shift(support, step, zmp, timing.swing_height, whole, robot)
         decay = _decay(begin, robot)
         ahead_x, ahead_y = ahead_x - decay * dx, ahead_y - decay * dy

@@ -64,7 +64,6 @@ def stand_ready(
     plans: Record,
     stance: Array,
     robots: Record,
-    parameter_records: Record,
 ) -> None:
     """Set the state of a robot that stands in the ready posture.
 
@@ -73,21 +72,20 @@ def stand_ready(
         plans: plans (3,), changed.
         stance: x, y [m] and yaw [rad] of the left and right foot (2, 3).
         robots: constants (1,).
-        parameter_records: parameters of the walk (1,).
     """
-    walk, robot, parameters, live = walks[0], robots[0], parameter_records[0], plans[LIVE]
+    walk, robot, live = walks[0], robots[0], plans[LIVE]
     gait, limbs, pendulum = live.gait, walk.limbs, walk.pendulum
     for side in range(2):
         foot = Foothold(side == 0, stance[side, 0], stance[side, 1], stance[side, 2])
         put(gait.footholds[side], foot)
         rest_at(limbs.feet[side], foot)
-    put_timing(gait.clock.timing, cadence(STILL, parameters))
-    put_timing(walk.steering.timing, cadence(STILL, parameters))
-    stand(gait, robot, parameters)
+    put_timing(gait.clock.timing, cadence(STILL, robot))
+    put_timing(walk.steering.timing, cadence(STILL, robot))
+    stand(gait, robot)
     remember(walk.admission, gait)
     walk.admission.fraction = 1.0
     put(walk.admission.landing, foothold(gait.landing))
-    plan_walk(live, foothold(gait.landing), robot.still, False, robot, parameters)
+    plan_walk(live, foothold(gait.landing), robot.still, False, robot)
     end = live.ramps[0]
     pendulum.x, pendulum.y = pendulum.zmp_x, pendulum.zmp_y = end.bx, end.by
     restart_cycle(walk.corrections)
@@ -107,7 +105,6 @@ def watch(
     feet_chains: Array,
     feet_joints: Indices,
     robots: Record,
-    parameters: Record,
 ) -> bool:
     """Measure the body; return whether the robot is fallen.
 
@@ -121,16 +118,15 @@ def watch(
         feet_chains: see `walking.body.kinematics.feet_poses`.
         feet_joints: joints of these chains.
         robots: constants (1,).
-        parameters: parameters of the walk (1,).
 
     Returns:
         whether the tilt of the trunk is that of a fallen robot.
     """
     walk, legs = walks[0], np.empty((2, 4))
     feet_poses(feet_chains, feet_joints, angles, legs)
-    measure(walk.sensing, legs, com, orientation, gyro, pads, robots[0], parameters[0])
+    measure(walk.sensing, legs, com, orientation, gyro, pads, robots[0])
     walk.ticks += 1
-    return is_fallen(walk, parameters[0])
+    return is_fallen(walk, robots[0])
 
 
 @compiled
@@ -141,7 +137,6 @@ def begin(
     knots: Record,
     joints: Record,
     robots: Record,
-    parameter_records: Record,
     sums: Record,
     legs: Array,
     axes: Array,
@@ -164,7 +159,6 @@ def begin(
         knots: knots of the plans (3, k), changed.
         joints: joints of the robot (n,), changed.
         robots: constants (1,).
-        parameter_records: parameters of the walk (1,).
         sums: sums of the gains of preview control.
         legs: chains of the legs (2, 7, 15).
         axes: axes of the leg joints in the base frame, set (2, 6, 3).
@@ -182,45 +176,45 @@ def begin(
         distance of the pendulum from the support foot if the plan diverged, zero otherwise [m];
         depth of the planned ZMP in the support polygon [m]; limits that bind, as bits.
     """
-    walk, robot, parameters = walks[0], robots[0], parameter_records[0]
+    walk, robot = walks[0], robots[0]
     live, pendulum = plans[LIVE], walk.pendulum
     gait = live.gait
     estimate(walk, odometry[0], gait.right_weight, gait.stepping, robot)
     error = (walk.sensing.dcm_x, walk.sensing.dcm_y)
-    settled = walk.ticks * CONTROL_PERIOD > parameters.gait.settle_time
+    settled = walk.ticks * CONTROL_PERIOD > robot.gait.settle_time
     remember(walk.admission, gait)
-    _follow(walk, gait, command, explicit, error, settled, robot, parameters)
-    _want_strides(walk, gait, odometry[0], robot, parameters)
+    _follow(walk, gait, command, explicit, error, settled, robot)
+    _want_strides(walk, gait, odometry[0], robot)
     if not gait.stepping and settled:
-        _maybe_start(walk, gait, error, robot, parameters)
-    _detect_touchdown(walk, gait, parameters)
-    region = _contact_region(walk, gait, parameters.pattern.sole_margin, robot)
+        _maybe_start(walk, gait, error, robot)
+    _detect_touchdown(walk, gait, robot)
+    region = _contact_region(walk, gait, robot.pattern.sole_margin, robot)
     velocity, moving = wanted_velocity(walk.steering), moves(walk.steering)
-    place_foot(walk, plans, knots, walk.wanted, velocity, error, region, moving, robot, parameters)
-    advance_pendulum(walk, plans, knots, region, robot, parameters, sums)
+    place_foot(walk, plans, knots, walk.wanted, velocity, error, region, moving, robot)
+    advance_pendulum(walk, plans, knots, region, robot, sums)
     distance = _far(walk, gait, robot)
     if distance != 0.0:
         return distance, walk.zmp_depth, 0
     zmp = (pendulum.zmp_x, pendulum.zmp_y)
     walk.limbs.load = _right_load(gait, region, zmp)
-    reachable = _contact_region(walk, gait, parameters.stabilizer.sole_margin, robot)
+    reachable = _contact_region(walk, gait, robot.stabilizer.sole_margin, robot)
     walk.zmp_shift_x, walk.zmp_shift_y = zmp_shift(zmp, error, reachable, robot)
     corners = polygon(robot.support, foothold(walk.unloading), foothold(walk.loading), walk.single)
     walk.zmp_depth = depth(corners, zmp[0], zmp[1])
     feet, moving = walk.limbs.feet, walk.placing.moving
-    advance(gait, feet, live.steps, live.step_count, moving, robot, parameters)
+    advance(gait, feet, live.steps, live.step_count, moving, robot)
     height = gait.clock.timing.swing_height
     if not gait.double and abs(gait.swing_height - height) > SAME_HEIGHT:
         walk.bound |= SWING_HEIGHT
     end_capture(walk, plans)
-    _move_body(walk, live, joints, legs, axes, origins, angles, head, robot, parameters)
+    _move_body(walk, live, joints, legs, axes, origins, angles, head, robot)
     acceleration = walk.limbs.offset_acceleration
     w2 = robot.omega * robot.omega
     moved = (
         w2 * (pendulum.x - zmp[0]) + acceleration[0],
         w2 * (pendulum.y - zmp[1]) + acceleration[1],
     )
-    set_motion(joints, angles, q, v, a, walk.limbs.pelvis[2], moved, parameters)
+    set_motion(joints, angles, q, v, a, walk.limbs.pelvis[2], moved, robot)
     return 0.0, walk.zmp_depth, walk.bound | walk.steering.bound | walk.placing.bound
 
 
@@ -230,7 +224,6 @@ def finish(
     plans: Record,
     joints: Record,
     robots: Record,
-    parameter_records: Record,
     axes: Array,
     origins: Array,
     forces: Array,
@@ -247,7 +240,6 @@ def finish(
         plans: plans (3,).
         joints: joints of the robot (n,), changed.
         robots: constants (1,).
-        parameter_records: parameters of the walk (1,).
         axes: axes of the leg joints in the base frame (2, 6, 3).
         origins: origins of the leg joints in the base frame (2, 6, 3) [m].
         forces: generalised forces of the motion without contact, those of the base first.
@@ -257,19 +249,19 @@ def finish(
         measured: measured angles of all joints (n,) [rad].
         setpoint: set (n,) [rad].
     """
-    walk, robot, parameters = walks[0], robots[0], parameter_records[0]
+    walk, robot = walks[0], robots[0]
     gait = plans[LIVE].gait
     walk.limbs.com[0], walk.limbs.com[1] = com[0], com[1]
     left, right = foothold(gait.footholds[0]), foothold(gait.footholds[1])
-    zmps = (zmp_under(left, robot, parameters), zmp_under(right, robot, parameters))
-    set_offsets(joints, walk, axes, origins, forces, gyro, zmps, robot, parameters)
+    zmps = (zmp_under(left, robot), zmp_under(right, robot))
+    set_offsets(joints, walk, axes, origins, forces, gyro, zmps, robot)
     set_setpoints(joints, angles, measured, setpoint, robot)
 
 
 @compiled
-def is_fallen(walk: Record, parameters: Record) -> bool:
+def is_fallen(walk: Record, robot: Record) -> bool:
     """Whether the tilt of the trunk is that of a fallen robot."""
-    fallen: bool = norm(walk.sensing.roll, walk.sensing.pitch) > parameters.estimator.fall_tilt
+    fallen: bool = norm(walk.sensing.roll, walk.sensing.pitch) > robot.estimator.fall_tilt
     return fallen
 
 
@@ -282,7 +274,6 @@ def _follow(
     error: Point,
     settled: bool,
     robot: Record,
-    parameters: Record,
 ) -> None:
     """Follow the command; give the footsteps their timing."""
     steering, timing = walk.steering, walk.admission.between
@@ -290,17 +281,15 @@ def _follow(
     for k in range(6):
         steering.command.values[k] = command[k]
     off = norm(error[0], error[1])
-    balanced = off < parameters.stabilizer.max_slew_error
-    ratio = speed_ratio(walk.corrections, off, parameters)
-    follow_command(steering, walk.scratch, robot, parameters, ratio, settled, balanced)
+    balanced = off < robot.stabilizer.max_slew_error
+    ratio = speed_ratio(walk.corrections, off, robot)
+    follow_command(steering, walk.scratch, robot, ratio, settled, balanced)
     use_next_timing(timing, steering, gait.clock.timing, gait.stepping)
-    walk.bound = 0 if retime(gait, timing, robot, parameters) else TIMING
+    walk.bound = 0 if retime(gait, timing, robot) else TIMING
 
 
 @compiled
-def _want_strides(
-    walk: Record, gait: Record, odometry: Record, robot: Record, parameters: Record
-) -> None:
+def _want_strides(walk: Record, gait: Record, odometry: Record, robot: Record) -> None:
     """Set the wanted strides, corrected for slip of the feet."""
     corrections, steering, sensing = walk.corrections, walk.steering, walk.sensing
     ahead = walk.limbs.pelvis[2] - odometry.yaw
@@ -312,32 +301,30 @@ def _want_strides(
         # The last footsteps only close the stance.
         reset_speed(corrections)
         discard_offset_cycle(corrections)
-        wanted_strides(walk.wanted, steering, STILL, robot, parameters)
+        wanted_strides(walk.wanted, steering, STILL, robot)
         return
     begins = cycle_begins(corrections, gait.support)
     shift = norm(walk.placing.moved_x, walk.placing.moved_y)
-    disturbed = gait.shortened or shift > parameters.stabilizer.max_steady_shift
+    disturbed = gait.shortened or shift > robot.stabilizer.max_steady_shift
     pressure = (sensing.pressure_x, sensing.pressure_y)
-    correct_offset(corrections, pressure, begins, disturbed, parameters)
+    correct_offset(corrections, pressure, begins, disturbed, robot)
     pose, velocity = (odometry.x, odometry.y, odometry.yaw), wanted_velocity(steering)
-    vx, vy = speed_correction(corrections, pose, velocity, begins, disturbed, parameters)
-    wz = heading_rate(corrections, ahead, begins or disturbed, parameters)
-    wanted_strides(walk.wanted, steering, (vx, vy, wz), robot, parameters)
+    vx, vy = speed_correction(corrections, pose, velocity, begins, disturbed, robot)
+    wz = heading_rate(corrections, ahead, begins or disturbed, robot)
+    wanted_strides(walk.wanted, steering, (vx, vy, wz), robot)
 
 
 @compiled
-def _maybe_start(
-    walk: Record, gait: Record, error: Point, robot: Record, parameters: Record
-) -> None:
+def _maybe_start(walk: Record, gait: Record, error: Point, robot: Record) -> None:
     """Take a first footstep if the command or balance requires it."""
     foot, moving = foothold(gait.footholds[0]), moves(walk.steering)
-    ratio = parameters.stabilizer.step_error_ratio
-    pushed, fallen = exceeds(foot, error, ratio, robot, parameters), is_fallen(walk, parameters)
+    ratio = robot.stabilizer.step_error_ratio
+    pushed, fallen = exceeds(foot, error, ratio, robot), is_fallen(walk, robot)
     if fallen and moving:
         walk.bound |= FALLEN
     if fallen or not (moving or pushed):
         return
-    sideways = tendency(wanted_velocity(walk.steering), parameters)
+    sideways = tendency(wanted_velocity(walk.steering), robot)
     opening_left = sideways > 0.0
     if pushed:
         # Only the foot on the side of the fall can make the capture step.
@@ -347,18 +334,18 @@ def _maybe_start(
     elif sideways == 0.0:
         opening_left = not walk.last_opening_left
     walk.last_opening_left = opening_left
-    start(gait, 1 if opening_left else 0, pushed, robot, parameters)
-    if not retime(gait, walk.steering.timing, robot, parameters):
+    start(gait, 1 if opening_left else 0, pushed, robot)
+    if not retime(gait, walk.steering.timing, robot):
         walk.bound |= TIMING
 
 
 @compiled
-def _detect_touchdown(walk: Record, gait: Record, parameters: Record) -> None:
+def _detect_touchdown(walk: Record, gait: Record, robot: Record) -> None:
     """Stop the swing foot on early touchdown."""
     if gait.stepping and not gait.double and not gait.landed_early:
         phase, force = gait.swing_phase, walk.sensing.feet[swing_of(gait)].load
-        if detects_touchdown(walk.corrections, phase, force, parameters) and phase < 1.0:
-            touch_down(gait, walk.limbs.feet, parameters)
+        if detects_touchdown(walk.corrections, phase, force, robot) and phase < 1.0:
+            touch_down(gait, walk.limbs.feet, robot)
 
 
 @compiled
@@ -398,30 +385,17 @@ def _move_body(
     angles: Array,
     head: Point,
     robot: Record,
-    parameters: Record,
 ) -> None:
     """Move the pelvis with the pendulum, and set the posture."""
     limbs, pendulum = walk.limbs, walk.pendulum
-    advance_head(limbs, head, robot, parameters)
+    advance_head(limbs, head, robot)
     turned = head_joints(limbs.head[0], limbs.head[1], joints, robot)
     before = limbs.pelvis[2]
-    compensate(limbs, live, robot, parameters)
+    compensate(limbs, live, robot)
     offset = walk.corrections.com_offset
     dx, dy = rotate(before, offset[0], offset[1])
     com = (pendulum.x + (limbs.offset[0] + dx), pendulum.y + (limbs.offset[1] + dy))
-    set_posture(
-        angles,
-        walk,
-        live.gait,
-        com,
-        turned,
-        joints,
-        legs,
-        axes,
-        origins,
-        robot,
-        parameters,
-    )
+    set_posture(angles, walk, live.gait, com, turned, joints, legs, axes, origins, robot)
     limbs.turn_rate = (limbs.pelvis[2] - before) / CONTROL_PERIOD
     if not limbs.moved:
         limbs.moved = True

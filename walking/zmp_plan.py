@@ -151,7 +151,6 @@ def advance_knots(
     ramps: Record,
     region: Region,
     robot: Record,
-    parameters: Record,
 ) -> None:
     """Advance the pendulum by a tick along the plan; without a plan, track the DCM.
 
@@ -165,9 +164,8 @@ def advance_knots(
         ramps: reference.
         region: admissible ZMP.
         robot: constants.
-        parameters: parameters of the walk.
     """
-    pattern = parameters.pattern
+    pattern = robot.pattern
     rate = pattern.zmp_rate
     new = accepted or admits_knots(
         trial, live, tried, pendulum, ramps, robot, pattern.plan_margin, rate

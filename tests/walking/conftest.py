@@ -14,7 +14,7 @@ from walking.foothold import Foothold, put
 from walking.footsteps import STILL, cadence, put_timing, velocity_strides
 from walking.gait import stand
 from walking.parameters import CONTROL_PERIOD, PatternParameters, WalkingParameters
-from walking.records import LIVE, PLAN, STRIDES, WALK, Record, parameters_record
+from walking.records import LIVE, PLAN, STRIDES, WALK, Record
 from walking.signals import BodySensors
 from walking.swing import rest_at
 
@@ -114,7 +114,6 @@ class Model(NamedTuple):
     """Constants of a walk, and sums of the gains of preview control."""
 
     robot: Record
-    parameters: Record
     sums: Record
 
 
@@ -125,7 +124,7 @@ def make_model(robot):
     def make(generator="robust", parameters=None):
         parameters = parameters or WalkingParameters(pattern=PatternParameters(generator=generator))
         records, sums = robot_record(robot, parameters)
-        return Model(records[0], parameters_record(parameters)[0], sums)
+        return Model(records[0], sums)
 
     return make
 
@@ -141,8 +140,8 @@ def strides_of(model):
 
     def make(velocity, time=None):
         strides = np.zeros(1, STRIDES)[0]
-        time = time or model.parameters.gait.footstep_time
-        velocity_strides(strides, velocity, time, model.robot, model.parameters)
+        time = time or model.robot.gait.footstep_time
+        velocity_strides(strides, velocity, time, model.robot)
         return strides
 
     return make
@@ -153,7 +152,7 @@ def make_walk(model):
     """State of a walk that stands with parallel feet, and its plans."""
 
     def make(stance=None):
-        half = float(model.parameters.gait.half_stance)
+        half = float(model.robot.gait.half_stance)
         stance = stance or (Foothold(True, 0.0, half, 0.0), Foothold(False, 0.0, -half, 0.0))
         walk = np.zeros(1, WALK)[0]
         plans = np.zeros(3, PLAN)
@@ -162,8 +161,8 @@ def make_walk(model):
             put(gait.footholds[side], foot)
             rest_at(walk.limbs.feet[side], foot)
         for timing in (gait.clock.timing, walk.steering.timing):
-            put_timing(timing, cadence(STILL, model.parameters))
-        stand(gait, model.robot, model.parameters)
+            put_timing(timing, cadence(STILL, model.robot))
+        stand(gait, model.robot)
         walk.admission.clock, walk.admission.landing = gait.clock, gait.landing
         walk.admission.fraction = 1.0
         return walk, plans

@@ -105,14 +105,14 @@ def test_the_ankles_push_the_zmp_beyond_the_error_within_the_sole(model, robot):
 
 def captured(model, error, ticks_left=40, velocity=None, strides_of=None):
     landing = landing_of(LEFT, strides_of(velocity or STILL))
-    arguments = (error, AHEAD, ticks_left, model.robot, model.parameters)
+    arguments = (error, AHEAD, ticks_left, model.robot)
     return capture_step(LEFT, landing, *arguments), landing
 
 
 def test_small_errors_need_no_step_and_larger_ones_grow_from_nothing(model, strides_of):
     zone = STABILIZER.capture_dead_zone
     for error, expected in (((0.005, 0.002), False), ((0.05, 0.0), True), ((0.0, -0.05), True)):
-        assert exceeds(LEFT, error, zone, model.robot, model.parameters) is expected
+        assert exceeds(LEFT, error, zone, model.robot) is expected
     capture, landing = captured(model, (0.005, 0.002), strides_of=strides_of)
     assert capture.landing == pytest.approx(landing)
     assert capture.ticks == 40
@@ -132,7 +132,7 @@ def test_the_capture_step_lands_where_the_error_will_be(model, strides_of):
 
 def test_a_hopeless_error_gives_a_reachable_landing_at_once(model, strides_of):
     capture, _ = captured(model, (1.0, -1.0), strides_of=strides_of)
-    limits, half = model.parameters.limits, model.parameters.gait.half_stance
+    limits, half = model.robot.limits, model.robot.gait.half_stance
     assert abs(capture.landing.x - LEFT.x) <= limits.reach_forward + 1e-9
     assert LEFT.y - capture.landing.y <= 2 * half + limits.reach_side + 1e-9
     assert capture.ticks < 10
@@ -159,31 +159,31 @@ class Walk:
         pendulum.y = pendulum.zmp_y = shift.zmp_y
 
     def steer(self, velocity):
-        walk, robot, parameters = self.walk, self.model.robot, self.model.parameters
+        walk, robot = self.walk, self.model.robot
         walk.steering.command.values[:3] = velocity
-        follow_command(walk.steering, walk.scratch, robot, parameters, 1.0, True, True)
+        follow_command(walk.steering, walk.scratch, robot, 1.0, True, True)
 
     def tick(self, velocity, error=NONE):
         walk, gait, model = self.walk, self.gait, self.model
-        robot, parameters, steering = model.robot, model.parameters, walk.steering
+        robot, steering = model.robot, walk.steering
         remember(walk.admission, gait)
         self.steer(velocity)
         timing = walk.admission.between
         use_next_timing(timing, steering, gait.clock.timing, gait.stepping)
-        retime(gait, timing, robot, parameters)
+        retime(gait, timing, robot)
         if not gait.stepping and moves(steering):
-            start(gait, 0, False, robot, parameters)
-        wanted_strides(walk.wanted, steering, STILL, robot, parameters)
+            start(gait, 0, False, robot)
+        wanted_strides(walk.wanted, steering, STILL, robot)
         loading = support_foot(gait)
         unloading = swing_foot(gait) if gait.double else loading
-        margin = parameters.pattern.sole_margin
+        margin = robot.pattern.sole_margin
         region = support_region(robot.support, unloading, loading, margin)
         wanted, moving = wanted_velocity(steering), moves(steering)
         plans = (walk, self.plans, self.knots)
-        place_foot(*plans, walk.wanted, wanted, error, region, moving, robot, parameters)
+        place_foot(*plans, walk.wanted, wanted, error, region, moving, robot)
         advance_pendulum(*plans, region, *model)
         rest = (self.live.steps, self.live.step_count, self.placing.moving)
-        advance(gait, walk.limbs.feet, *rest, robot, parameters)
+        advance(gait, walk.limbs.feet, *rest, robot)
         end_capture(walk, self.plans)
 
     def to_swing(self, velocity, phase=0.3):
@@ -231,10 +231,10 @@ def test_a_capture_step_follows_the_error_and_reports_balance(
     assert walk.moved[axis] * error[axis] > 0.0
     assert abs(walk.moved[axis]) > abs(error[axis])
     assert walk.placing.bound & BALANCE
-    robot, parameters = walk.model.robot, walk.model.parameters
+    robot = walk.model.robot
     landing = foothold(walk.gait.landing)
-    within = reachable(support_foot(walk.gait), landing, 0.0, 0.0, robot, parameters)
-    assert is_same(within, landing, parameters)
+    within = reachable(support_foot(walk.gait), landing, 0.0, 0.0, robot)
+    assert is_same(within, landing, robot)
 
 
 @pytest.mark.parametrize("generator", GENERATORS)

@@ -21,7 +21,7 @@ from walking.footsteps import (
 )
 from walking.gait import support_foot
 from walking.parameters import CONTROL_PERIOD, WalkingParameters
-from walking.records import STRIDES, parameters_record
+from walking.records import STRIDES
 
 AHEAD = HeadTarget()
 LIMITS = WalkingParameters().limits
@@ -111,13 +111,14 @@ def tilted(sensors, roll, pitch):
 class Observer:
     """Compares the footsteps with the command, without the engine's account of it."""
 
-    def __init__(self, engine, parameters, robot):
+    def __init__(self, engine, parameters, make_model):
         names = ("step_forward", "step_side", "step_turn", "reach_forward", "reach_side")
         limits = replace(parameters.limits, **dict.fromkeys(names, WIDE))
         gait = replace(parameters.gait, foot_clearance=-WIDE)
         self._walk, self._gait = engine._walk, engine._plan.gait
-        self._robot, self._usual = robot, parameters_record(parameters)[0]
-        self._free = parameters_record(replace(parameters, limits=limits, gait=gait))[0]
+        self._usual = make_model(parameters=parameters).robot
+        free = replace(parameters, limits=limits, gait=gait)
+        self._free = make_model(parameters=free).robot
         self._phase, self._stepped = (0, True), False
 
     def obeys(self, command):
@@ -138,7 +139,7 @@ class Observer:
         """Whether the footsteps to come are those of the command."""
         timing, wanted = self._gait.clock.timing, np.zeros(1, STRIDES)[0]
         if isinstance(command, CommandState):
-            command_strides(wanted, np.array(astuple(command)), 0.0, self._robot, self._free)
+            command_strides(wanted, np.array(astuple(command)), 0.0, self._free)
             timely = (
                 abs(timing.double * CONTROL_PERIOD - command.double_support) < HALF_TICK
                 and abs(timing.single * CONTROL_PERIOD - command.single_support) < HALF_TICK
@@ -146,7 +147,7 @@ class Observer:
             )
         else:
             time, velocity = duration(timing), command.velocity
-            velocity_strides(wanted, velocity, time, self._robot, self._free)
+            velocity_strides(wanted, velocity, time, self._free)
             usual = cadence(velocity, self._usual)
             # A stop may be faster than the usual cadence, not slower.
             faster = time < (usual[0] + usual[1]) * CONTROL_PERIOD
@@ -173,7 +174,7 @@ class Observer:
 @pytest.mark.parametrize("generator", ["dcm", "robust"])
 @pytest.mark.parametrize("every", [(0.005, 0.1), (0.2, 2.5)])
 def test_limited_is_reported_if_and_only_if_the_footsteps_differ_from_the_command(
-    robot, model, ideal_body, generator, every
+    robot, make_model, ideal_body, generator, every
 ):
     usual = WalkingParameters()
     parameters = replace(
@@ -182,7 +183,7 @@ def test_limited_is_reported_if_and_only_if_the_footsteps_differ_from_the_comman
         stabilizer=replace(usual.stabilizer, heading_gain=0.0, speed_gain=0.0),
     )
     engine = WalkingEngine(robot, parameters)
-    observer = Observer(engine, parameters, model.robot)
+    observer = Observer(engine, parameters, make_model)
     rng = np.random.default_rng(11)
     reported, wrong, obeyed = Counter(), [], 0
     script, tilt = commands(rng, every), (0.0, 0.0)

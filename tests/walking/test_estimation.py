@@ -173,7 +173,7 @@ class Body:
         orientation = s.orientation if orientation is None else orientation
         pads = s.foot_force if pads is None else pads
         self.sensing.started = False
-        rest = (s.gyro, pads, model.robot, model.parameters)
+        rest = (s.gyro, pads, model.robot)
         measure(self.sensing, self.legs, self.com, orientation, *rest)
         return self.sensing
 

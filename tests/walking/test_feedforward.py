@@ -17,7 +17,7 @@ from walking.feedforward import (
     support_torque,
 )
 from walking.parameters import CONTROL_PERIOD, StabilizerParameters, WalkingParameters
-from walking.records import WALK, parameters_record
+from walking.records import WALK
 
 PAN = 12
 SOLES = ((0.01, 0.042), (0.01, -0.042))
@@ -27,11 +27,11 @@ NONE = (0.0, 0.0)
 class Feed:
     """Feed-forward of a robot with changed parameters."""
 
-    def __init__(self, robot, model, **changes):
+    def __init__(self, robot, make_model, **changes):
         stabilizer = replace(StabilizerParameters(), **changes)
         parameters = replace(WalkingParameters(), stabilizer=stabilizer)
-        self.robot, self.constants = robot.with_own_buffers(), model.robot
-        self.parameters = parameters_record(parameters)[0]
+        self.robot = robot.with_own_buffers()
+        self.constants = make_model(parameters=parameters).robot
         self.joints = joint_records(robot, parameters)
         self.joints["angle"] = robot.ready
         legs = zip(robot.legs, (LEFT_LEG, RIGHT_LEG), strict=True)
@@ -53,17 +53,17 @@ class Feed:
         angles = self.robot.ready if angles is None else angles
         walk, dynamics = self.walk, self.robot.dynamics
         motion = (dynamics.q, dynamics.v, dynamics.a)
-        set_motion(self.joints, angles, *motion, pelvis[2], acceleration, self.parameters)
+        set_motion(self.joints, angles, *motion, pelvis[2], acceleration, self.constants)
         walk.limbs.pelvis, walk.limbs.load = pelvis, right_load
         walk.zmp_shift_x, walk.zmp_shift_y = shift
-        rest = (dynamics.forces(), np.array(gyro), soles, self.constants, self.parameters)
+        rest = (dynamics.forces(), np.array(gyro), soles, self.constants)
         set_offsets(self.joints, walk, *self.legs, *rest)
         return self.joints["offset"].copy()
 
 
 @pytest.fixture
-def feed(robot, model):
-    return lambda **changes: Feed(robot, model, **changes)
+def feed(robot, make_model):
+    return lambda **changes: Feed(robot, make_model, **changes)
 
 
 def test_rates_are_quotients_of_differences(feed, robot):
@@ -142,7 +142,7 @@ def test_the_ankles_share_the_shift_and_damp_the_gyro(feed):
     ("axis", "shift", "sign"), [((0, 1, 0), (0.01, 0.0), 1), ((1, 0, 0), (0.0, 0.01), -1)]
 )
 def test_an_ankle_shifts_the_zmp_by_its_compliance(model, axis, shift, sign):
-    rest = (np.zeros(3), 0.02, model.robot, model.parameters)
+    rest = (np.zeros(3), 0.02, model.robot)
     offset = ankle_offset(np.array(axis, float), shift, *rest)
     assert offset == pytest.approx(sign * model.robot.weight * 0.02 * 0.01)
 

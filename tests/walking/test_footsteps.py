@@ -50,7 +50,7 @@ def time_of(timing):
 
 def limits_of(model, velocity, time):
     scratch = np.zeros(1, STRIDES)[0]
-    return stride_limits(scratch, velocity, time, model.robot, model.parameters)
+    return stride_limits(scratch, velocity, time, model.robot)
 
 
 @given(velocities, st.floats(-pi, pi))
@@ -66,7 +66,7 @@ def test_every_corner_of_a_landing_clears_the_support_foot(
     robot, model, strides_of, velocity, dx, dy
 ):
     landing = landing_of(LEFT, strides_of(velocity))
-    shifted = reachable(LEFT, landing, dx, dy, model.robot, model.parameters)
+    shifted = reachable(LEFT, landing, dx, dy, model.robot)
     _, y, yaw = seen_from(LEFT, shifted)
     sole = robot.sole
     for u in (sole.centre - sole.half_length, sole.centre + sole.half_length):
@@ -146,7 +146,7 @@ def test_the_shortest_footstep_has_a_tick_of_either_support(time, fraction):
 def test_strides_and_timing_are_read_back_as_the_command_state(model, forward, direction):
     command = np.array(astuple(CommandState(0.3, 0.1, forward, 0.13, direction, 0.02)))
     strides, timing = np.zeros(1, STRIDES)[0], np.zeros(1, TIMING)[0]
-    assert command_strides(strides, command, 0.0, model.robot, model.parameters) == 0
+    assert command_strides(strides, command, 0.0, model.robot) == 0
     ticks, late = command_timing(command, PARAMETERS)
     put_timing(timing, ticks)
     assert late == 0

@@ -45,7 +45,7 @@ class Walk:
         self.gait, self.feet = self.plan.gait, self.walk.limbs.feet
 
     def start(self, support=0):
-        start(self.gait, support, False, self.model.robot, self.model.parameters)
+        start(self.gait, support, False, self.model.robot)
         return self
 
     def tick(self, velocity=STILL, *, strides=None, moving=True):
@@ -53,18 +53,10 @@ class Walk:
         strides = self.strides_of(velocity) if strides is None else strides
         if gait.adjustable:
             wanted = landing_of(support_foot(gait), strides)
-            put(gait.landing, aimed(gait, self.landing, wanted, model.parameters))
-        plan_walk(self.plan, self.landing, strides, moving, model.robot, model.parameters)
+            put(gait.landing, aimed(gait, self.landing, wanted, model.robot))
+        plan_walk(self.plan, self.landing, strides, moving, model.robot)
         ramps = self.plan.ramps[: self.plan.ramp_count].copy()
-        advance(
-            gait,
-            self.feet,
-            self.plan.steps,
-            self.plan.step_count,
-            moving,
-            model.robot,
-            model.parameters,
-        )
+        advance(gait, self.feet, self.plan.steps, self.plan.step_count, moving, model.robot)
         return ramps
 
     def swing_to(self, phase, velocity=FORWARD):
@@ -75,12 +67,10 @@ class Walk:
     def retime(self, double, single, height=0.025):
         timing = np.zeros(1, TIMING)[0]
         put_timing(timing, (double, single, height))
-        return retime(self.gait, timing, self.model.robot, self.model.parameters)
+        return retime(self.gait, timing, self.model.robot)
 
     def shorten(self, ticks, landing):
-        return shorten(
-            self.gait, self.feet, ticks, landing, self.model.robot, self.model.parameters
-        )
+        return shorten(self.gait, self.feet, ticks, landing, self.model.robot)
 
     @property
     def landing(self):
@@ -180,7 +170,7 @@ def test_the_landing_may_change_in_the_air_until_it_is_frozen(walk):
 def test_early_contact_leaves_the_foot_where_it_is(walk):
     walk.start().swing_to(0.7)
     x, height = float(walk.feet[1].x), float(walk.feet[1].height)
-    touch_down(walk.gait, walk.feet, walk.model.parameters)
+    touch_down(walk.gait, walk.feet, walk.model.robot)
     while walk.gait.completed == 0:
         walk.tick(FORWARD)
     assert walk.gait.footholds[1].x == pytest.approx(x)
@@ -201,7 +191,7 @@ def test_a_shortened_footstep_lands_in_time_and_the_next_has_the_usual_time(walk
         swing, landing = swing_of(gait), walk.landing
         walk.tick(FORWARD)
         lift.append(float(foot.height))
-        retime(gait, gait.clock.timing, walk.model.robot, walk.model.parameters)
+        retime(gait, gait.clock.timing, walk.model.robot)
     assert len(lift) == left
     assert lift[-1] == pytest.approx(0.0, abs=1e-9)
     assert foothold(gait.footholds[swing]) == landing
@@ -251,10 +241,10 @@ def test_a_double_support_under_way_changes_its_length(walk):
         walk.tick()
     for _ in range(5):
         walk.tick()
-    weight, zmp = gait.right_weight, scheduled_zmp(gait, model.robot, model.parameters)
+    weight, zmp = gait.right_weight, scheduled_zmp(gait, model.robot)
     assert walk.retime(30, 54)
     assert gait.right_weight == pytest.approx(weight)
-    assert scheduled_zmp(gait, model.robot, model.parameters) == pytest.approx(zmp)
+    assert scheduled_zmp(gait, model.robot) == pytest.approx(zmp)
     for _ in range(25):
         assert gait.double
         walk.tick()
@@ -269,16 +259,16 @@ def stop(walk, velocity, stop_at):
         steering.command.values[:3] = velocity if tick < stop_at else STILL
         if tick == stop_at:
             completed = int(walk.gait.completed)
-        scratch, robot, parameters = walk.walk.scratch, model.robot, model.parameters
-        follow_command(steering, scratch, robot, parameters, 1.0, True, True)
+        scratch, robot = walk.walk.scratch, model.robot
+        follow_command(steering, scratch, robot, 1.0, True, True)
         use_next_timing(timing, steering, walk.gait.clock.timing, walk.gait.stepping)
-        retime(walk.gait, timing, robot, parameters)
-        wanted_strides(walk.walk.wanted, steering, STILL, robot, parameters)
+        retime(walk.gait, timing, robot)
+        wanted_strides(walk.walk.wanted, steering, STILL, robot)
         walk.tick(strides=walk.walk.wanted, moving=moves(steering))
         if tick >= stop_at and not walk.gait.stepping:
             break
     left, right = (foothold(foot) for foot in walk.gait.footholds)
-    assert is_parallel(left, right, model.robot, model.parameters)
+    assert is_parallel(left, right, model.robot)
     return walk.gait.completed - completed
 
 

@@ -10,21 +10,27 @@ from hypothesis import strategies as st
 from walking.command import HeadTarget
 from walking.head import Head, advance_head
 from walking.parameters import CONTROL_PERIOD, HeadParameters, WalkingParameters
-from walking.records import LIMBS, parameters_record
+from walking.records import LIMBS
 
 HEAD = HeadParameters(max_rate=6.0, max_acceleration=60.0)
 PARAMETERS = replace(WalkingParameters(), head=HEAD)
 
 
+@pytest.fixture(scope="module")
+def head(make_model):
+    """Constants of a robot with a fast head."""
+    return make_model(parameters=PARAMETERS).robot
+
+
 @pytest.fixture
-def follow(model):
+def follow(head):
     """Pan and tilt tick by tick of a head that starts straight."""
 
     def run(targets):
-        limbs, parameters = np.zeros(1, LIMBS)[0], parameters_record(PARAMETERS)[0]
+        limbs = np.zeros(1, LIMBS)[0]
         path = [limbs.head.copy()]
         for target in targets:
-            advance_head(limbs, target, model.robot, parameters)
+            advance_head(limbs, target, head)
             path.append(limbs.head.copy())
         return np.array(path)
 
@@ -38,12 +44,12 @@ def follow(model):
         max_size=8,
     )
 )
-def test_limits_hold_for_any_targets(robot, model, moves):
-    limbs, parameters = np.zeros(1, LIMBS)[0], parameters_record(PARAMETERS)[0]
+def test_limits_hold_for_any_targets(robot, head, moves):
+    limbs = np.zeros(1, LIMBS)[0]
     path = [np.zeros(2)]
     for pan, tilt, ticks in moves:
         for _ in range(ticks):
-            advance_head(limbs, (pan, tilt), model.robot, parameters)
+            advance_head(limbs, (pan, tilt), head)
             path.append(limbs.head.copy())
     rates = np.diff(path, axis=0) / CONTROL_PERIOD
     changes = np.diff(np.vstack([np.zeros(2), rates]), axis=0) / CONTROL_PERIOD

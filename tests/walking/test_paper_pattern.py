@@ -85,8 +85,7 @@ class Paper:
         robot, p = self.model.robot, self.pendulum
         trial = self.plan.copy()
         admitted = admits_target(trial, p, ramps, self.region, robot)
-        rest = (self.region, robot, self.model.parameters)
-        advance_functions(self.plan, p, ramps, *rest)
+        advance_functions(self.plan, p, ramps, self.region, robot)
         zmp = (float(p.zmp_x), float(p.zmp_y))
         assert clip(self.region, *zmp) == pytest.approx(zmp, abs=1e-12)
         return admitted, *zmp

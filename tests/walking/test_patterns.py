@@ -32,7 +32,7 @@ class Tracker:
     def advance(self, ramps):
         live, model = self.plans[LIVE], self.model
         live.ramps[: len(ramps)], live.ramp_count = ramps, len(ramps)
-        rest = (False, self.pendulum, self.region, model.robot, model.parameters, model.sums)
+        rest = (False, self.pendulum, self.region, model.robot, model.sums)
         advance_pattern(self.plans, self.knots, *rest)
         zmp = (self.pendulum.zmp_x, self.pendulum.zmp_y)
         assert clip(self.region, *zmp) == zmp
@@ -41,7 +41,7 @@ class Tracker:
 @pytest.mark.parametrize("name", TRACKING)
 def test_a_displaced_pendulum_comes_to_rest_over_the_reference(make_model, name):
     tracker = Tracker(make_model(name), 0.02, 0.01, 0.05)
-    assert not rejects_infeasible(tracker.model.parameters)
+    assert not rejects_infeasible(tracker.model.robot)
     ramps = np.zeros(1, RAMP)
     set_ramp(ramps[0], 1, (0.01, 0.0), (0.01, 0.0), RIGHT, LEFT)
     for _ in range(400):
@@ -81,9 +81,9 @@ class Admission:
         self.knots = np.zeros((3, 200), KNOT)
         self.live = self.plans[LIVE]
         self.gait = self.live.gait
-        start(self.gait, 0, True, model.robot, model.parameters)
+        start(self.gait, 0, True, model.robot)
         self.gait.tick = self.gait.clock.shift.end + 44
-        update_phase(self.gait, model.parameters)
+        update_phase(self.gait, model.robot)
         self.region = support_region(model.robot.support, LEFT, LEFT, 0.005)
 
     def on_reference(self, strides):
@@ -97,13 +97,13 @@ class Admission:
     def admit(self, strides, *, moving=True):
         admission = self.walk.admission
         remember(admission, self.gait)
-        rest = (self.walk.pendulum, self.region, strides, moving, False, *self.model[:2])
+        rest = (self.walk.pendulum, self.region, strides, moving, False, self.model.robot)
         self.accepted = admit(admission, self.plans, self.knots, *rest)
         return admission
 
     def feasible(self):
         """Whether the plan in force is feasible by itself."""
-        rest = (LIVE, self.walk.pendulum, self.region, *self.model[:2])
+        rest = (LIVE, self.walk.pendulum, self.region, self.model.robot)
         return is_feasible(self.plans.copy(), self.knots.copy(), *rest)
 
 
@@ -156,7 +156,7 @@ def test_a_plan_that_is_tried_changes_nothing_in_force(admission, strides_of):
     admission.on_reference(slow)
     admission.admit(slow)
     gait = admission.gait.copy()
-    update_phase(gait, admission.model.parameters)
+    update_phase(gait, admission.model.robot)
     assert str(gait) == str(admission.gait)
     admission.admit(strides_of(STILL))
     assert admission.gait.clock.shift.item() == gait.clock.shift.item()

@@ -72,9 +72,9 @@ def published(model, strides_of, make_walk):
     """State of a walk in its first double support, odometry at a pose."""
     walk, plans = make_walk()
     plan = plans[LIVE]
-    start(plan.gait, 0, False, model.robot, model.parameters)
+    start(plan.gait, 0, False, model.robot)
     landing, strides = foothold(plan.gait.landing), strides_of((0.2, 0.0, 0.3))
-    plan_walk(plan, landing, strides, True, model.robot, model.parameters)
+    plan_walk(plan, landing, strides, True, model.robot)
     p, sensing, placing = walk.pendulum, walk.sensing, walk.placing
     p.x, p.y, p.vx, p.vy, p.zmp_x, p.zmp_y = 0.01, 0.005, 0.1, -0.2, 0.02, 0.01
     set_body(sensing)
@@ -86,7 +86,7 @@ def published(model, strides_of, make_walk):
     def state(x=0.0, y=0.0, yaw=0.0):
         odometry = np.zeros(1, ODOMETRY)[0]
         odometry.x, odometry.y, odometry.yaw = x, y, yaw
-        published, rest = publication.records[0], (odometry, model.robot, model.parameters)
+        published, rest = publication.records[0], (odometry, model.robot)
         count = publish_plan(published, publication.footsteps, walk, plan, *rest)
         return publication.state(count, VelocityCommand(0.2), fallen=False)
 

@@ -9,7 +9,7 @@ from compilation.value import comparable_value, value
 from walking import records
 from walking.foothold import Foothold
 from walking.parameters import WalkingParameters
-from walking.records import FOOTHOLD, GENERATORS, PLAN, WALK, parameters_record, record
+from walking.records import FOOTHOLD, GENERATORS, PLAN, SECTIONS, WALK, parameters_record, record
 
 
 def test_a_field_with_the_name_of_an_attribute_of_arrays_is_refused():
@@ -42,7 +42,7 @@ def test_an_assigned_record_is_a_copy_and_a_read_one_is_shared():
 def test_parameters_have_their_names_and_values():
     parameters = WalkingParameters()
     values = parameters_record(parameters)[0]
-    for section in values.dtype.names:
+    for section in SECTIONS:
         for name in values[section].dtype.names:
             expected = getattr(getattr(parameters, section), name)
             found = values[section][name]

@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 from walking.foothold import Foothold, foothold, put
 from walking.footsteps import STILL, is_parallel, landing_of
 from walking.parameters import PatternParameters, WalkingParameters
-from walking.records import FOOTHOLD, RAMP, parameters_record
+from walking.records import FOOTHOLD, RAMP
 from walking.reference import (
     chain_footholds,
     is_single,
@@ -31,24 +31,22 @@ def test_each_foothold_is_the_stride_of_the_one_before(model, strides_of, seed, 
     velocity = tuple((rng.uniform(-1.0, 1.0, 3) * (0.4, 0.15, 1.5)).tolist())
     strides, steps = strides_of(STILL if seed % 3 == 0 else velocity), np.zeros(4, FOOTHOLD)
     landing = landing_of(support, strides)
-    count, ends = chain_footholds(
-        steps, support, landing, strides, moving, model.robot, model.parameters
-    )
+    count, ends = chain_footholds(steps, support, landing, strides, moving, model.robot)
     feet = [support, *map(foothold, steps[:count])]
     assert feet[1] == landing
     for before, after in pairwise(feet[1:]):
         assert after == landing_of(before, strides)
     assert ends == (not moving and count < 4)
     if ends:
-        assert is_parallel(*feet[-2:], model.robot, model.parameters)
+        assert is_parallel(*feet[-2:], model.robot)
 
 
-def test_the_zmp_turns_with_the_foot_and_is_ahead_of_the_ankle_and_inward(robot, model):
+def test_the_zmp_turns_with_the_foot_and_is_ahead_of_the_ankle_and_inward(robot, make_model):
     pattern = PatternParameters(zmp_forward=0.004, zmp_inward=0.003)
-    parameters = parameters_record(WalkingParameters(pattern=pattern))[0]
-    x, y = zmp_under(Foothold(True, 0.0, 0.0, 0.0), model.robot, parameters)
+    model = make_model(parameters=WalkingParameters(pattern=pattern))
+    x, y = zmp_under(Foothold(True, 0.0, 0.0, 0.0), model.robot)
     assert (x, y) == pytest.approx((robot.support.centre + 0.004, -0.003))
-    turned = zmp_under(Foothold(True, 1.0, 2.0, 0.5 * np.pi), model.robot, parameters)
+    turned = zmp_under(Foothold(True, 1.0, 2.0, 0.5 * np.pi), model.robot)
     assert turned == pytest.approx((1.0 - y, 2.0 + x))
 
 
@@ -56,8 +54,8 @@ def reference(model, steps, *, ends, zmp=(0.0, 0.0), left=(0, 30)):
     records, ramps = np.zeros(4, FOOTHOLD), np.zeros(10, RAMP)
     for record, step in zip(records, steps, strict=False):
         put(record, step)
-    ticks, robot = (*left, DOUBLE, SINGLE, STOP), model.robot
-    rest = (records, len(steps), ends, zmp, ticks, robot, model.parameters)
+    ticks = (*left, DOUBLE, SINGLE, STOP)
+    rest = (records, len(steps), ends, zmp, ticks, model.robot)
     return ramps[: reference_ramps(ramps, RIGHT, LEFT, *rest)]
 
 
@@ -65,12 +63,12 @@ def reference(model, steps, *, ends, zmp=(0.0, 0.0), left=(0, 30)):
 @pytest.mark.parametrize("left", [(0, 30), (5, 54)])
 def test_it_goes_from_foot_to_foot_without_jumps(model, ends, left):
     ramps = reference(model, STEPS, ends=ends, zmp=(0.01, 0.02), left=left)
-    under = zmp_under(LEFT, model.robot, model.parameters)
+    under = zmp_under(LEFT, model.robot)
     assert (ramps[0].ax, ramps[0].ay) == ((0.01, 0.02) if left[0] else under)
     assert all((a.bx, a.by) == (b.ax, b.ay) for a, b in pairwise(ramps))
-    end = zmp_under(STEPS[-1], model.robot, model.parameters)
+    end = zmp_under(STEPS[-1], model.robot)
     if ends:
-        end = zmp_between(*STEPS[1:], model.robot, model.parameters)
+        end = zmp_between(*STEPS[1:], model.robot)
     assert (ramps[-1].bx, ramps[-1].by) == end
     rest = 2 * (DOUBLE + SINGLE) + STOP if ends else 3 * (DOUBLE + SINGLE)
     assert ramps["ticks"].sum() == sum(left) + rest

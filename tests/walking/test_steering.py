@@ -34,15 +34,13 @@ class Steering:
     def __init__(self, model):
         self.model, self.scratch = model, np.zeros(1, STRIDES)[0]
         self.record = np.zeros(1, STEERING)[0]
-        put_timing(self.record.timing, cadence(STILL, model.parameters))
+        put_timing(self.record.timing, cadence(STILL, model.robot))
 
     def follow(self, velocity, *, ticks=1, fraction=1.0, balanced=True):
         self.record.command.values[:3] = velocity
         model = self.model
         for _ in range(ticks):
-            follow_command(
-                self.record, self.scratch, model.robot, model.parameters, fraction, True, balanced
-            )
+            follow_command(self.record, self.scratch, model.robot, fraction, True, balanced)
 
     @property
     def velocity(self):
@@ -86,10 +84,10 @@ def test_a_command_within_the_limits_is_followed_exactly(steer, vx, vy, wz, gene
     assert steering.velocity == (vx, vy, wz)
     assert not steering.bound & ~STRIDE_LIMITS
     model, strides = steering.model, np.zeros(1, STRIDES)[0]
-    wanted_strides(strides, steering.record, STILL, model.robot, model.parameters)
+    wanted_strides(strides, steering.record, STILL, model.robot)
     if not steering.bound:
         time = duration(steering.record.timing)
-        made = mean_velocity(strides, time, model.parameters)
+        made = mean_velocity(strides, time, model.robot)
         assert made == pytest.approx((vx, vy, wz), abs=1e-9)
 
 
@@ -114,7 +112,6 @@ def test_a_command_is_reported_as_limited_if_and_only_if_it_is(steer, walk, gene
                 steering.scratch,
                 record.timing,
                 model.robot,
-                model.parameters,
             )
             if not steering.bound & STRIDE_LIMITS:
                 assert tuple(applied.values[:3]) == pytest.approx(steering.velocity, abs=1e-9)

@@ -53,7 +53,7 @@ def track(model):
     def run(stride, count=600, **walk):
         limbs, rows = np.zeros(1, LIMBS)[0], []
         for k in range(count):
-            compensate(limbs, plan_at(k, stride, **walk), model.robot, model.parameters)
+            compensate(limbs, plan_at(k, stride, **walk), model.robot)
             rows.append((*limbs.offset, *limbs.offset_acceleration))
         return np.array(rows)
 
@@ -66,7 +66,7 @@ def reaction_of(model, k, stride):
     u = (k % STEP - DOUBLE - FIRST) / TICKS
     if not 0.0 <= u <= 1.0:
         return np.zeros(2)
-    zmp = np.array(zmp_under(foothold(n, stride), robot, model.parameters))
+    zmp = np.array(zmp_under(foothold(n, stride), robot))
     T = TICKS * CONTROL_PERIOD
     moved = np.polynomial.Polynomial([0, 0, 0, 10, -15, 6])
     height = 0.025 * np.polynomial.Polynomial([0, 4, -4]) ** 3
@@ -110,9 +110,9 @@ def test_offsets_stay_small_and_mirror(track):
 def test_standing_the_pelvis_comes_back(model):
     limbs, standing = np.zeros(1, LIMBS)[0], np.zeros(1, PLAN)[0]
     for k in range(200):
-        compensate(limbs, plan_at(k, 0.07), model.robot, model.parameters)
+        compensate(limbs, plan_at(k, 0.07), model.robot)
     for _ in range(400):
-        compensate(limbs, standing, model.robot, model.parameters)
+        compensate(limbs, standing, model.robot)
     assert np.abs(limbs.offset).max() < 1e-6
 
 

@@ -262,7 +262,7 @@ class Robust:
 
     def admits(self, stride, left):
         live, trial = self.plans
-        pattern, ramps = self.model.parameters.pattern, straight(stride, left)
+        pattern, ramps = self.model.robot.pattern, straight(stride, left)
         margin, rate = pattern.plan_margin, pattern.zmp_rate
         rest = (self.pendulum, ramps, self.model.robot, margin, rate)
         return admits_knots(trial, live, self.knots[1], *rest)
@@ -271,7 +271,7 @@ class Robust:
         """Whether the reference is admitted, and the ZMP."""
         live, trial = self.plans
         accepted, ramps = self.admits(stride, left), straight(stride, left)
-        rest = (self.pendulum, ramps, self.region, self.model.robot, self.model.parameters)
+        rest = (self.pendulum, ramps, self.region, self.model.robot)
         advance_knots(live, self.knots[0], trial, self.knots[1], accepted, *rest)
         zmp = (float(self.pendulum.zmp_x), float(self.pendulum.zmp_y))
         assert clip(self.region, *zmp) == pytest.approx(zmp, abs=1e-12)
@@ -290,7 +290,7 @@ def test_a_new_landing_is_walked_to_within_the_rate_of_the_zmp(model, tick):
     path = [generator.tick(0.05 if k < tick else 0.07, 54 - k) for k in range(54)]
     assert all(row[0] for row in path)
     rates = np.abs(np.diff([row[1:] for row in path], axis=0)) / CONTROL_PERIOD
-    assert rates.max() < model.parameters.pattern.zmp_rate + 1e-9
+    assert rates.max() < model.robot.pattern.zmp_rate + 1e-9
 
 
 def test_an_infeasible_landing_is_rejected_and_the_last_plan_remains_feasible(model):
