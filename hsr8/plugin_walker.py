@@ -17,7 +17,7 @@ from hsr8.errors import UsageError
 from hsr8.plugin_file import start_plugin
 from hsr8.plugin_method import PluginMethod, numbers, shown
 from walking.body.robot_model import RobotModel
-from walking.command import Command, CommandLimits, HeadTarget, Limit, VelocityCommand
+from walking.command import Command, HeadTarget, Limit, VelocityCommand
 from walking.head import Head
 from walking.observer import BodyEstimate, BodyObserver
 from walking.odometry import LegOdometry
@@ -156,12 +156,6 @@ class PluginEngine:
         self._observer = BodyObserver(robot, parameters, odometry)
         self._head = Head(robot, parameters)
         self._command: VelocityCommand | None = None
-
-    @property
-    def command_limits(self) -> CommandLimits:
-        """How the last command was limited: not at all, as far as is known."""
-        command = self._command or VelocityCommand()
-        return CommandLimits(command, command, ())
 
     @property
     def limits(self) -> tuple[Limit, ...]:

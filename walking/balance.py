@@ -13,17 +13,25 @@ from math import exp, log
 from typing import NamedTuple
 
 from compilation import compiled
-from walking.admission import admit, skip
+from walking.admission import admit
 from walking.command import BALANCE, LANDING_FROZEN, LANDING_SPEED, ZMP_REGION
 from walking.foothold import Foothold, equal, foothold, put
 from walking.footsteps import equal_strides, is_same, landing_of, reachable
 from walking.gait import aimed, equal_clocks, plan_walk, shorten, support_foot
 from walking.parameters import CONTROL_PERIOD
 from walking.patterns import advance_pattern, planned_dcm, rejects_infeasible, reset_plan
-from walking.pendulum import dcm_of, dcm_reference, ramp_weights, track_dcm, track_reference
-from walking.plane import Point, Vector, clamp, dead_zone, rotate, rotate_back
-from walking.records import LIVE, Record
+from walking.pendulum import (
+    dcm_of,
+    dcm_reference,
+    plan_pendulum,
+    ramp_weights,
+    track_dcm,
+    track_reference,
+)
+from walking.plane import Point, clamp, dead_zone, rotate, rotate_back
+from walking.records import LIVE, WANTED, Record
 from walking.reference import reference_of
+from walking.steering import moves
 from walking.support import Region, clip
 
 ROUNDING = 1e-6  # rounding error of a time in control ticks [1]
@@ -150,25 +158,16 @@ def capture_step(
 
 
 @compiled
-def plan_pendulum(walk: Record) -> Record:
-    """Return the pendulum of the plan: that of the body unless off plan."""
-    return walk.planned if walk.off_plan else walk.pendulum
-
-
-@compiled
-def _needed_capture(
-    walk: Record, plans: Record, landing: Foothold, error: Point, robot: Record
-) -> Capture:
+def _needed_capture(walk: Record, plan: Record, landing: Foothold, robot: Record) -> Capture:
     """Return the capture step for the measured DCM."""
-    live = plans[LIVE]
-    gait, ramps = live.gait, reference_of(live)
+    gait, ramps, sensing = plan.gait, reference_of(plan), walk.sensing
     support = support_foot(gait)
     if gait.shortened:
         x, y = dcm_reference(ramps, robot)
     else:
-        x, y = planned_dcm(live, plan_pendulum(walk), robot)
+        x, y = planned_dcm(plan, plan_pendulum(walk), robot)
     body_x, body_y = dcm_of(walk.pendulum, robot)
-    off = (body_x + error[0] - x, body_y + error[1] - y)
+    off = (body_x + sensing.dcm_x - x, body_y + sensing.dcm_y - y)
     if not exceeds(support, off, robot.stabilizer.capture_dead_zone, robot):
         return Capture(False, landing, 0)
     ahead = (x - ramps[0].bx, y - ramps[0].by)
@@ -179,43 +178,27 @@ def _needed_capture(
 
 
 @compiled
-def place_foot(
-    walk: Record,
-    plans: Record,
-    knots: Record,
-    wanted: Record,
-    velocity: Vector,
-    error: Point,
-    region: Region,
-    moving: bool,
-    robot: Record,
-) -> None:
+def place_foot(walk: Record, plans: Record, knots: Record, region: Region, robot: Record) -> None:
     """Choose landing and timing of the swing foot in this tick: the plan in force.
 
     Args:
         walk: state, changed.
-        plans: plans (3,); the one in force is changed.
-        knots: knots of the plans (3, k), changed.
-        wanted: wanted strides.
-        velocity: velocity of these strides (vx, vy, wz) [m/s, m/s, rad/s].
-        error: error of the DCM [m].
+        plans: plans (4,), see `LIVE`; changed.
+        knots: knots of the plans (4, k), changed.
         region: admissible ZMP in this tick.
-        moving: whether the walk is to go on.
         robot: constants.
     """
-    placing, gait = walk.placing, plans[LIVE].gait
+    placing, gait, wanted = walk.placing, plans[LIVE].gait, walk.steering.wanted
     adjustable = gait.adjustable
-    placing.bound, placing.moving, placing.accepted = 0, moving, False
+    placing.bound, placing.accepted = 0, False
     placing.moved_x = placing.moved_y = 0.0
-    landing = _reference(walk, plans, knots, wanted, velocity, region, robot)
+    landing = _reference(walk, plans, knots, region, robot)
     if adjustable:
-        _capture(walk, plans, landing, wanted, error, robot)
+        _capture(walk, plans[LIVE], landing, robot)
     elif gait.stepping:
         nominal = landing_of(support_foot(gait), wanted)
         if not is_same(nominal, foothold(gait.landing), robot):
             placing.bound |= LANDING_FROZEN
-    if _selects(gait, robot):
-        placing.moving = walk.admission.moving
 
 
 @compiled
@@ -226,80 +209,67 @@ def _selects(gait: Record, robot: Record) -> bool:
 
 @compiled
 def _reference(
-    walk: Record,
-    plans: Record,
-    knots: Record,
-    wanted: Record,
-    velocity: Vector,
-    region: Region,
-    robot: Record,
+    walk: Record, plans: Record, knots: Record, region: Region, robot: Record
 ) -> Foothold:
     """Put the reference that the generator admits in force; return the landing of the plan."""
-    placing, admission, gait = walk.placing, walk.admission, plans[LIVE].gait
-    if not _selects(gait, robot):
-        for k in range(3):
-            placing.applied[k] = velocity[k]
-        skip(admission, wanted, placing.moving)
+    placing, admission, live, steering = walk.placing, walk.admission, plans[LIVE], walk.steering
+    gait = live.gait
+    if _selects(gait, robot):
+        placing.accepted = admit(walk, plans, knots, region, robot)
+    else:
+        admission.fraction = 1.0
         landing = foothold(gait.landing)
         if gait.adjustable:
-            landing = landing_of(support_foot(gait), wanted)
-        plan_walk(plans[LIVE], landing, wanted, placing.moving, robot)
-        return landing
-    admission.before = gait.clock
-    pendulum = plan_pendulum(walk)
-    placing.accepted = admit(
-        admission, plans, knots, pendulum, region, wanted, placing.moving, walk.off_plan, robot
-    )
-    fraction = admission.fraction
-    if fraction < 1.0:
-        retimed = not equal_clocks(gait.clock, admission.before)
-        if retimed or _differs(walk, gait, wanted, robot):
+            landing = landing_of(support_foot(gait), steering.wanted)
+        plan_walk(live, landing, steering.wanted, moves(steering), robot)
+    if admission.fraction < 1.0:
+        if _differs(plans, walk, robot):
             placing.bound |= ZMP_REGION
         for k in range(3):
-            now = placing.applied[k]
-            placing.applied[k] = now + fraction * (velocity[k] - now)
+            change = steering.velocity[k] - placing.applied[k]
+            placing.applied[k] += admission.fraction * change
     else:
         for k in range(3):
-            placing.applied[k] = velocity[k]
-    return foothold(admission.landing)
+            placing.applied[k] = steering.velocity[k]
+    return foothold(live.landing)
 
 
 @compiled
-def _differs(walk: Record, gait: Record, wanted: Record, robot: Record) -> bool:
-    """Whether the footsteps of the admitted plan differ from the wanted ones."""
-    admission = walk.admission
-    if not equal_strides(admission.following, wanted) or admission.moving != walk.placing.moving:
+def _differs(plans: Record, walk: Record, robot: Record) -> bool:
+    """Whether the admitted plan differs from the wanted one."""
+    live, wanted = plans[LIVE], plans[WANTED]
+    retimed = not equal_clocks(live.gait.clock, wanted.gait.clock)
+    if retimed or live.moving != wanted.moving:
         return True
-    nominal, landing = landing_of(support_foot(gait), wanted), foothold(admission.landing)
-    differs: bool = gait.adjustable and not is_same(nominal, landing, robot)
+    if not equal_strides(live.following, wanted.following):
+        return True
+    nominal = landing_of(support_foot(live.gait), walk.steering.wanted)
+    differs: bool = live.gait.adjustable and not is_same(nominal, foothold(live.landing), robot)
     return differs
 
 
 @compiled
-def _capture(
-    walk: Record, plans: Record, landing: Foothold, wanted: Record, error: Point, robot: Record
-) -> None:
+def _capture(walk: Record, plan: Record, landing: Foothold, robot: Record) -> None:
     """Aim at the landing of a capture step if one is needed."""
-    placing, live = walk.placing, plans[LIVE]
-    gait, goal = live.gait, landing
-    capture = _needed_capture(walk, plans, landing, error, robot)
+    placing, gait, steering, goal = walk.placing, plan.gait, walk.steering, landing
+    capture = _needed_capture(walk, plan, landing, robot)
     if capture.needed and shorten(gait, walk.limbs.feet, capture.ticks, capture.landing, robot):
         # The timing has changed: plan again.
-        merge_pendulums(walk, plans)
+        merge_pendulums(walk, plan)
         placing.accepted = False
-        plan_walk(plans[LIVE], landing, wanted, placing.moving, robot)
-        capture = _needed_capture(walk, plans, landing, error, robot)
+        plan_walk(plan, landing, steering.wanted, moves(steering), robot)
+        capture = _needed_capture(walk, plan, landing, robot)
     if capture.needed and not gait.double:
         goal = capture.landing
         placing.moved_x, placing.moved_y = goal.x - landing.x, goal.y - landing.y
     put(gait.landing, aimed(gait, foothold(gait.landing), goal, robot))
-    now, nominal = foothold(gait.landing), landing_of(support_foot(gait), wanted)
+    now, nominal = foothold(gait.landing), landing_of(support_foot(gait), steering.wanted)
     if gait.shortened or not is_same(goal, landing, robot):
         placing.bound |= BALANCE
     elif not placing.bound & ZMP_REGION and not is_same(nominal, now, robot):
         placing.bound |= LANDING_SPEED
     if not _selects(gait, robot) and not equal(now, landing):
-        plan_walk(plans[LIVE], now, wanted, placing.moving, robot)
+        plan_walk(plan, now, steering.wanted, moves(steering), robot)
 
 
 # Pendulum
@@ -313,8 +283,8 @@ def advance_pendulum(
 
     Args:
         walk: state, changed.
-        plans: plans (3,); the ZMP plan in force is changed.
-        knots: knots of the plans (3, k); those of the plan in force are changed.
+        plans: plans (4,), see `LIVE`; the ZMP plan in force is changed.
+        knots: knots of the plans (4, k); those of the plan in force are changed.
         region: admissible ZMP.
         robot: constants.
         sums: sums of the gains of preview control.
@@ -325,7 +295,7 @@ def advance_pendulum(
     if selective and gait.shortened:
         track_reference(body, robot, gain, reference_of(live), region)
         return
-    landing, planned = foothold(gait.landing), foothold(walk.admission.landing)
+    landing, planned = foothold(gait.landing), foothold(live.landing)
     if selective and not (gait.double or walk.off_plan or equal(landing, planned)):
         walk.planned, walk.off_plan = body, True
     pendulum = plan_pendulum(walk)
@@ -343,15 +313,14 @@ def advance_pendulum(
 
 
 @compiled
-def end_capture(walk: Record, plans: Record) -> None:
+def end_capture(walk: Record, plan: Record) -> None:
     """At touchdown, restart the plan from the pendulum of the body."""
-    gait = plans[LIVE].gait
-    if walk.off_plan and (gait.double or not gait.stepping):
-        merge_pendulums(walk, plans)
+    if walk.off_plan and (plan.gait.double or not plan.gait.stepping):
+        merge_pendulums(walk, plan)
 
 
 @compiled
-def merge_pendulums(walk: Record, plans: Record) -> None:
+def merge_pendulums(walk: Record, plan: Record) -> None:
     """Drop the plan of the generator."""
     walk.off_plan = False
-    reset_plan(plans[LIVE].zmp)
+    reset_plan(plan.zmp)

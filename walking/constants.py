@@ -35,8 +35,7 @@ def robot_record(robot: RobotModel, parameters: WalkingParameters) -> tuple[Reco
         sole.half_length, sole.half_width = rectangle.half_length, rectangle.half_width
     r.com_ahead = float(robot.com(robot.ready)[0])
     r.height = p.pattern.pelvis_height - leg.hip[2]
-    for side in range(2):
-        r.legs[side].reach = robot.legs[side].reach
+    r.chains, r.reach = robot.chains, [leg.reach for leg in robot.legs]
     r.ankle, r.stiffening = leg.ankle, robot.stiffening
     r.shoulders, r.shoulder_signs = robot.tree.shoulders or (-1, -1), robot.shoulder_signs()
     robot.neck.describe(r.neck)

@@ -8,7 +8,6 @@ from walking.body.robot_model import RobotModel
 from walking.body.tree import LEFT_LEG, RIGHT_LEG
 from walking.command import (
     Command,
-    CommandLimits,
     CommandState,
     HeadTarget,
     Limit,
@@ -19,14 +18,14 @@ from walking.constants import joint_records, robot_record
 from walking.odometry import LegOdometry
 from walking.parameters import CONTROL_PERIOD, WalkingParameters
 from walking.plane import Array
-from walking.published import Publication, publish, report
+from walking.published import PUBLISHED, publish, walking_state
 from walking.records import KNOT, LIVE, PLAN, WALK
 from walking.signals import BodySensors, JointTargets
 from walking.state import WalkingState
 from walking.tick import begin, finish, stand_ready, watch
 from walking.zmp_plan import max_knots
 
-PLANS = 3  # see `walking.records.LIVE`
+PLANS = 4  # see `walking.records.LIVE`
 SUPPORTS = 5  # whose ZMP is planned
 MAX_STRETCH = 2.0  # of a single support by the minimum time in the air [1]
 
@@ -59,20 +58,12 @@ class WalkingEngine:
         self._odometry = odometry or LegOdometry(parameters.odometry)
         self._walks, self._plans = np.zeros(1, WALK), np.zeros(PLANS, PLAN)
         self._knots = np.zeros((PLANS, max_knots(_longest(parameters), SUPPORTS)), KNOT)
-        self._publication = Publication()
-        self._legs = robot.chains
-        self._axes, self._origins = np.zeros((2, 6, 3)), np.zeros((2, 6, 3))
+        self._published = np.zeros(1, PUBLISHED)
         self._walk, self._plan = self._walks[0], self._plans[LIVE]
         self._command: Command = VelocityCommand()
         self._sensors: BodySensors | None = None
         self._zmp_depth, self._bound, self._fallen = 0.0, 0, False
         self._stand(robot)
-
-    @property
-    def command_limits(self) -> CommandLimits:
-        """How the last command was limited."""
-        report(self._publication.records, self._walks, self._plans, self._robots)
-        return self._publication.report(self._command)
 
     @property
     def limits(self) -> tuple[Limit, ...]:
@@ -140,9 +131,6 @@ class WalkingEngine:
             self._joints,
             self._robots,
             self._sums,
-            self._legs,
-            self._axes,
-            self._origins,
             dynamics.q,
             dynamics.v,
             dynamics.a,
@@ -160,8 +148,6 @@ class WalkingEngine:
             self._plans,
             self._joints,
             self._robots,
-            self._axes,
-            self._origins,
             dynamics.forces(),
             dynamics.moved_com(),
             gyro,
@@ -194,10 +180,8 @@ class WalkingEngine:
         sensors = self._sensors
         if sensors is None:
             raise RuntimeError("the walking engine has no state before its first tick")
-        publication = self._publication
-        count = publish(
-            publication.records,
-            publication.footsteps,
+        publish(
+            self._published,
             self._walks,
             self._plans,
             self._odometry.records,
@@ -207,7 +191,7 @@ class WalkingEngine:
             sensors.gyro,
             *self._neck,
         )
-        return publication.state(count, self._command, fallen=self._fallen)
+        return walking_state(self._published, self._command)
 
     def _stand(self, robot: RobotModel) -> None:
         """Set the state of a robot that stands in the ready posture."""

@@ -13,7 +13,7 @@ from scipy.linalg import solve_discrete_are
 from compilation import compiled
 from walking.odometry import reckon
 from walking.parameters import CONTROL_PERIOD, EstimatorParameters
-from walking.plane import Array, Point, Vector, from_frame, rotate, rotate_back
+from walking.plane import Array, Point, Vector, from_frame, norm, rotate, rotate_back
 from walking.records import Record
 
 
@@ -69,6 +69,13 @@ def measure(
     right = max(0.0, sensing.feet[1].load - robot.light_load)
     both = left + right
     sensing.right_load = right / both if both > 0.0 else 0.5
+
+
+@compiled
+def is_fallen(sensing: Record, robot: Record) -> bool:
+    """Whether the tilt of the trunk is that of a fallen robot."""
+    fallen: bool = norm(sensing.roll, sensing.pitch) > robot.estimator.fall_tilt
+    return fallen
 
 
 @compiled

@@ -52,8 +52,6 @@ def set_motion(
 def set_offsets(
     joints: Record,
     walk: Record,
-    axes: Array,
-    origins: Array,
     forces: Array,
     gyro: Array,
     foot_zmps: tuple[Point, Point],
@@ -64,8 +62,6 @@ def set_offsets(
     Args:
         joints: offsets are set (n,).
         walk: pelvis, load and ZMP shift of this tick.
-        axes: axes of the leg joints in the base frame (2, 6, 3).
-        origins: origins of the leg joints in the base frame (2, 6, 3) [m].
         forces: generalised forces of the motion without contact, force [N] and moment [N m] at the
             base first.
         gyro: angular velocity of the trunk (3,) [rad/s].
@@ -73,6 +69,7 @@ def set_offsets(
         robot: constants.
     """
     limbs, height = walk.limbs, robot.height
+    axes, origins = limbs.axes, limbs.origins
     right_load = limbs.load
     left_load = 1.0 - right_load
     for k in range(joints.size):

@@ -313,19 +313,15 @@ def touch_down(gait: Record, feet: Record, robot: Record) -> None:
 
 
 @compiled
-def advance(
-    gait: Record, feet: Record, steps: Record, count: int, moving: bool, robot: Record
-) -> None:
+def advance(plan: Record, feet: Record, robot: Record) -> None:
     """Move the feet by one tick and start the next footstep at the end of this one.
 
     Args:
-        gait: changed.
+        plan: plan in force, its gait is changed.
         feet: references of the feet, changed.
-        steps: planned footholds.
-        count: number of these.
-        moving: whether the walk goes on.
         robot: constants.
     """
+    gait = plan.gait
     gait.tick += 1
     update_phase(gait, robot)
     single, swing = gait.clock.single, NO_FOOT
@@ -343,27 +339,25 @@ def advance(
         gait.swing_phase,
     )
     if gait.stepping and gait.ticks_left == 0:
-        _land(gait, feet, steps, count, moving, robot)
+        _land(plan, feet, robot)
 
 
 @compiled
-def _land(
-    gait: Record, feet: Record, steps: Record, count: int, moving: bool, robot: Record
-) -> None:
+def _land(plan: Record, feet: Record, robot: Record) -> None:
+    gait = plan.gait
     support, swing, landing = gait.support, swing_of(gait), foothold(gait.landing)
     put(gait.footholds[swing], landing)
     rest_at(feet[swing], landing)
     gait.completed += 1
     here = zmp_under(support_foot(gait), robot)
-    if not moving and is_parallel(support_foot(gait), landing, robot):
+    if not plan.moving and is_parallel(support_foot(gait), landing, robot):
         gait.stepping, gait.tick = False, 0
         put_shift(gait.clock.shift, 0, stop_ticks(robot), here, float(support))
         update_phase(gait, robot)
         return
-    double = gait.clock.timing.double
-    _begin(gait, swing, double, here, float(support), robot)
-    if count > 1:
-        put(gait.landing, foothold(steps[1]))
+    _begin(gait, swing, gait.clock.timing.double, here, float(support), robot)
+    if plan.step_count > 1:
+        put(gait.landing, foothold(plan.steps[1]))
 
 
 # Plan
@@ -376,13 +370,15 @@ def plan_walk(
     """Set footholds and ZMP reference of a plan from now on.
 
     Args:
-        plan: plan whose gait is read, and whose reference and footholds are set.
+        plan: plan whose gait is read; all but its ZMP plan is set.
         landing: foothold of the swing foot.
         following: strides of the footsteps after it.
         moving: whether the walk goes on.
         robot: constants.
     """
     gait, ramps, steps = plan.gait, plan.ramps, plan.steps
+    put(plan.landing, landing)
+    plan.following, plan.moving = following, moving
     support, swing = support_foot(gait), swing_foot(gait)
     if not gait.stepping:
         left, right = foothold(gait.footholds[0]), foothold(gait.footholds[1])
@@ -399,3 +395,14 @@ def plan_walk(
     ticks = (shift, carry, timing.double, timing.single, stop_ticks(robot))
     plan.step_count = count
     plan.ramp_count = reference_ramps(ramps, swing, support, steps, count, ends, zmp, ticks, robot)
+
+
+@compiled
+def copy_plan(copy: Record, plan: Record) -> None:
+    """Copy a plan, except for its ZMP plan."""
+    copy.gait, copy.landing, copy.following = plan.gait, plan.landing, plan.following
+    copy.moving, copy.ramp_count, copy.step_count = plan.moving, plan.ramp_count, plan.step_count
+    for k in range(plan.ramp_count):
+        copy.ramps[k] = plan.ramps[k]
+    for k in range(plan.step_count):
+        copy.steps[k] = plan.steps[k]

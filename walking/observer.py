@@ -5,6 +5,7 @@ from math import asin, atan2
 import numpy as np
 
 from compilation.value import value
+from walking.body.kinematics import inclined
 from walking.body.robot_model import RobotModel
 from walking.command import CommandLimits, VelocityCommand
 from walking.constants import robot_record
@@ -19,7 +20,6 @@ from walking.parameters import (
     WalkingParameters,
 )
 from walking.plane import Array, Frame, Point, Vector, from_frame, norm, rotate, rotate_back
-from walking.published import incline
 from walking.records import WALK
 from walking.signals import BodySensors
 from walking.state import Balance, HeadCameraPose, Phase, WalkingState
@@ -202,8 +202,7 @@ class BodyObserver:
         self.observe(sensors)
         sensing, contacts = self._sensing, self._contacts
         contacts.update(*sensing.feet["load"].tolist())
-        yaw, tilt = float(sensing.heading), np.empty((3, 3))
-        incline(sensing.roll, sensing.pitch, tilt)
+        yaw, tilt = float(sensing.heading), self._tilt
         measured = sensing.feet
         feet = np.column_stack([measured[axis] for axis in ("x", "y", "z")])
         self._roll(sensors, feet, tilt, yaw)
@@ -277,8 +276,7 @@ class BodyObserver:
     def _camera(self, sensors: BodySensors) -> HeadCameraPose:
         """Return the camera in the robot frame; every joint that carries it may move."""
         rotation, position = self._robot.frame_pose(self._robot.tree.camera, sensors.joint_position)
-        tilt = np.empty((3, 3))
-        incline(self._sensing.roll, self._sensing.pitch, tilt)
+        tilt = self._tilt
         ahead, left, up = rotation[:, 2].tolist()
         pan_rate, tilt_rate = self._robot.neck.rates(sensors.joint_velocity)
         return HeadCameraPose(
@@ -295,6 +293,11 @@ class BodyObserver:
     def _pose(self) -> Frame:
         odometry = self._odometry.records[0]
         return float(odometry.x), float(odometry.y), float(odometry.yaw)
+
+    @property
+    def _tilt(self) -> Array:
+        """Attitude of the trunk R_RB (3, 3)."""
+        return np.reshape(inclined(self._sensing.roll, self._sensing.pitch), (3, 3))
 
     @property
     def _height(self) -> float:

@@ -132,8 +132,8 @@ def is_feasible(
     """Whether the pendulum can follow a plan with the ZMP inside the soles.
 
     Args:
-        plans: plans, see `walking.records.LIVE` (3,); the ZMP plan of `BEST` is set if feasible.
-        knots: knots of the plans (3, k); those of `BEST` are set if feasible.
+        plans: plans, see `walking.records.LIVE` (4,); the ZMP plan of `BEST` is set if feasible.
+        knots: knots of the plans (4, k); those of `BEST` are set if feasible.
         which: index of the plan.
         pendulum: present pendulum.
         region: admissible ZMP in this tick.
@@ -180,8 +180,8 @@ def advance_pattern(
     """Advance the pendulum by a tick; its ZMP stays in the region.
 
     Args:
-        plans: plans, see `walking.records.LIVE` (3,); the ZMP plan in force is changed.
-        knots: knots of the plans (3, k); those of the plan in force are changed.
+        plans: plans, see `walking.records.LIVE` (4,); the ZMP plan in force is changed.
+        knots: knots of the plans (4, k); those of the plan in force are changed.
         accepted: whether the ZMP plan of `BEST` belongs to the reference.
         pendulum: changed.
         region: admissible ZMP.

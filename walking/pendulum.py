@@ -18,6 +18,12 @@ def natural_frequency(height: float) -> float:
 
 
 @compiled
+def plan_pendulum(walk: Record) -> Record:
+    """Return the pendulum of the plan: that of the body unless off plan."""
+    return walk.planned if walk.off_plan else walk.pendulum
+
+
+@compiled
 def dcm_of(pendulum: Record, robot: Record) -> Point:
     """Return the divergent component of motion [m]."""
     return pendulum.x + pendulum.vx / robot.omega, pendulum.y + pendulum.vy / robot.omega

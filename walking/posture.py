@@ -35,9 +35,6 @@ def set_posture(
     com: Point,
     head: Point,
     joints: Record,
-    legs: Array,
-    axes: Array,
-    origins: Array,
     robot: Record,
 ) -> None:
     """Set the planned angles of all joints, and the pelvis.
@@ -49,9 +46,6 @@ def set_posture(
         com: planned centre of mass in the plan frame, x, y [m].
         head: angles of pan and tilt joint [rad].
         joints: joints of the robot (n,).
-        legs: chains of the legs, see `walking.body.kinematics` (2, 7, 15).
-        axes: axes of the leg joints in the base frame, set (2, 6, 3).
-        origins: origins of the leg joints in the base frame, set (2, 6, 3) [m].
         robot: constants.
     """
     limbs, neck = walk.limbs, robot.neck
@@ -65,14 +59,15 @@ def set_posture(
     support = limbs.feet[gait.support]
     left = _foot_pose(limbs, 0, support, pelvis, robot.height)
     right = _foot_pose(limbs, 1, support, pelvis, robot.height)
-    sunk = max(sink(left, robot.legs[0].reach), sink(right, robot.legs[1].reach))
+    sunk = max(sink(left, robot.reach[0]), sink(right, robot.reach[1]))
     limbs.leg_error = 0.0
     for side in range(2):
         x, y, z, roll, pitch, yaw = right if side == 1 else left
         target = (x, y, z + sunk, roll, pitch, yaw)
         first = LEG_JOINTS * side
         own = limbs.leg_angles[first : first + LEG_JOINTS]
-        _, error = solve_leg(legs[side], target, own, robot.leg_length, axes[side], origins[side])
+        axes, origins = limbs.axes[side], limbs.origins[side]
+        _, error = solve_leg(robot.chains[side], target, own, robot.leg_length, axes, origins)
         limbs.leg_error = max(limbs.leg_error, error)
         for k in range(LEG_JOINTS):
             joint = joints[first + k]

@@ -82,9 +82,6 @@ def _sections() -> dict[str, np.dtype[Any]]:
 SOLE = record(centre=float, half_length=float, half_width=float)
 """Rectangle of a sole in the foot frame [m]."""
 
-LEG = record(reach=(float, 7))
-"""Hip in the base frame (3) [m], ankle in the foot frame (3) [m], maximum distance [m]."""
-
 NECK = record(
     movable=bool,
     tilt_first=bool,
@@ -151,7 +148,10 @@ ROBOT = record(
     # Nominal centre of mass ahead of the base, and height of the base above the floor [m].
     com_ahead=float,
     height=float,
-    legs=(LEG, 2),
+    # Chains of the legs, see `walking.body.kinematics`; hip in the base frame (3) [m], ankle in the
+    # foot frame (3) [m] and maximum distance of both [m].
+    chains=(float, 2, 7, 15),
+    reach=(float, 2, 7),
     # First joint of the ankle in a leg; factor on the stiffness of the legs [1].
     ankle=int,
     stiffening=float,
@@ -317,8 +317,8 @@ PLAN = record(
 the walk goes on; ZMP reference and its number of ramps; footholds and their number; plan of the
 ZMP."""
 
-LIVE, TRIAL, BEST = range(3)
-"""Plans: the one in force, one that is tried, and the best that was admitted."""
+LIVE, WANTED, TRIAL, BEST = range(4)
+"""Plans: the one in force, the wanted one, one that is tried, and the best that was admitted."""
 
 # State of the walk
 
@@ -340,10 +340,14 @@ STEERING = record(
     velocity=(float, 3),
     peak=(float, 3),
     timing=TIMING,
+    wanted=STRIDES,
+    scratch=STRIDES,
+    applied=COMMAND,
     bound=int,
 )
 """Steering: present command; command state in force, if `explicit`; wanted velocity (vx, vy, wz)
-[m/s, m/s, rad/s], and its last peak per axis; wanted timing; limits that bind, as bits."""
+[m/s, m/s, rad/s], and its last peak per axis; wanted timing and strides; strides for intermediate
+results; applied command; limits that bind, as bits."""
 
 CORRECTIONS = record(
     # Gait cycle: first support foot and the last one, -1 for none.
@@ -373,30 +377,13 @@ CORRECTIONS = record(
 )
 """Slow corrections, see `walking.corrections`."""
 
-ADMISSION = record(
-    stepping=bool,
-    completed=int,
-    clock=CLOCK,
-    known=bool,
-    fraction=float,
-    landing=FOOTHOLD,
-    following=STRIDES,
-    moving=bool,
-    before=CLOCK,
-    goal=CLOCK,
-    between=TIMING,
-)
-"""Admitted plan, see `walking.admission`: stepping, completed footsteps and clock of the last tick;
-whether there is a plan; admitted fraction of the wanted change [1]; landing, strides and whether
-the walk goes on; clock before admission, clock of the wanted plan, timing of a plan that is
-tried."""
+ADMISSION = record(stepping=bool, completed=int, clock=CLOCK, fraction=float, between=TIMING)
+"""Admission, see `walking.admission`: whether the gait was stepping, completed footsteps and clock
+in the last tick; admitted fraction of the wanted change [1]; timing of a plan that is tried."""
 
-PLACING = record(
-    applied=(float, 3), bound=int, moved_x=float, moved_y=float, moving=bool, accepted=bool
-)
+PLACING = record(applied=(float, 3), bound=int, moved_x=float, moved_y=float, accepted=bool)
 """Foot placement: velocity that the footsteps follow; limits that bind, as bits; shift of the
-landing by a capture step [m]; whether the walk goes on; whether the ZMP plan of this tick was
-admitted."""
+landing by a capture step [m]; whether the ZMP plan of this tick was admitted."""
 
 FOOT = record(x=float, y=float, z=float, yaw=float, load=float, pressure_x=float, pressure_y=float)
 """Measured foot: position [m] and yaw [rad] in the level frame of the heading, load [N], centre of
@@ -475,6 +462,8 @@ LIMBS = record(
     foot_roll=(float, 2),
     foot_pitch=(float, 2),
     leg_angles=(float, 12),
+    axes=(float, 2, 6, 3),
+    origins=(float, 2, 6, 3),
     leg_error=float,
     head=(float, 2),
     head_rate=(float, 2),
@@ -482,15 +471,12 @@ LIMBS = record(
 )
 """Whether there is a posture before this tick; references of the feet; pelvis x, y [m], heading
 [rad] in the plan frame, and its yaw rate [rad/s]; centre of mass of the last posture in the base
-frame [m]; angles of the legs, also beyond their limits, and remaining error of the inverse
-kinematics [rad]; pan and tilt [rad] and their rates [rad/s]; load fraction of the right foot in
-this tick [1]."""
+frame [m]; angles of the legs, also beyond their limits [rad], axes and origins of their joints in
+the base frame [m], and remaining error of the inverse kinematics [rad]; pan and tilt [rad] and
+their rates [rad/s]; load fraction of the right foot in this tick [1]."""
 
 WALK = record(
     ticks=int,
-    wanted=STRIDES,
-    scratch=STRIDES,
-    applied=COMMAND,
     sensing=SENSING,
     steering=STEERING,
     corrections=CORRECTIONS,
@@ -509,8 +495,7 @@ WALK = record(
     bound=int,
     limbs=LIMBS,
 )
-"""State of the walk: ticks; wanted strides, strides for intermediate results, and applied command;
-the parts above; pendulum of the body, and that of the plan if it differs; shift of the ZMP by the
-ankles [m]; depth of the planned ZMP in the support polygon [m], whether one foot supports, and the
-feet in contact;
-foot of the last opening step; limits that bind, as bits."""
+"""State of the walk: ticks; the parts above; pendulum of the body, and that of the plan if it
+differs; shift of the ZMP by the ankles [m]; depth of the planned ZMP in the support polygon [m],
+whether one foot supports, and the feet in contact; foot of the last opening step; limits that bind,
+as bits."""

@@ -12,7 +12,6 @@ from walking.command import (
     COMBINED_SPEED,
     SETTLING,
     SPEED,
-    STRIDE_LIMITS,
 )
 from walking.footsteps import (
     STILL,
@@ -21,7 +20,6 @@ from walking.footsteps import (
     command_strides,
     command_timing,
     duration,
-    mean_velocity,
     put_timing,
     stride_limits,
     velocity_strides,
@@ -91,36 +89,30 @@ def _within(velocity: Vector, robot: Record) -> Vector:
 
 @compiled
 def follow_command(
-    steering: Record,
-    scratch: Record,
-    robot: Record,
-    speed_ratio: float,
-    settled: bool,
-    balanced: bool,
+    steering: Record, speed_ratio: float, settled: bool, balanced: bool, robot: Record
 ) -> None:
     """Follow the command of this tick.
 
     Args:
         steering: changed.
-        scratch: strides, changed.
-        robot: constants.
         speed_ratio: ratio of a velocity command to walk at [1].
         settled: whether the robot may start to move.
         balanced: whether the motion may change.
+        robot: constants.
     """
     steering.bound = 0
     explicit, values = steering.command.explicit, steering.command.values
     velocity = (values[0], values[1], values[2])
     if not balanced:
-        _hold(steering, scratch, robot)
+        _hold(steering, robot)
     elif not settled:
         if explicit or velocity != STILL:
             steering.bound |= SETTLING
         _approach(steering, STILL, robot)
     elif explicit:
-        _follow_state(steering, scratch, robot)
+        _follow_state(steering, robot)
     else:
-        _follow_velocity(steering, velocity, scratch, robot, speed_ratio)
+        _follow_velocity(steering, velocity, speed_ratio, robot)
 
 
 @compiled
@@ -143,74 +135,26 @@ def use_next_timing(timing: Record, steering: Record, before: Record, stepping: 
 
 
 @compiled
-def wanted_strides(strides: Record, steering: Record, correction: Vector, robot: Record) -> None:
+def set_wanted_strides(steering: Record, correction: Vector, robot: Record) -> None:
     """Set the wanted strides.
 
     Args:
-        strides: set.
-        steering: steering of the walk.
+        steering: its wanted strides are set.
         correction: correction of the velocity (vx, vy, wz) [m/s, m/s, rad/s]; command states use
             only wz.
         robot: constants.
     """
     time = duration(steering.timing)
     if steering.state.explicit:
-        command_strides(strides, steering.state.values, correction[2] * time, robot)
+        command_strides(steering.wanted, steering.state.values, correction[2] * time, robot)
     else:
         vx, vy, wz = wanted_velocity(steering)
         velocity = (vx + correction[0], vy + correction[1], wz + correction[2])
-        velocity_strides(strides, velocity, time, robot)
+        velocity_strides(steering.wanted, velocity, time, robot)
 
 
 @compiled
-def report_applied(
-    applied: Record,
-    steering: Record,
-    scratch: Record,
-    bound: int,
-    velocity: Vector,
-    admitted: bool,
-    following: Record,
-    timing: Record,
-    robot: Record,
-) -> None:
-    """Set the command that the next footsteps follow.
-
-    Args:
-        applied: command, set.
-        steering: steering of the walk.
-        scratch: strides, changed.
-        bound: all limits that bind.
-        velocity: velocity that the footsteps follow.
-        admitted: whether the footsteps follow `following` instead of the wanted strides.
-        following: strides of the plan.
-        timing: timing of the footsteps.
-        robot: constants.
-    """
-    applied.explicit = steering.command.explicit
-    for k in range(6):
-        applied.values[k] = steering.command.values[k]
-    if bound == 0:
-        return
-    if steering.state.explicit:
-        applied.explicit = True
-        if not admitted:
-            command_strides(scratch, steering.state.values, 0.0, robot)
-        command = command_of(following if admitted else scratch, timing)
-        for k in range(6):
-            applied.values[k] = command[k]
-        return
-    applied.explicit = False
-    if bound & STRIDE_LIMITS:
-        time = duration(timing)
-        velocity_strides(scratch, velocity, time, robot)
-        velocity = mean_velocity(scratch, time, robot)
-    for k in range(3):
-        applied.values[k] = velocity[k]
-
-
-@compiled
-def _hold(steering: Record, scratch: Record, robot: Record) -> None:
+def _hold(steering: Record, robot: Record) -> None:
     """Keep the present motion; balance limits any other command."""
     command, state = steering.command, steering.state
     if command.explicit:
@@ -220,7 +164,7 @@ def _hold(steering: Record, scratch: Record, robot: Record) -> None:
         if not same:
             steering.bound |= BALANCE
             return
-        steering.bound |= command_strides(scratch, command.values, 0.0, robot)
+        steering.bound |= command_strides(steering.scratch, command.values, 0.0, robot)
         steering.bound |= command_timing(command.values, robot)[1]
         return
     velocity = (command.values[0], command.values[1], command.values[2])
@@ -229,7 +173,7 @@ def _hold(steering: Record, scratch: Record, robot: Record) -> None:
     steering.bound |= speed_limits(velocity, robot)
     if not state.explicit:
         time, wanted = duration(steering.timing), wanted_velocity(steering)
-        steering.bound |= stride_limits(scratch, wanted, time, robot)
+        steering.bound |= stride_limits(steering.scratch, wanted, time, robot)
 
 
 @compiled
@@ -246,9 +190,7 @@ def _differs(steering: Record, wanted: Vector) -> bool:
 
 
 @compiled
-def _follow_velocity(
-    steering: Record, velocity: Vector, scratch: Record, robot: Record, speed_ratio: float
-) -> None:
+def _follow_velocity(steering: Record, velocity: Vector, speed_ratio: float, robot: Record) -> None:
     steering.state.explicit = False
     wanted = velocity
     if speed_ratio < 1.0 and velocity != STILL:
@@ -265,19 +207,19 @@ def _follow_velocity(
     if _differs(steering, limit):
         steering.bound |= ACCELERATION
     time = duration(steering.timing)
-    steering.bound |= stride_limits(scratch, now, time, robot)
+    steering.bound |= stride_limits(steering.scratch, now, time, robot)
 
 
 @compiled
-def _follow_state(steering: Record, scratch: Record, robot: Record) -> None:
+def _follow_state(steering: Record, robot: Record) -> None:
     command = steering.command.values
     steering.state = steering.command
     timing, late = command_timing(command, robot)
     put_timing(steering.timing, timing)
-    steering.bound |= command_strides(scratch, command, 0.0, robot) | late
+    steering.bound |= command_strides(steering.scratch, command, 0.0, robot) | late
     time = duration(steering.timing)
     # A later velocity command starts from this velocity.
-    start = command_of(scratch, steering.timing)
+    start = command_of(steering.scratch, steering.timing)
     _jump(steering, (start[2] / time, 0.0, start[4] / time))
 
 

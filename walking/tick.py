@@ -22,7 +22,7 @@ from walking.corrections import (
     speed_correction,
     speed_ratio,
 )
-from walking.estimation import estimate, measure
+from walking.estimation import estimate, is_fallen, measure
 from walking.feedforward import set_motion, set_offsets, set_setpoints
 from walking.foothold import Foothold, foothold, put
 from walking.footsteps import STILL, Command, cadence, put_timing, tendency
@@ -46,8 +46,8 @@ from walking.reference import zmp_under
 from walking.steering import (
     follow_command,
     moves,
+    set_wanted_strides,
     use_next_timing,
-    wanted_strides,
     wanted_velocity,
 )
 from walking.support import Region, depth, load_fraction, polygon, support_region
@@ -69,7 +69,7 @@ def stand_ready(
 
     Args:
         walks: state (1,), changed.
-        plans: plans (3,), changed.
+        plans: plans (4,), changed.
         stance: x, y [m] and yaw [rad] of the left and right foot (2, 3).
         robots: constants (1,).
     """
@@ -84,7 +84,6 @@ def stand_ready(
     stand(gait, robot)
     remember(walk.admission, gait)
     walk.admission.fraction = 1.0
-    put(walk.admission.landing, foothold(gait.landing))
     plan_walk(live, foothold(gait.landing), robot.still, False, robot)
     end = live.ramps[0]
     pendulum.x, pendulum.y = pendulum.zmp_x, pendulum.zmp_y = end.bx, end.by
@@ -126,7 +125,7 @@ def watch(
     feet_poses(feet_chains, feet_joints, angles, legs)
     measure(walk.sensing, legs, com, orientation, gyro, pads, robots[0])
     walk.ticks += 1
-    return is_fallen(walk, robots[0])
+    return is_fallen(walk.sensing, robots[0])
 
 
 @compiled
@@ -138,9 +137,6 @@ def begin(
     joints: Record,
     robots: Record,
     sums: Record,
-    legs: Array,
-    axes: Array,
-    origins: Array,
     q: Array,
     v: Array,
     a: Array,
@@ -155,14 +151,11 @@ def begin(
     Args:
         walks: state (1,), changed.
         odometry: dead reckoning (1,), changed.
-        plans: plans (3,), changed.
-        knots: knots of the plans (3, k), changed.
+        plans: plans (4,), changed.
+        knots: knots of the plans (4, k), changed.
         joints: joints of the robot (n,), changed.
         robots: constants (1,).
         sums: sums of the gains of preview control.
-        legs: chains of the legs (2, 7, 15).
-        axes: axes of the leg joints in the base frame, set (2, 6, 3).
-        origins: origins of the leg joints in the base frame, set (2, 6, 3) [m].
         q: position of the dynamic model, set.
         v: velocity of the dynamic model, set.
         a: acceleration of the dynamic model, set.
@@ -180,34 +173,31 @@ def begin(
     live, pendulum = plans[LIVE], walk.pendulum
     gait = live.gait
     estimate(walk, odometry[0], gait.right_weight, gait.stepping, robot)
-    error = (walk.sensing.dcm_x, walk.sensing.dcm_y)
     settled = walk.ticks * CONTROL_PERIOD > robot.gait.settle_time
     remember(walk.admission, gait)
-    _follow(walk, gait, command, explicit, error, settled, robot)
+    _follow(walk, gait, command, explicit, settled, robot)
     _want_strides(walk, gait, odometry[0], robot)
     if not gait.stepping and settled:
-        _maybe_start(walk, gait, error, robot)
+        _maybe_start(walk, gait, robot)
     _detect_touchdown(walk, gait, robot)
     region = _contact_region(walk, gait, robot.pattern.sole_margin, robot)
-    velocity, moving = wanted_velocity(walk.steering), moves(walk.steering)
-    place_foot(walk, plans, knots, walk.wanted, velocity, error, region, moving, robot)
+    place_foot(walk, plans, knots, region, robot)
     advance_pendulum(walk, plans, knots, region, robot, sums)
     distance = _far(walk, gait, robot)
     if distance != 0.0:
         return distance, walk.zmp_depth, 0
-    zmp = (pendulum.zmp_x, pendulum.zmp_y)
+    zmp, error = (pendulum.zmp_x, pendulum.zmp_y), (walk.sensing.dcm_x, walk.sensing.dcm_y)
     walk.limbs.load = _right_load(gait, region, zmp)
     reachable = _contact_region(walk, gait, robot.stabilizer.sole_margin, robot)
     walk.zmp_shift_x, walk.zmp_shift_y = zmp_shift(zmp, error, reachable, robot)
     corners = polygon(robot.support, foothold(walk.unloading), foothold(walk.loading), walk.single)
     walk.zmp_depth = depth(corners, zmp[0], zmp[1])
-    feet, moving = walk.limbs.feet, walk.placing.moving
-    advance(gait, feet, live.steps, live.step_count, moving, robot)
+    advance(live, walk.limbs.feet, robot)
     height = gait.clock.timing.swing_height
     if not gait.double and abs(gait.swing_height - height) > SAME_HEIGHT:
         walk.bound |= SWING_HEIGHT
-    end_capture(walk, plans)
-    _move_body(walk, live, joints, legs, axes, origins, angles, head, robot)
+    end_capture(walk, live)
+    _move_body(walk, live, joints, angles, head, robot)
     acceleration = walk.limbs.offset_acceleration
     w2 = robot.omega * robot.omega
     moved = (
@@ -224,8 +214,6 @@ def finish(
     plans: Record,
     joints: Record,
     robots: Record,
-    axes: Array,
-    origins: Array,
     forces: Array,
     com: Array,
     gyro: Array,
@@ -237,11 +225,9 @@ def finish(
 
     Args:
         walks: state (1,), changed.
-        plans: plans (3,).
+        plans: plans (4,).
         joints: joints of the robot (n,), changed.
         robots: constants (1,).
-        axes: axes of the leg joints in the base frame (2, 6, 3).
-        origins: origins of the leg joints in the base frame (2, 6, 3) [m].
         forces: generalised forces of the motion without contact, those of the base first.
         com: centre of mass of the posture in the base frame (3,) [m].
         gyro: angular velocity of the trunk (3,) [rad/s].
@@ -254,15 +240,8 @@ def finish(
     walk.limbs.com[0], walk.limbs.com[1] = com[0], com[1]
     left, right = foothold(gait.footholds[0]), foothold(gait.footholds[1])
     zmps = (zmp_under(left, robot), zmp_under(right, robot))
-    set_offsets(joints, walk, axes, origins, forces, gyro, zmps, robot)
+    set_offsets(joints, walk, forces, gyro, zmps, robot)
     set_setpoints(joints, angles, measured, setpoint, robot)
-
-
-@compiled
-def is_fallen(walk: Record, robot: Record) -> bool:
-    """Whether the tilt of the trunk is that of a fallen robot."""
-    fallen: bool = norm(walk.sensing.roll, walk.sensing.pitch) > robot.estimator.fall_tilt
-    return fallen
 
 
 @compiled
@@ -271,19 +250,18 @@ def _follow(
     gait: Record,
     command: Command,
     explicit: bool,
-    error: Point,
     settled: bool,
     robot: Record,
 ) -> None:
     """Follow the command; give the footsteps their timing."""
-    steering, timing = walk.steering, walk.admission.between
+    steering, sensing, timing = walk.steering, walk.sensing, walk.admission.between
     steering.command.explicit = explicit
     for k in range(6):
         steering.command.values[k] = command[k]
-    off = norm(error[0], error[1])
+    off = norm(sensing.dcm_x, sensing.dcm_y)
     balanced = off < robot.stabilizer.max_slew_error
     ratio = speed_ratio(walk.corrections, off, robot)
-    follow_command(steering, walk.scratch, robot, ratio, settled, balanced)
+    follow_command(steering, ratio, settled, balanced, robot)
     use_next_timing(timing, steering, gait.clock.timing, gait.stepping)
     walk.bound = 0 if retime(gait, timing, robot) else TIMING
 
@@ -301,7 +279,7 @@ def _want_strides(walk: Record, gait: Record, odometry: Record, robot: Record) -
         # The last footsteps only close the stance.
         reset_speed(corrections)
         discard_offset_cycle(corrections)
-        wanted_strides(walk.wanted, steering, STILL, robot)
+        set_wanted_strides(steering, STILL, robot)
         return
     begins = cycle_begins(corrections, gait.support)
     shift = norm(walk.placing.moved_x, walk.placing.moved_y)
@@ -311,15 +289,16 @@ def _want_strides(walk: Record, gait: Record, odometry: Record, robot: Record) -
     pose, velocity = (odometry.x, odometry.y, odometry.yaw), wanted_velocity(steering)
     vx, vy = speed_correction(corrections, pose, velocity, begins, disturbed, robot)
     wz = heading_rate(corrections, ahead, begins or disturbed, robot)
-    wanted_strides(walk.wanted, steering, (vx, vy, wz), robot)
+    set_wanted_strides(steering, (vx, vy, wz), robot)
 
 
 @compiled
-def _maybe_start(walk: Record, gait: Record, error: Point, robot: Record) -> None:
+def _maybe_start(walk: Record, gait: Record, robot: Record) -> None:
     """Take a first footstep if the command or balance requires it."""
     foot, moving = foothold(gait.footholds[0]), moves(walk.steering)
+    error = (walk.sensing.dcm_x, walk.sensing.dcm_y)
     ratio = robot.stabilizer.step_error_ratio
-    pushed, fallen = exceeds(foot, error, ratio, robot), is_fallen(walk, robot)
+    pushed, fallen = exceeds(foot, error, ratio, robot), is_fallen(walk.sensing, robot)
     if fallen and moving:
         walk.bound |= FALLEN
     if fallen or not (moving or pushed):
@@ -379,9 +358,6 @@ def _move_body(
     walk: Record,
     live: Record,
     joints: Record,
-    legs: Array,
-    axes: Array,
-    origins: Array,
     angles: Array,
     head: Point,
     robot: Record,
@@ -395,7 +371,7 @@ def _move_body(
     offset = walk.corrections.com_offset
     dx, dy = rotate(before, offset[0], offset[1])
     com = (pendulum.x + (limbs.offset[0] + dx), pendulum.y + (limbs.offset[1] + dy))
-    set_posture(angles, walk, live.gait, com, turned, joints, legs, axes, origins, robot)
+    set_posture(angles, walk, live.gait, com, turned, joints, robot)
     limbs.turn_rate = (limbs.pelvis[2] - before) / CONTROL_PERIOD
     if not limbs.moved:
         limbs.moved = True

@@ -43,10 +43,6 @@ class Engine(Protocol):
     """Walking from standing until the first fall; `WalkingEngine` or a replacement."""
 
     @property
-    def command_limits(self) -> CommandLimits:
-        """How the last command was limited."""
-
-    @property
     def limits(self) -> tuple[Limit, ...]:
         """Constraints that limited the last command."""
 
@@ -100,13 +96,6 @@ class Walker:
         self.get_up: GetUp | None = None
         self._command: Command = VelocityCommand()
         self._steps = 0
-
-    @property
-    def command_limits(self) -> CommandLimits:
-        """How the last command was limited; zero is applied while the robot is down."""
-        if self.get_up is None:
-            return self._engine.command_limits
-        return CommandLimits(self._command, VelocityCommand(), self.limits)
 
     @property
     def limits(self) -> tuple[Limit, ...]:
@@ -171,7 +160,7 @@ class Walker:
             phase=phase,
             fallen=True,
             applied_velocity=np.zeros(3),
-            command_limits=self.command_limits,
+            command_limits=CommandLimits(self._command, VelocityCommand(), self.limits),
         )
 
     def _stand(self) -> None:

@@ -198,7 +198,7 @@ def test_explicit_footsteps_arrive_as_their_velocity(robot):
     engine = engine_of(robot, walker)
     engine.step(standing(robot), command, HeadTarget())
     assert walker.calls[-1] == VelocityCommand(*command.velocity)
-    assert engine.command_limits.applied == walker.calls[-1]
+    assert engine.state().command_limits.applied == walker.calls[-1]
 
 
 def test_the_head_moves_to_its_target_within_its_limits(robot):

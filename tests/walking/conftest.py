@@ -155,7 +155,7 @@ def make_walk(model):
         half = float(model.robot.gait.half_stance)
         stance = stance or (Foothold(True, 0.0, half, 0.0), Foothold(False, 0.0, -half, 0.0))
         walk = np.zeros(1, WALK)[0]
-        plans = np.zeros(3, PLAN)
+        plans = np.zeros(4, PLAN)
         gait = plans[LIVE].gait
         for side, foot in enumerate(stance):
             put(gait.footholds[side], foot)
@@ -163,7 +163,7 @@ def make_walk(model):
         for timing in (gait.clock.timing, walk.steering.timing):
             put_timing(timing, cadence(STILL, model.robot))
         stand(gait, model.robot)
-        walk.admission.clock, walk.admission.landing = gait.clock, gait.landing
+        walk.admission.clock, plans[LIVE].landing = gait.clock, gait.landing
         walk.admission.fraction = 1.0
         return walk, plans
 

@@ -29,9 +29,8 @@ from walking.records import KNOT, LIVE
 from walking.steering import (
     follow_command,
     moves,
+    set_wanted_strides,
     use_next_timing,
-    wanted_strides,
-    wanted_velocity,
 )
 from walking.support import support_region
 
@@ -151,7 +150,7 @@ class Walk:
     def __init__(self, model, make_walk):
         self.model = model
         self.walk, self.plans = make_walk()
-        self.knots = np.zeros((3, 200), KNOT)
+        self.knots = np.zeros((4, 200), KNOT)
         self.live, self.placing = self.plans[LIVE], self.walk.placing
         self.gait, pendulum = self.live.gait, self.walk.pendulum
         shift = self.gait.clock.shift
@@ -161,7 +160,7 @@ class Walk:
     def steer(self, velocity):
         walk, robot = self.walk, self.model.robot
         walk.steering.command.values[:3] = velocity
-        follow_command(walk.steering, walk.scratch, robot, 1.0, True, True)
+        follow_command(walk.steering, 1.0, True, True, robot)
 
     def tick(self, velocity, error=NONE):
         walk, gait, model = self.walk, self.gait, self.model
@@ -173,18 +172,17 @@ class Walk:
         retime(gait, timing, robot)
         if not gait.stepping and moves(steering):
             start(gait, 0, False, robot)
-        wanted_strides(walk.wanted, steering, STILL, robot)
+        set_wanted_strides(steering, STILL, robot)
         loading = support_foot(gait)
         unloading = swing_foot(gait) if gait.double else loading
         margin = robot.pattern.sole_margin
         region = support_region(robot.support, unloading, loading, margin)
-        wanted, moving = wanted_velocity(steering), moves(steering)
+        walk.sensing.dcm_x, walk.sensing.dcm_y = error
         plans = (walk, self.plans, self.knots)
-        place_foot(*plans, walk.wanted, wanted, error, region, moving, robot)
+        place_foot(*plans, region, robot)
         advance_pendulum(*plans, region, *model)
-        rest = (self.live.steps, self.live.step_count, self.placing.moving)
-        advance(gait, walk.limbs.feet, *rest, robot)
-        end_capture(walk, self.plans)
+        advance(self.live, walk.limbs.feet, robot)
+        end_capture(walk, self.live)
 
     def to_swing(self, velocity, phase=0.3):
         """Walk until a foot swings, some footsteps on."""

@@ -37,7 +37,7 @@ def walk(engine, body, command, seconds):
     reports = []
     for _ in range(round(seconds / CONTROL_PERIOD)):
         body.apply(engine.step(body.sense(), command, AHEAD))
-        reports.append(engine.command_limits)
+        reports.append(engine.state().command_limits)
     return reports
 
 
@@ -115,7 +115,7 @@ class Observer:
         names = ("step_forward", "step_side", "step_turn", "reach_forward", "reach_side")
         limits = replace(parameters.limits, **dict.fromkeys(names, WIDE))
         gait = replace(parameters.gait, foot_clearance=-WIDE)
-        self._walk, self._gait = engine._walk, engine._plan.gait
+        self._plan, self._gait = engine._plan, engine._plan.gait
         self._usual = make_model(parameters=parameters).robot
         free = replace(parameters, limits=limits, gait=gait)
         self._free = make_model(parameters=free).robot
@@ -132,7 +132,7 @@ class Observer:
             return command == STAND
         if command == STAND and not stepped:
             return False
-        goes_on = bool(self._walk.admission.moving) == (command != STAND)
+        goes_on = bool(self._plan.moving) == (command != STAND)
         return goes_on and self._as_commanded(command) and self._under_way()
 
     def _as_commanded(self, command):
@@ -152,7 +152,7 @@ class Observer:
             # A stop may be faster than the usual cadence, not slower.
             faster = time < (usual[0] + usual[1]) * CONTROL_PERIOD
             timely = timing.item() == usual or (velocity == STILL and faster)
-        made = self._walk.admission.following
+        made = self._plan.following
         same = all(
             np.allclose(made[foot].item(), wanted[foot].item(), rtol=0.0, atol=ROUNDING)
             for foot in ("left", "right")
@@ -162,7 +162,7 @@ class Observer:
     def _under_way(self):
         """Whether the footstep under way is one of them."""
         gait, timing = self._gait, self._gait.clock.timing
-        nominal = landing_of(support_foot(gait), self._walk.admission.following)
+        nominal = landing_of(support_foot(gait), self._plan.following)
         return bool(
             (not gait.double or gait.clock.shift.end == timing.double)
             and gait.clock.single.ticks == timing.single
@@ -196,7 +196,7 @@ def test_limited_is_reported_if_and_only_if_the_footsteps_differ_from_the_comman
         if k % 100 < 15:
             sensors = tilted(sensors, *tilt)
         ideal_body.apply(engine.step(sensors, command, AHEAD))
-        report, truth = engine.command_limits, observer.obeys(command)
+        report, truth = engine.state().command_limits, observer.obeys(command)
         assert report.commanded == command
         reported.update(report.limits)
         if truth is None:

@@ -36,7 +36,8 @@ class Feed:
         self.joints["angle"] = robot.ready
         legs = zip(robot.legs, (LEFT_LEG, RIGHT_LEG), strict=True)
         axes, origins = zip(*(leg.joints(robot.ready[part]) for leg, part in legs), strict=True)
-        self.legs, self.walk = (np.array(axes), np.array(origins)), np.zeros(1, WALK)[0]
+        self.walk = np.zeros(1, WALK)[0]
+        self.walk.limbs.axes, self.walk.limbs.origins = axes, origins
 
     def offsets(
         self,
@@ -56,8 +57,8 @@ class Feed:
         set_motion(self.joints, angles, *motion, pelvis[2], acceleration, self.constants)
         walk.limbs.pelvis, walk.limbs.load = pelvis, right_load
         walk.zmp_shift_x, walk.zmp_shift_y = shift
-        rest = (dynamics.forces(), np.array(gyro), soles, self.constants)
-        set_offsets(self.joints, walk, *self.legs, *rest)
+        forces = dynamics.forces()
+        set_offsets(self.joints, walk, forces, np.array(gyro), soles, self.constants)
         return self.joints["offset"].copy()
 
 

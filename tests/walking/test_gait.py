@@ -24,7 +24,7 @@ from walking.gait import (
 )
 from walking.parameters import CONTROL_PERIOD, WalkingParameters
 from walking.records import LIVE, SINGLE, TIMING, parameters_record
-from walking.steering import follow_command, moves, use_next_timing, wanted_strides
+from walking.steering import follow_command, moves, set_wanted_strides, use_next_timing
 
 PARAMETERS = WalkingParameters()
 GAIT, LIMITS = PARAMETERS.gait, PARAMETERS.limits
@@ -56,7 +56,7 @@ class Walk:
             put(gait.landing, aimed(gait, self.landing, wanted, model.robot))
         plan_walk(self.plan, self.landing, strides, moving, model.robot)
         ramps = self.plan.ramps[: self.plan.ramp_count].copy()
-        advance(gait, self.feet, self.plan.steps, self.plan.step_count, moving, model.robot)
+        advance(self.plan, self.feet, model.robot)
         return ramps
 
     def swing_to(self, phase, velocity=FORWARD):
@@ -259,12 +259,11 @@ def stop(walk, velocity, stop_at):
         steering.command.values[:3] = velocity if tick < stop_at else STILL
         if tick == stop_at:
             completed = int(walk.gait.completed)
-        scratch, robot = walk.walk.scratch, model.robot
-        follow_command(steering, scratch, robot, 1.0, True, True)
+        follow_command(steering, 1.0, True, True, model.robot)
         use_next_timing(timing, steering, walk.gait.clock.timing, walk.gait.stepping)
-        retime(walk.gait, timing, robot)
-        wanted_strides(walk.walk.wanted, steering, STILL, robot)
-        walk.tick(strides=walk.walk.wanted, moving=moves(steering))
+        retime(walk.gait, timing, model.robot)
+        set_wanted_strides(steering, STILL, model.robot)
+        walk.tick(strides=steering.wanted, moving=moves(steering))
         if tick >= stop_at and not walk.gait.stepping:
             break
     left, right = (foothold(foot) for foot in walk.gait.footholds)

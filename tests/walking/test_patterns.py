@@ -27,7 +27,7 @@ class Tracker:
         p = self.pendulum
         p.x, p.y, p.vy, p.zmp_x, p.zmp_y = x, y, vy, x, y
         self.region = support_region(model.robot.support, RIGHT, LEFT, 0.005)
-        self.plans, self.knots = np.zeros(3, PLAN), np.zeros((3, 200), KNOT)
+        self.plans, self.knots = np.zeros(4, PLAN), np.zeros((4, 200), KNOT)
 
     def advance(self, ramps):
         live, model = self.plans[LIVE], self.model
@@ -78,7 +78,7 @@ class Admission:
     def __init__(self, model, make_walk):
         self.model = model
         self.walk, self.plans = make_walk()
-        self.knots = np.zeros((3, 200), KNOT)
+        self.knots = np.zeros((4, 200), KNOT)
         self.live = self.plans[LIVE]
         self.gait = self.live.gait
         start(self.gait, 0, True, model.robot)
@@ -95,11 +95,12 @@ class Admission:
         p.zmp_x, p.zmp_y = ramps[0].ax, ramps[0].ay
 
     def admit(self, strides, *, moving=True):
-        admission = self.walk.admission
-        remember(admission, self.gait)
-        rest = (self.walk.pendulum, self.region, strides, moving, False, self.model.robot)
-        self.accepted = admit(admission, self.plans, self.knots, *rest)
-        return admission
+        """Fraction of the wanted change."""
+        walk = self.walk
+        remember(walk.admission, self.gait)
+        walk.steering.wanted, walk.steering.velocity[0] = strides, moving
+        self.accepted = admit(walk, self.plans, self.knots, self.region, self.model.robot)
+        return walk.admission.fraction
 
     def feasible(self):
         """Whether the plan in force is feasible by itself."""
@@ -114,9 +115,9 @@ def admission(model, make_walk):
 
 def test_a_feasible_change_is_made_at_once(admission, strides_of):
     admission.on_reference(strides_of((0.1, 0.0, 0.0)))
-    result = admission.admit(strides_of((0.12, 0.0, 0.0)))
+    fraction = admission.admit(strides_of((0.12, 0.0, 0.0)))
     assert admission.accepted
-    assert result.fraction == 1.0
+    assert fraction == 1.0
     assert admission.feasible()
 
 
@@ -128,14 +129,14 @@ def test_a_change_that_is_too_large_is_made_in_part_and_stays_feasible(admission
     live.exists, live.phases, live.count = True, best.phases, best.count
     for k in range(best.phases):
         live.supports[k] = best.supports[k]
-    before, right = foothold(admission.walk.admission.landing), float(slow.right.y)
-    result = admission.admit(fast)
-    assert 0.0 <= result.fraction < 1.0
-    assert admission.accepted == (result.fraction > 0.0)
-    moved = right + result.fraction * (float(fast.right.y) - right)
-    assert result.following.right.y == pytest.approx(moved)
-    if result.fraction == 0.0:
-        assert foothold(result.landing) == before
+    before, right = foothold(admission.live.landing), float(slow.right.y)
+    fraction = admission.admit(fast)
+    assert 0.0 <= fraction < 1.0
+    assert admission.accepted == (fraction > 0.0)
+    moved = right + fraction * (float(fast.right.y) - right)
+    assert admission.live.following.right.y == pytest.approx(moved)
+    if fraction == 0.0:
+        assert foothold(admission.live.landing) == before
     else:
         assert admission.feasible()
 
@@ -145,10 +146,10 @@ def test_without_a_plan_to_keep_the_wanted_one_is_taken(admission, strides_of):
     admission.on_reference(slow)
     admission.admit(slow)
     admission.walk.pendulum.vx += 3.0
-    result = admission.admit(fast)
+    fraction = admission.admit(fast)
     assert not admission.accepted
-    assert result.fraction == 1.0
-    assert result.following.right.x == fast.right.x
+    assert fraction == 1.0
+    assert admission.live.following.right.x == fast.right.x
 
 
 def test_a_plan_that_is_tried_changes_nothing_in_force(admission, strides_of):

@@ -30,9 +30,7 @@ class Body:
         """Joint angles (n,) and pelvis x, y, heading."""
         q, walk, model = np.empty(self.robot.ready.size), self.walk, self.model
         walk.sensing.roll, walk.sensing.pitch = tilt
-        axes, origins = np.zeros((2, 6, 3)), np.zeros((2, 6, 3))
-        legs = (self.joints, self.robot.chains, axes, origins, model.robot)
-        set_posture(q, walk, self.gait, com, head, *legs)
+        set_posture(q, walk, self.gait, com, head, self.joints, model.robot)
         return q, self.limbs.pelvis.tolist()
 
 
@@ -72,7 +70,7 @@ def test_a_foot_in_the_air_stays_level_under_a_tilted_trunk(robot, model, body):
     gait = body.gait
     start(gait, 0, False, model.robot)
     while gait.swing_phase < 0.5:
-        advance(gait, body.limbs.feet, body.plans[LIVE].steps, 0, True, model.robot)
+        advance(body.plans[LIVE], body.limbs.feet, model.robot)
     for _ in range(30):
         angles = body.posture(tilt=(0.0, 0.15))[0][RIGHT_LEG]
     stabilizer = PARAMETERS.stabilizer

@@ -11,7 +11,7 @@ from walking.body.tree import HEAD
 from walking.command import VelocityCommand
 from walking.foothold import foothold
 from walking.gait import plan_walk, start
-from walking.published import PUBLISHED, Publication, publish_camera, publish_plan
+from walking.published import PUBLISHED, publish_camera, publish_plan, walking_state
 from walking.records import LIVE, ODOMETRY, SENSING
 from walking.state import Phase
 
@@ -30,7 +30,7 @@ def look(robot, model):
     """Camera of a body that looks aside, and its pose in the base frame."""
 
     def published(**body):
-        sensing, camera = np.zeros(1, SENSING)[0], np.zeros(1, PUBLISHED)[0]
+        sensing, camera = np.zeros(1, SENSING)[0], np.zeros(1, PUBLISHED)[0].camera
         set_body(sensing, **body)
         joints, rates = robot.ready.copy(), np.zeros_like(robot.ready)
         joints[HEAD], rates[HEAD] = (0.4, -0.3), (1.0, -2.0)
@@ -81,14 +81,13 @@ def published(model, strides_of, make_walk):
     sensing.x, sensing.y, sensing.vx, sensing.vy = 0.001, -0.002, 0.01, 0.02
     placing.moved_x, placing.moved_y = 0.03, -0.01
     walk.unloading, walk.loading = plan.gait.footholds[1], plan.gait.footholds[0]
-    publication = Publication()  # a state keeps its numbers when the next one is published
+    published = np.zeros(1, PUBLISHED)  # a state keeps its numbers when the next one is published
 
     def state(x=0.0, y=0.0, yaw=0.0):
         odometry = np.zeros(1, ODOMETRY)[0]
         odometry.x, odometry.y, odometry.yaw = x, y, yaw
-        published, rest = publication.records[0], (odometry, model.robot)
-        count = publish_plan(published, publication.footsteps, walk, plan, *rest)
-        return publication.state(count, VelocityCommand(0.2), fallen=False)
+        publish_plan(published[0], walk, plan, odometry, model.robot)
+        return walking_state(published, VelocityCommand(0.2))
 
     return state
 

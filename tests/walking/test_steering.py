@@ -8,14 +8,14 @@ from hypothesis import strategies as st
 from walking.command import ACCELERATION, BALANCE, STRIDE_LIMITS
 from walking.footsteps import STILL, cadence, duration, mean_velocity, put_timing
 from walking.parameters import CONTROL_PERIOD, WalkingParameters
-from walking.records import COMMAND, STEERING, STRIDES, TIMING, parameters_record
+from walking.published import PUBLISHED, publish_limits
+from walking.records import PLAN, STEERING, TIMING, WALK, parameters_record
 from walking.steering import (
     follow_command,
     limited,
     moves,
-    report_applied,
+    set_wanted_strides,
     use_next_timing,
-    wanted_strides,
     wanted_velocity,
 )
 
@@ -32,7 +32,7 @@ class Steering:
     """Steering record that follows commands."""
 
     def __init__(self, model):
-        self.model, self.scratch = model, np.zeros(1, STRIDES)[0]
+        self.model = model
         self.record = np.zeros(1, STEERING)[0]
         put_timing(self.record.timing, cadence(STILL, model.robot))
 
@@ -40,7 +40,7 @@ class Steering:
         self.record.command.values[:3] = velocity
         model = self.model
         for _ in range(ticks):
-            follow_command(self.record, self.scratch, model.robot, fraction, True, balanced)
+            follow_command(self.record, fraction, True, balanced, model.robot)
 
     @property
     def velocity(self):
@@ -83,18 +83,18 @@ def test_a_command_within_the_limits_is_followed_exactly(steer, vx, vy, wz, gene
     steering.follow((vx, vy, wz), ticks=LONG)
     assert steering.velocity == (vx, vy, wz)
     assert not steering.bound & ~STRIDE_LIMITS
-    model, strides = steering.model, np.zeros(1, STRIDES)[0]
-    wanted_strides(strides, steering.record, STILL, model.robot)
+    record, model = steering.record, steering.model
+    set_wanted_strides(record, STILL, model.robot)
     if not steering.bound:
-        time = duration(steering.record.timing)
-        made = mean_velocity(strides, time, model.robot)
+        made = mean_velocity(record.wanted, duration(record.timing), model.robot)
         assert made == pytest.approx((vx, vy, wz), abs=1e-9)
 
 
 @settings(max_examples=40)
 @given(walks, generators)
 def test_a_command_is_reported_as_limited_if_and_only_if_it_is(steer, walk, generator):
-    steering, applied = steer(generator), np.zeros(1, COMMAND)[0]
+    steering, state = steer(generator), np.zeros(1, WALK)[0]
+    plan, published = np.zeros(1, PLAN)[0], np.zeros(1, PUBLISHED)[0]
     record, model = steering.record, steering.model
     for command, ticks in walk:
         for _ in range(ticks):
@@ -102,19 +102,11 @@ def test_a_command_is_reported_as_limited_if_and_only_if_it_is(steer, walk, gene
             error = max(abs(a - b) for a, b in zip(steering.velocity, command, strict=True))
             at_rest = command != STILL or steering.velocity == STILL
             assert bool(steering.bound & ~STRIDE_LIMITS) is (error > 1e-9 or not at_rest)
-            report_applied(
-                applied,
-                record,
-                steering.scratch,
-                steering.bound,
-                steering.velocity,
-                False,
-                steering.scratch,
-                record.timing,
-                model.robot,
-            )
-            if not steering.bound & STRIDE_LIMITS:
-                assert tuple(applied.values[:3]) == pytest.approx(steering.velocity, abs=1e-9)
+            state.steering, state.placing.applied = record, steering.velocity
+            plan.gait.clock.timing = record.timing
+            publish_limits(published, state, plan, model.robot)
+            if steering.bound and not steering.bound & STRIDE_LIMITS:
+                assert tuple(published.applied[:3]) == pytest.approx(steering.velocity, abs=1e-9)
 
 
 @settings(max_examples=40)

@@ -59,8 +59,8 @@ def test_a_fallen_robot_gets_up_or_gives_up(robot, ideal_body):
     assert walker.state().phase is Phase.GETTING_UP
     assert walker.state().fallen
     assert walker.limits == (Limit.FALLEN,)
-    assert walker.command_limits == CommandLimits(FORWARD, VelocityCommand(), walker.limits)
-    assert walker.state().command_limits == walker.command_limits
+    limits = CommandLimits(FORWARD, VelocityCommand(), walker.limits)
+    assert walker.state().command_limits == limits
     assert not walker.state().applied_velocity.any()
     fall(walker, ideal_body, 1600)
     assert walker.state().phase is Phase.FALLEN

@@ -31,7 +31,7 @@ STRETCH = 0.985  # maximum distance of hip and ankle relative to thigh and shank
 
 
 @compiled
-def _times(a: Matrix, b: Matrix) -> Matrix:
+def times(a: Matrix, b: Matrix) -> Matrix:
     """Return the product of two rotations."""
     return (
         a[0] * b[0] + a[1] * b[3] + a[2] * b[6],
@@ -47,7 +47,7 @@ def _times(a: Matrix, b: Matrix) -> Matrix:
 
 
 @compiled
-def _turned(a: Matrix, x: float, y: float, z: float) -> Vector:
+def turned(a: Matrix, x: float, y: float, z: float) -> Vector:
     """Return a rotated vector."""
     return (
         a[0] * x + a[1] * y + a[2] * z,
@@ -57,7 +57,7 @@ def _turned(a: Matrix, x: float, y: float, z: float) -> Vector:
 
 
 @compiled
-def _about(x: float, y: float, z: float, angle: float) -> Matrix:
+def about(x: float, y: float, z: float, angle: float) -> Matrix:
     """Return the rotation about a unit axis by an angle [rad]."""
     c, s = cos(angle), sin(angle)
     d = 1.0 - c
@@ -75,6 +75,13 @@ def _about(x: float, y: float, z: float, angle: float) -> Matrix:
 
 
 @compiled
+def inclined(roll: float, pitch: float) -> Matrix:
+    """Return the attitude R_RB of a trunk with roll and pitch [rad]."""
+    cr, sr, cp, sp = cos(roll), sin(roll), cos(pitch), sin(pitch)
+    return cp, sp * sr, sp * cr, 0.0, cr, -sr, -sp, cp * sr, cp * cr
+
+
+@compiled
 def _end(chain: Array, angles: Array, axes: Array, origins: Array) -> tuple[Matrix, Vector]:
     """Return rotation and position [m] of the end of a chain.
 
@@ -88,23 +95,29 @@ def _end(chain: Array, angles: Array, axes: Array, origins: Array) -> tuple[Matr
     px, py, pz = 0.0, 0.0, 0.0
     for k in range(chain.shape[0]):
         row = chain[k]
-        dx, dy, dz = _turned(R, row[MOVE], row[MOVE + 1], row[MOVE + 2])
+        dx, dy, dz = turned(R, row[MOVE], row[MOVE + 1], row[MOVE + 2])
         px, py, pz = px + dx, py + dy, pz + dz
         fixed = (row[0], row[1], row[2], row[3], row[4], row[5], row[6], row[7], row[8])
-        R = _times(R, fixed)
+        R = times(R, fixed)
         if k < angles.shape[0]:
             x, y, z = row[AXIS], row[AXIS + 1], row[AXIS + 2]
-            axes[k, 0], axes[k, 1], axes[k, 2] = _turned(R, x, y, z)
+            axes[k, 0], axes[k, 1], axes[k, 2] = turned(R, x, y, z)
             origins[k, 0], origins[k, 1], origins[k, 2] = px, py, pz
-            R = _times(R, _about(x, y, z, angles[k]))
+            R = times(R, about(x, y, z, angles[k]))
     return R, (px, py, pz)
 
 
 @compiled
-def chain_end(chain: Array, angles: Array, rotation: Array, position: Array) -> None:
-    """Set rotation (3, 3) and position (3,) [m] of the end of a chain (forward kinematics)."""
+def chain_pose(chain: Array, angles: Array) -> tuple[Matrix, Vector]:
+    """Return rotation and position [m] of the end of a chain (forward kinematics)."""
     k = angles.shape[0]
-    R, p = _end(chain, angles, np.empty((k, 3)), np.empty((k, 3)))
+    return _end(chain, angles, np.empty((k, 3)), np.empty((k, 3)))
+
+
+@compiled
+def chain_end(chain: Array, angles: Array, rotation: Array, position: Array) -> None:
+    """Set rotation (3, 3) and position (3,) [m] of the end of a chain."""
+    R, p = chain_pose(chain, angles)
     for i in range(3):
         rotation[i, 0], rotation[i, 1], rotation[i, 2] = R[3 * i], R[3 * i + 1], R[3 * i + 2]
         position[i] = p[i]
@@ -160,9 +173,9 @@ def solve_leg(
 ) -> tuple[int, float]:
     """Solve a leg, and set axes and origins of its joints."""
     x, y, z, roll, pitch, yaw = foot
-    T = _times(
-        _times(_about(0.0, 0.0, 1.0, yaw), _about(0.0, 1.0, 0.0, pitch)),
-        _about(1.0, 0.0, 0.0, roll),
+    T = times(
+        times(about(0.0, 0.0, 1.0, yaw), about(0.0, 1.0, 0.0, pitch)),
+        about(1.0, 0.0, 0.0, roll),
     )
     J, A, e, step = np.empty((6, 6)), np.empty((6, 6)), np.empty(6), np.empty(6)
     error = 0.0
