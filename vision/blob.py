@@ -4,68 +4,17 @@ import numpy as np
 from numpy.typing import NDArray
 
 from compilation import compiled
-from compilation.value import value
+from vision.tables import BLOB
 
 Table = NDArray[np.int32]
 
 Labels = NDArray[np.uint8]
+Rows = NDArray[np.record]
+Regions = tuple[Rows, Table]
 ROW, START, STOP, COLOR = range(4)  # columns of a table of runs
 LEFT, TOP, RIGHT, BOTTOM, AREA, LABEL, RUNS = range(7)  # columns of a table of regions
 WORD = 8  # pixels that are compared at once
 REPEAT = np.uint64(0x0101010101010101)  # a label times this is a word of that label
-
-
-@value
-class Blob:
-    """Connected component of one colour class.
-
-    Attributes:
-        label: label of its colour class.
-        box: left, top, right, bottom pixel, right and bottom exclusive.
-        runs: run-length encoding: row, first and last (exclusive) column and label of each run,
-            by row, then column (n, 4) [pixel].
-        extents: first and last (exclusive) column of each row, then first and last (exclusive)
-            row of each column, concatenated (2 (bottom - top) + 2 (right - left),) [pixel].
-        touches: whether it touches the left, top, right and bottom border.
-    """
-
-    label: int
-    box: tuple[int, int, int, int]
-    runs: Table
-    extents: Table
-    touches: tuple[bool, bool, bool, bool]
-
-    @property
-    def cut(self) -> bool:
-        """Whether it touches a border."""
-        return any(self.touches)
-
-
-def find_blobs(labels: Labels, min_area: tuple[int, ...]) -> list[Blob]:
-    """Return the 8-connected components of a label image (h, w), by label, then top, then left.
-
-    Args:
-        labels: label of each pixel, 0 for background.
-        min_area: minimum area of blobs of label 1, 2, ... [pixel].
-    """
-    height, width = labels.shape
-    regions, runs, extents = regions_of(labels, np.array(min_area, np.int32))
-    blobs: list[Blob] = []
-    first_run = first_extent = 0
-    for left, top, right, bottom, _, label, count in regions.tolist():
-        last_run = first_run + count
-        last_extent = first_extent + 2 * (bottom - top + right - left)
-        blobs.append(
-            Blob(
-                label,
-                (left, top, right, bottom),
-                runs[first_run:last_run],
-                extents[first_extent:last_extent],
-                (left == 0, top == 0, right == width, bottom == height),
-            )
-        )
-        first_run, first_extent = last_run, last_extent
-    return blobs
 
 
 @compiled
@@ -133,8 +82,8 @@ def _runs_of(labels: Labels) -> tuple[Table, Table]:
 
 
 @compiled
-def _measure(runs: Table, parent: Table, min_area: Table) -> tuple[Table, Table]:
-    """Return the large enough regions (n, 7), and the region of each run, or -1 (m,)."""
+def _measure(runs: Table, parent: Table, min_area: Table, shape: tuple[int, int]) -> Regions:
+    """Return the large enough regions as blobs (n,), and the region of each run, or -1 (m,)."""
     n = len(runs)
     table = np.empty((n, 7), np.int32)
     region, index = np.empty(n, np.int32), np.empty(n, np.int32)
@@ -155,64 +104,70 @@ def _measure(runs: Table, parent: Table, min_area: Table) -> tuple[Table, Table]
         table[k, BOTTOM] = runs[i, ROW] + 1
         table[k, AREA] += runs[i, STOP] - runs[i, START]
         table[k, RUNS] += 1
-    regions = np.empty((count, 7), np.int32)
-    m = 0
+    blobs = np.zeros(count, BLOB)
+    m = first_run = first_extent = 0
     for label in range(1, len(min_area) + 1):
         for k in range(count):
-            if table[k, LABEL] == label and table[k, AREA] >= min_area[label - 1]:
-                for column in range(7):
-                    regions[m, column] = table[k, column]
-                index[k] = m
-                m += 1
+            if table[k, LABEL] != label or table[k, AREA] < min_area[label - 1]:
+                continue
+            blob = blobs[m]
+            left, top, right, bottom = table[k, 0], table[k, 1], table[k, 2], table[k, 3]
+            blob.box[0], blob.box[1], blob.box[2], blob.box[3] = left, top, right, bottom
+            blob.label, blob.first_extent = label, first_extent
+            blob.first_run = blob.last_run = first_run
+            blob.cut = left == 0 or top == 0 or right == shape[1] or bottom == shape[0]
+            first_run += table[k, RUNS]
+            first_extent += 2 * (right - left + bottom - top)
+            index[k] = m
+            m += 1
     for i in range(n):
         region[i] = index[region[i]]
-    return regions[:m], region
+    return blobs[:m], region
 
 
 @compiled
-def regions_of(labels: Labels, min_area: Table) -> tuple[Table, Table, Table]:
-    """Return the connected components of a label image: two-scan labelling of runs.
+def find_blobs(labels: Labels, min_area: Table) -> tuple[Rows, Table, Table]:
+    """Return the 8-connected components of a label image: two-scan labelling of runs.
 
     Args:
         labels: label of each pixel (h, w), 0 for background.
-        min_area: minimum area of regions of label 1, 2, ... (k,) [pixel].
+        min_area: minimum area of blobs of label 1, 2, ... (k,) [pixel].
 
     Returns:
-        Left, top, right, bottom, area, label and number of runs of each region (n, 7), by
-        label, top, left; their runs (m, 4) and extents as in `Blob`, concatenated.
+        Blobs by label, top, left, records of type `BLOB` (n,); the runs of all: row, first and
+        last (exclusive) column and label, by row, then column for each blob (m, 4) [pixel]; the
+        extents of all [pixel].
 
     Source: He, Chao and Suzuki, A run-based two-scan labeling algorithm, 2008.
     """
     all_runs, parent = _runs_of(labels)
-    regions, region = _measure(all_runs, parent, min_area)
-    n = len(regions)
-    free = np.empty(n, np.int32)
-    start = np.empty(n, np.int32)
-    m = size = 0
-    for k in range(n):
-        free[k], start[k] = m, size
-        m += regions[k, RUNS]
-        size += 2 * (regions[k, RIGHT] - regions[k, LEFT] + regions[k, BOTTOM] - regions[k, TOP])
-    runs = np.empty((m, 4), np.int32)
+    blobs, region = _measure(all_runs, parent, min_area, labels.shape)
+    size = run_count = 0
+    for k in range(len(blobs)):
+        left, top, right, bottom = blobs[k].box
+        size += 2 * (right - left + bottom - top)
+    for i in range(len(all_runs)):
+        run_count += region[i] >= 0
+    runs = np.empty((run_count, 4), np.int32)
     extents = np.empty(size, np.int32)
     extents[:] = -1
     for i in range(len(all_runs)):
-        k = region[i]
-        if k < 0:
+        if region[i] < 0:
             continue
+        blob = blobs[region[i]]
+        left, top, right, bottom = blob.box
         for column in range(4):
-            runs[free[k], column] = all_runs[i, column]
-        free[k] += 1
+            runs[blob.last_run, column] = all_runs[i, column]
+        blob.last_run += 1
         row, first, last = all_runs[i, ROW], all_runs[i, START], all_runs[i, STOP]
-        height = regions[k, BOTTOM] - regions[k, TOP]
-        width = regions[k, RIGHT] - regions[k, LEFT]
-        here = start[k] + row - regions[k, TOP]
+        height, width = bottom - top, right - left
+        here = blob.first_extent + row - top
         if extents[here] < 0:
             extents[here] = first
         extents[here + height] = last
-        columns = start[k] + 2 * height - regions[k, LEFT]
+        columns = blob.first_extent + 2 * height - left
         for column in range(columns + first, columns + last):
             if extents[column] < 0:
                 extents[column] = row
             extents[column + width] = row + 1
-    return regions, runs, extents
+    return blobs, runs, extents

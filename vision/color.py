@@ -16,7 +16,6 @@ from vision.errors import VisionError
 Labels = NDArray[np.uint8]
 
 TABLE_SIZE = 1 << 15  # one entry for each RGB555 colour
-OUTSIDE = 255  # label of pixels outside the image or in the self mask
 
 SUFFIX = ".npz"
 MAX_SIZE = 1_000_000  # of a table, unpacked; it has 34 kB [byte]

@@ -14,9 +14,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from compilation import compiled
-from vision.camera import CameraPose, PinholeCamera
 
 Array = NDArray[np.float64]
+Rows = NDArray[np.record]
 
 RIM_POINTS = 12
 MIN_DEPTH = 0.004  # points closer to the plane of the camera are clipped to this depth [m]
@@ -36,40 +36,25 @@ class BodyPart:
     centres: Array
     radii: Array
 
-    def outline(self, camera: PinholeCamera, pose: CameraPose) -> Array:
-        """Return image points whose convex hull contains the part (n, 2) [pixel].
-
-        Empty if the part is behind the camera, outside the image or around the camera.
-        """
-        middle = np.array([0.5 * camera.width, 0.5 * camera.height, camera.focal])
-        position, rotation = map(np.ascontiguousarray, (pose.position, pose.rotation))
-        return silhouette(self.centres, self.radii, position, rotation, middle)
-
 
 def apply_self_mask(
-    parts: Sequence[BodyPart],
-    labels: NDArray[np.uint8],
-    *,
-    camera: PinholeCamera,
-    pose: CameraPose,
-    label: int,
+    parts: Sequence[BodyPart], labels: NDArray[np.uint8], view: Rows, label: int
 ) -> bool:
     """Set the label of the background that may be the robot's body, in place.
 
     Args:
         parts: parts of the body.
         labels: labels of the image (h, w).
-        camera: intrinsics.
-        pose: pose of the camera.
+        view: camera of the image, a record of type `VIEW` (1,).
         label: label of the self mask.
 
     Returns:
         Whether the body may be in the image.
     """
-    outlines = [points for part in parts if len(points := part.outline(camera, pose))]
-    if not outlines:
+    outlines = (silhouette(part.centres, part.radii, view) for part in parts)
+    hulls = [cv2.convexHull(np.rint(p).astype(np.int32)) for p in outlines if len(p)]
+    if not hulls:
         return False
-    hulls = [cv2.convexHull(np.rint(points).astype(np.int32)) for points in outlines]
     left, top, width, height = cv2.boundingRect(np.concatenate(hulls))
     corner = np.array([max(left, 0), max(top, 0)], np.int32)
     window = labels[corner[1] : top + height, corner[0] : left + width]
@@ -84,9 +69,7 @@ def apply_self_mask(
 
 
 @compiled
-def silhouette(
-    centres: Array, radii: Array, position: Array, rotation: Array, camera: Array
-) -> Array:
+def silhouette(centres: Array, radii: Array, views: Rows) -> Array:
     """Return points whose convex hull contains the image of spheres (12 n, 2) [pixel].
 
     Every sphere gives a polygon around its silhouette circle. Spheres behind the camera give no
@@ -96,10 +79,10 @@ def silhouette(
     Args:
         centres: centres of the spheres (n, 3) [m].
         radii: radii of the spheres (n,) [m].
-        position: position of the camera (3,) [m].
-        rotation: rotation of the camera, columns are its right, down and forward axes (3, 3).
-        camera: half width, half height and focal length (3,) [pixel].
+        views: camera of the image, a record of type `VIEW` (1,).
     """
+    position, rotation = views[0].position, views[0].rotation
+    middle, focal = views[0].middle, views[0].focal
     points = np.empty((RIM_POINTS * len(centres), 2))
     n = 0
     low_u, high_u, low_v, high_v = inf, -inf, inf, -inf
@@ -127,11 +110,11 @@ def silhouette(
             X = p[0] * shrink + c * u + s * y * w
             Y = p[1] * shrink + s * (z * u - x * w)
             Z = max(p[2] * shrink + c * w - s * y * u, MIN_DEPTH)
-            u_image = min(max(camera[0] + camera[2] * X / Z, -FAR), FAR)
-            v_image = min(max(camera[1] + camera[2] * Y / Z, -FAR), FAR)
+            u_image = min(max(middle[0] + focal * X / Z, -FAR), FAR)
+            v_image = min(max(middle[1] + focal * Y / Z, -FAR), FAR)
             points[n, 0], points[n, 1] = u_image, v_image
             low_u, high_u = min(low_u, u_image), max(high_u, u_image)
             low_v, high_v = min(low_v, v_image), max(high_v, v_image)
             n += 1
-    outside = high_u < 0.0 or high_v < 0.0 or low_u > 2.0 * camera[0] or low_v > 2.0 * camera[1]
+    outside = high_u < 0.0 or high_v < 0.0 or low_u > 2.0 * middle[0] or low_v > 2.0 * middle[1]
     return points[:0] if outside else points[:n]

@@ -8,8 +8,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from compilation import compiled
+from compilation.record import record_type
 from navigation.observation import Observation
-from navigation.record import record_type
 
 Array = NDArray[np.float64]
 Rows = NDArray[np.record]

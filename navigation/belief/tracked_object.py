@@ -4,10 +4,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from compilation import compiled
+from compilation.record import record_type
 from navigation.belief import imm, particles
 from navigation.belief.detections import given_radius, variance_inflation
 from navigation.belief.tracks import MOVING, STATIC, TRACK, UNKNOWN, deviation, measure
-from navigation.record import record_type
 
 Array = NDArray[np.float64]
 Rows = NDArray[np.record]

@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from compilation import compiled
+from compilation.record import record
 from navigation.belief import imm, particles
 from navigation.belief.association import assign, association_costs, distinct
 from navigation.belief.detections import Detections
@@ -31,7 +32,6 @@ from navigation.belief.visibility import (
     relative_discs,
 )
 from navigation.parameters.belief import TrackingParameters
-from navigation.record import record
 
 Array = NDArray[np.float64]
 Indices = NDArray[np.int64]

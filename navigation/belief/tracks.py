@@ -8,8 +8,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from compilation import compiled
+from compilation.record import record_type
 from navigation.belief.belief import Motion, Particles, Track
-from navigation.record import record_type
 
 Array = NDArray[np.float64]
 Ints = NDArray[np.int64]

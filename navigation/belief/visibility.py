@@ -6,9 +6,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from compilation import compiled
+from compilation.record import record_type
 from compilation.value import value
 from navigation.observation import CameraView, shadow_at
-from navigation.record import record_type
 from navigation.transform import yaw_rotation
 
 Array = NDArray[np.float64]

@@ -12,6 +12,7 @@ from math import hypot, inf, tan
 import numpy as np
 from numpy.typing import NDArray
 
+from compilation.record import record
 from navigation.belief.belief import Belief
 from navigation.belief.tracks import Tracks
 from navigation.decision import SpeedLimits
@@ -24,7 +25,6 @@ from navigation.motion.unseen_ground import ground_points
 from navigation.observation import CameraView
 from navigation.parameters.navigation import NavigationParameters
 from navigation.partial_evaluation import psi_self
-from navigation.record import record
 from navigation.transform import velocity_in_world
 
 Array = NDArray[np.float64]

@@ -10,10 +10,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from compilation import compiled
+from compilation.record import record
 from navigation.belief.local_map import LocalMap, shifted
 from navigation.motion.rollout import contact_time
 from navigation.parameters.gaze import RiskParameters, UndetectedParameters
-from navigation.record import record
 
 Array = NDArray[np.float64]
 Rows = NDArray[np.record]

@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from compilation import compiled
-from navigation.record import record_type
+from compilation.record import record_type
 
 Array = NDArray[np.float64]
 Looks = NDArray[np.record]

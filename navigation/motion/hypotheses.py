@@ -6,8 +6,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from compilation import compiled
+from compilation.record import record_type
 from navigation.belief.tracks import MOVING, STATIC, TURN_RATE, VX, VY, WEIGHT, X, Y
-from navigation.record import record_type
 
 Array = NDArray[np.float64]
 Rows = NDArray[np.record]

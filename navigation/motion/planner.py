@@ -6,6 +6,7 @@ from math import atan2, cos, hypot, sin
 import numpy as np
 from numpy.typing import NDArray
 
+from compilation.record import record
 from compilation.value import value
 from navigation.belief.belief import Belief
 from navigation.belief.tracks import Tracks
@@ -37,7 +38,6 @@ from navigation.motion.velocity_modification import ModifiedSpeed, modify_speed,
 from navigation.motion.waypoint_search import search_waypoint
 from navigation.parameters.navigation import NavigationParameters
 from navigation.partial_evaluation import psi_obstacle, psi_self
-from navigation.record import record
 from navigation.transform import velocity_in_world
 
 Array = NDArray[np.float64]

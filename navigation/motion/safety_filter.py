@@ -9,13 +9,13 @@ from math import atan2, hypot, nan, pi
 import numpy as np
 from numpy.typing import NDArray
 
+from compilation.record import record
 from compilation.value import value
 from navigation.decision import SpeedLimits
 from navigation.motion import rollout
 from navigation.motion.hypotheses import within_reach
 from navigation.motion.velocity_mapping import Facing, envelope
 from navigation.parameters.motion import SafetyFilterParameters, VelocityMappingParameters
-from navigation.record import record
 from navigation.transform import velocity_in_world
 
 Array = NDArray[np.float64]

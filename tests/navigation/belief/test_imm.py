@@ -5,10 +5,10 @@ import pytest
 from filterpy.kalman import KalmanFilter
 from scipy.stats import multivariate_normal
 
+from compilation.record import record
 from navigation.belief import imm
 from navigation.belief.imm import FORWARD, REVERSED, STATIC
 from navigation.parameters.belief import TrackingParameters
-from navigation.record import record
 
 P = TrackingParameters()
 STOP, KEEP, TURN = [1.0, 1.0, 0.0, 0.0, 0.0], 5 * [1.0], [1.0, 1.0, -1.0, -1.0, -1.0]

@@ -1,11 +1,11 @@
 import numpy as np
 import pytest
 
+from compilation.record import record
 from navigation.belief import particles
 from navigation.belief.particles import moments
 from navigation.belief.tracks import TURN_RATE, VX, WEIGHT
 from navigation.parameters.belief import TrackingParameters
-from navigation.record import record
 
 STATE = np.array([1.0, 2.0, 0.1, -0.05, 0.2])
 COVARIANCE = np.diag([1e-4, 4e-4, 1e-4, 1e-4, 1e-4])

@@ -6,6 +6,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from compilation.record import record
 from navigation.belief.belief import Motion
 from navigation.belief.tracked_object import (
     OBJECT,
@@ -16,7 +17,6 @@ from navigation.belief.tracked_object import (
 )
 from navigation.belief.tracks import MOTIONS, Tracks, join, max_deviation
 from navigation.parameters.belief import TrackingParameters
-from navigation.record import record
 
 
 def test_max_deviation_is_that_of_the_eigenvalues_and_ignores_rotation():

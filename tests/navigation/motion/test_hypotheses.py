@@ -3,12 +3,12 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from compilation.record import record
 from navigation.belief.belief import Motion
 from navigation.belief.imm import arc
 from navigation.belief.tracks import Tracks
 from navigation.motion.hypotheses import chord_velocity, collision_discs, within_reach
 from navigation.parameters.motion import SafetyFilterParameters
-from navigation.record import record
 
 P = SafetyFilterParameters()
 SURE = 0.12 + 0.08 + 0.005 + P.margin

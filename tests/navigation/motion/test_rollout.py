@@ -5,11 +5,11 @@ from math import inf, nan
 import numpy as np
 import pytest
 
+from compilation.record import record
 from navigation.angles import wrap_array
 from navigation.motion import rollout as kernel
 from navigation.motion.hypotheses import DISC
 from navigation.parameters.motion import SafetyFilterParameters
-from navigation.record import record
 
 ENVELOPE = (0.2, 0.1, 0.08, 0.8, 1.5)
 GAIT = (0.34, 0.1, 0.4, 0.5, 0.096)
