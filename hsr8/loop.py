@@ -20,9 +20,7 @@ from hsr8.robot_builder import (
     build_body,
     build_model,
     build_robot,
-    camera_sight,
-    field_of_view,
-    head_camera,
+    camera_model,
     require_planner,
 )
 from hsr8.robots.loaded import load_robot
@@ -139,15 +137,8 @@ class Simulation:
         self._camera_rng = named_rng(self.seed, "camera")
         camera = scenario.camera
         if camera.source != "rendered":
-            optics = head_camera(scenario)
             self._analytic = AnalyticCamera(
-                self.layout,
-                optics,
-                camera,
-                self._camera_rng,
-                self._camera_faults,
-                fov=field_of_view(scenario, optics)[0],
-                sight=camera_sight(scenario),
+                self.layout, camera, camera_model(scenario), self._camera_rng, self._camera_faults
             )
         self._feed = CameraFeed(camera, named_rng(self.seed, "camera_feed"), self._camera_faults)
         self._record_ticks = round(scenario.recorder.period_ms / 1000 / CONTROL_PERIOD)

@@ -13,10 +13,9 @@ from hsr8.decisions import Decision, DecisionContext, Decisions, FrameRecord, Im
 from navigation.angles import wrap
 from navigation.belief.belief import Belief
 from navigation.decision import GazeDecision, MotionDecision
-from navigation.observation import CameraView, Frame, Sight
+from navigation.observation import CameraModel, CameraView, Frame
 from vision.camera import CameraPose
 from vision.detection import Detection
-from vision.parameters import PoseParameters
 from walking.command import Command, HeadTarget, VelocityCommand
 from walking.odometry import Odometry, increment
 from walking.signals import BodySensors, JointTargets
@@ -74,11 +73,8 @@ class Robot:
 
     Args:
         walking: walking engine.
-        fov: horizontal and vertical field of view of the head camera [rad].
-        sight: what an image must show of an obstacle.
+        camera: constants of the head camera.
         vision: detector; unused when the frames carry detections.
-        pose: uncertainty of the camera pose.
-        blind_above: rate of the camera above which its images show nothing [rad/s].
         belief: estimator.
         decisions: mission, motion planner and gaze planner.
         schedule: commands that replace those of the motion planner, read every tick.
@@ -88,20 +84,15 @@ class Robot:
         self,
         *,
         walking: Walker,
-        fov: tuple[float, float],
-        sight: Sight,
+        camera: CameraModel,
         vision: Detector,
-        pose: PoseParameters,
-        blind_above: float,
         belief: Estimator,
         decisions: Decisions,
         schedule: CommandSource | None = None,
     ) -> None:
         self.walking = walking
-        self._fov, self._sight = fov, sight
+        self._camera = camera
         self._vision = vision
-        self._pose = pose
-        self._blind_above = blind_above
         self._belief = belief
         self._decisions = decisions
         self._schedule = schedule
@@ -178,7 +169,7 @@ class Robot:
 
     def _perceive(self, sensed: SensorFrame, captured_state: WalkingState) -> Situation:
         image = None if sensed.image is None else sensed.image()
-        if captured_state.camera.turn_rate > self._blind_above:
+        if captured_state.camera.turn_rate > self._camera.blind_above:
             detections: tuple[Detection, ...] = ()
         elif sensed.detections is not None:
             detections = sensed.detections
@@ -217,13 +208,10 @@ class Robot:
             position=head.position,
             pan=head.pan,
             tilt=head.tilt,
-            horizontal_fov=self._fov[0],
-            vertical_fov=self._fov[1],
-            yaw_sigma=self._pose.yaw_sigma,
+            model=self._camera,
             pan_rate=head.pan_rate,
             tilt_rate=head.tilt_rate,
-            blind=head.turn_rate > self._blind_above,
-            sight=self._sight,
+            blind=head.turn_rate > self._camera.blind_above,
         )
 
     def _frame(self, time: float, state: WalkingState, detections: tuple[Detection, ...]) -> Frame:

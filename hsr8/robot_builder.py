@@ -36,8 +36,7 @@ from navigation.belief.estimator import Estimator
 from navigation.gaze.planner import GazePlanner
 from navigation.mission import Mission
 from navigation.motion.landmark_obstacles import LandmarkObstacles
-from navigation.observation import Sight
-from vision.camera import PinholeCamera
+from navigation.observation import CameraModel
 from vision.detector import Detector
 from vision.self_mask import BodyPart
 from walking.parameters import CONTROL_PERIOD, WalkingParameters
@@ -49,8 +48,9 @@ MARGINS = (("pattern", "sole_margin"), ("pattern", "plan_margin"), ("stabilizer"
 START_SIGMA, START_HEADING_SIGMA = 0.02, 0.02
 
 
-def field_of_view(scenario: Scenario, camera: PinholeCamera) -> tuple[float, float]:
+def field_of_view(scenario: Scenario) -> tuple[float, float]:
     """Return the horizontal and vertical field of view of the robot's camera [rad]."""
+    camera = scenario.camera.pinhole
     if scenario.camera.source == "omnidirectional":
         return 2.0 * pi, pi
     if scenario.camera.source == "neck-reach":
@@ -58,12 +58,18 @@ def field_of_view(scenario: Scenario, camera: PinholeCamera) -> tuple[float, flo
     return camera.horizontal_fov, camera.vertical_fov
 
 
-def camera_sight(scenario: Scenario) -> Sight:
-    """Return what the robot's camera must show of an obstacle in `scenario`."""
-    humanoid = load_robot(scenario.robot.model)
+def camera_model(scenario: Scenario) -> CameraModel:
+    """Return the constants of the robot's camera for navigation."""
+    humanoid, camera = load_robot(scenario.robot.model), scenario.camera
     body = humanoid.model.with_own_buffers()
     height = humanoid.height + float(body.frame_pose(body.tree.camera, body.ready)[1][2])
-    return Sight(scenario.vision.obstacle_height, ground_shadow(humanoid.arms, height))
+    return CameraModel(
+        *field_of_view(scenario),
+        scenario.vision.pose.yaw_sigma,
+        inf if camera.panoramic else camera.blind_above,
+        scenario.vision.obstacle_height,
+        ground_shadow(humanoid.arms, height),
+    )
 
 
 def build_robot(
@@ -86,20 +92,16 @@ def build_robot(
         walker: replaces the walking engine of the scenario.
     """
     humanoid = load_robot(scenario.robot.model)
-    camera = head_camera(scenario)
     schedule = build_schedule(scenario, named_rng(seed, "command"))
     return Robot(
         walking=build_walker(scenario, walker),
-        fov=field_of_view(scenario, camera),
-        sight=camera_sight(scenario),
+        camera=camera_model(scenario),
         vision=Detector(
-            camera,
+            scenario.camera.pinhole,
             scenario.vision,
             tuple(BodyPart(*arm) for arm in humanoid.arms),
             1e-3 * scenario.camera.shutter_ms,
         ),
-        pose=scenario.vision.pose,
-        blind_above=inf if scenario.camera.panoramic else scenario.camera.blind_above,
         belief=build_estimator(scenario, layout, named_rng(seed, "belief")),
         decisions=build_decisions(scenario, layout, seed, schedule, planner=planner, gaze=gaze),
         schedule=schedule,
@@ -154,13 +156,6 @@ def neck(scenario: Scenario) -> tuple[float, float]:
     return head.max_rate, head.max_acceleration
 
 
-def head_camera(scenario: Scenario) -> PinholeCamera:
-    """Return the intrinsics of the head camera of `scenario`."""
-    camera = scenario.camera
-    fov = camera.vertical_fov
-    return PinholeCamera.from_vertical_fov(camera.width, camera.height, fov)
-
-
 def build_schedule(scenario: Scenario, rng: np.random.Generator) -> CommandSchedule | None:
     """Return the command schedule of a walk; None where the robot navigates."""
     if not isinstance(scenario.mission, Walk):
@@ -211,8 +206,9 @@ def build_decisions(
         else:
             motion = PluginPlanner(planner, decision_limits(scenario))
     if gaze is None:
-        fov = field_of_view(scenario, head_camera(scenario))
-        gaze_planner = GazePlanner(navigation, limits, beacons, fov, neck(scenario))
+        gaze_planner = GazePlanner(
+            navigation, limits, beacons, field_of_view(scenario), neck(scenario)
+        )
     else:
         gaze_planner = PluginGaze(gaze, decision_limits(scenario))
     return Decisions(
@@ -266,11 +262,8 @@ def build_estimator(scenario: Scenario, layout: Layout, rng: np.random.Generator
 
 def build_model(scenario: Scenario, layout: Layout) -> mujoco.MjModel:
     """Return the world model of `scenario` for the camera of the robot."""
-    robot = load_robot(scenario.robot.model)
-    camera = scenario.camera
-    fov = camera.vertical_fov
-    brightness = scenario.world.brightness
-    optics = Optics(camera.width, camera.height, fov, brightness, camera.shadows)
+    robot, c = load_robot(scenario.robot.model), scenario.camera
+    optics = Optics(c.width, c.height, c.vertical_fov, scenario.world.brightness, c.shadows)
     return assemble(robot, layout, "vision", optics)
 
 

@@ -3,7 +3,7 @@
 from collections.abc import Sequence
 from dataclasses import field
 from functools import partial
-from math import pi
+from math import inf, pi
 from typing import Literal, Protocol
 
 import numpy as np
@@ -78,46 +78,59 @@ def shadow_at(bearing: float, shadow: Array) -> float:
 
 
 @value
-class Sight:
-    """What an image must show of an obstacle: its top seen from above, or its foot.
+class CameraModel:
+    """Constants of a camera: field of view, and what an image must show of an obstacle.
 
     Attributes:
-        top: height of the obstacles; 0: only the foot counts [m].
+        horizontal_fov, vertical_fov: [rad]. A horizontal field of view of pi or more means a
+            panoramic camera, which also sees up and down.
+        yaw_sigma: standard deviation of the camera's yaw [rad]. All bearings of a frame share
+            this error; their covariances include it.
+        blind_above: rate of the camera above which its images show nothing [rad/s].
+        top: height of the obstacles, whose tops are seen from above; 0: only the foot counts [m].
         shadow: distance from the camera up to which the robot's own body hides the floor, in equal
             steps of the bearing in R, from 0 to the left (n,) [m].
     """
 
+    horizontal_fov: float
+    vertical_fov: float
+    yaw_sigma: float = 0.0
+    blind_above: float = inf
     top: float = 0.0
     shadow: Array = field(default_factory=partial(np.zeros, 1))
 
 
 @value
 class CameraView:
-    """Pose and field of view of the camera in the robot frame R at the capture of a frame.
+    """Pose of the camera in the robot frame R at the capture of a frame.
 
     Attributes:
         rotation: R_RC, columns right, down, forward (3, 3).
         position: p_RC (3,) [m].
         pan, tilt: measured head angles [rad].
+        model: constants of the camera.
         pan_rate, tilt_rate: measured head rates [rad/s].
-        horizontal_fov, vertical_fov: [rad].
-        yaw_sigma: standard deviation of the camera's yaw [rad]. All bearings of the frame share
-            this error; their covariances include it.
         blind: whether the camera turned too fast for its image to show anything.
-        sight: what the image must show of an obstacle.
     """
 
     rotation: Array
     position: Array
     pan: float
     tilt: float
-    horizontal_fov: float
-    vertical_fov: float
-    yaw_sigma: float = 0.0
+    model: CameraModel
     pan_rate: float = 0.0
     tilt_rate: float = 0.0
     blind: bool = False
-    sight: Sight = Sight()
+
+    @property
+    def horizontal_fov(self) -> float:
+        """Horizontal field of view [rad]."""
+        return self.model.horizontal_fov
+
+    @property
+    def vertical_fov(self) -> float:
+        """Vertical field of view [rad]."""
+        return self.model.vertical_fov
 
 
 @value
@@ -130,7 +143,7 @@ class Frame:
             yaw is unwrapped.
         motion_covariance: covariance of the odometry increment since the previous frame, a
             displacement in R of that frame and a turn (3, 3).
-        view: pose and field of view of the camera.
+        view: pose of the camera.
         observations: detections.
     """
 

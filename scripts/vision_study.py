@@ -19,7 +19,6 @@ from hsr8.record import TickRecord
 from hsr8.robots.normal_form import HEAD_CAMERA
 from hsr8.scenario.loader import load_scenario
 from hsr8.world.model.assembly import FIELD
-from vision.camera import PinholeCamera
 
 import mujoco
 import numpy as np
@@ -44,9 +43,7 @@ class Referee:
         self.model = simulation.model
         self.data = mujoco.MjData(self.model)
         camera = simulation.scenario.camera
-        self.pinhole = PinholeCamera.from_vertical_fov(
-            camera.width, camera.height, camera.vertical_fov
-        )
+        self.pinhole = camera.pinhole
         self.renderer = mujoco.Renderer(self.model, camera.height, camera.width)
         self.renderer.enable_segmentation_rendering()
         self.camera = self.model.camera(HEAD_CAMERA).id

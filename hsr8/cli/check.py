@@ -14,7 +14,7 @@ from hsr8.files import atomic
 from hsr8.plugin_file import inspect_plugins
 from hsr8.render.image import write_png
 from hsr8.render.plan_view import PlanView
-from hsr8.robot_builder import field_of_view, head_camera
+from hsr8.robot_builder import field_of_view
 from hsr8.scenario.loader import load_scenario
 from hsr8.scenario.schema import Scenario
 from hsr8.scenario.section import Section
@@ -58,7 +58,7 @@ def summarize(scenario: Scenario, world: FairWorld) -> dict[str, Any]:
     clearance = None
     if len(certificate.path) and layout.obstacles:
         clearance = round(min_clearance(layout, certificate.path, scenario.robot.radius), 3)
-    fov = [round(degrees(angle)) for angle in field_of_view(scenario, head_camera(scenario))]
+    fov = [round(degrees(angle)) for angle in field_of_view(scenario)]
     x, y, heading = layout.start
     goal_heading = layout.goal_heading
     return {

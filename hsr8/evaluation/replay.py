@@ -23,11 +23,11 @@ from hsr8.robot_builder import (
     build_estimator,
     build_model,
     build_schedule,
-    camera_sight,
+    camera_model,
 )
 from hsr8.seeds import named_rng
 from hsr8.world.field.generator import draw_layout
-from navigation.observation import CameraView, Frame, Sight
+from navigation.observation import CameraModel, CameraView, Frame
 from vision.detection import Detection
 from walking.parameters import CONTROL_PERIOD
 from walking.signals import JointTargets
@@ -142,7 +142,7 @@ def _computed(run: Run) -> Iterator[RecordedFrame]:
     schedule = build_schedule(scenario, named_rng(run.seed, "command"))
     decisions = build_decisions(scenario, layout, run.seed, schedule)
     sampler = FrameSampler(layout.scale)
-    inputs = zip(_inputs(run.frames, camera_sight(scenario)), run.frames["first_plan"], strict=True)
+    inputs = zip(_inputs(run.frames, camera_model(scenario)), run.frames["first_plan"], strict=True)
     for index, ((detections, measured, context), first_plan) in enumerate(inputs):
         try:
             estimate = estimator.update(measured)
@@ -166,7 +166,7 @@ def _computed(run: Run) -> Iterator[RecordedFrame]:
 
 
 def _inputs(
-    frames: Table, sight: Sight
+    frames: Table, camera: CameraModel
 ) -> Iterator[tuple[tuple[Detection, ...], Frame, DecisionContext]]:
     """Yield the inputs of estimator and decisions of every frame."""
     items = frames["detections"]
@@ -177,7 +177,7 @@ def _inputs(
         items.counts.tolist(), *objects, *views, strict=True
     ):
         detected = tuple(islice(detections, count))
-        view = CameraView(**now, sight=sight)
+        view = CameraView(**now, model=camera)
         frame = Frame(
             **measured,
             view=replace(view, **capture),

@@ -24,7 +24,6 @@ from hsr8.export.urdf import MESHES, urdf_of
 from hsr8.recorder.palette import of_label
 from hsr8.recorder.run.run import Run
 from hsr8.recorder.table import Table
-from hsr8.robot_builder import head_camera
 from hsr8.robots.loaded import LoadedRobot, load_robot
 from hsr8.robots.shown import stature
 
@@ -235,7 +234,7 @@ def _motion(records: Table, messages: Messages) -> Iterator[Topic]:
 
 def _camera(run: Run, messages: Messages) -> Iterator[Topic]:
     """Yield the images of the head camera, stamped when they were taken."""
-    images, camera = run.images, head_camera(run.scenario())
+    images, camera = run.images, run.scenario().camera.pinhole
     arrivals, captures = nanoseconds(images["time"]), nanoseconds(images["captured"]).tolist()
     kind = "sensor_msgs/msg/CompressedImage"
     pictures = [

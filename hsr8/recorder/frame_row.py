@@ -155,13 +155,16 @@ FRAME = Row(
     ),
     Column(
         "fov",
-        (f"{CONTEXT}.view.horizontal_fov", f"{CONTEXT}.view.vertical_fov"),
+        (f"{CONTEXT}.view.model.horizontal_fov", f"{CONTEXT}.view.model.vertical_fov"),
         "horizontal and vertical field of view",
         "rad",
         (2,),
     ),
     Column(
-        "yaw_sigma", f"{CONTEXT}.view.yaw_sigma", "standard deviation of the camera's yaw", "rad"
+        "yaw_sigma",
+        f"{CONTEXT}.view.model.yaw_sigma",
+        "standard deviation of the camera's yaw",
+        "rad",
     ),
     Column("step_count", f"{CONTEXT}.step_count", "completed steps at `time`", type=INT),
     Column("pose", f"{BELIEF}.pose", "believed pose at `time`", POSE, (3,)),

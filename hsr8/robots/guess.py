@@ -37,7 +37,7 @@ SPREAD = 0.25  # angle of hanging arms from the vertical [rad]
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class CameraView:
+class MountedCamera:
     """Camera of a model.
 
     Attributes:
@@ -99,7 +99,7 @@ def guess(model: mujoco.MjModel) -> Guess:
     return replace(roles, findings=(base, *roles.findings))
 
 
-def guess_roles(skeleton: Skeleton, cameras: Sequence[CameraView] = ()) -> Guess:
+def guess_roles(skeleton: Skeleton, cameras: Sequence[MountedCamera] = ()) -> Guess:
     """Guess the roles of a robot at zero angles.
 
     Args:
@@ -303,7 +303,7 @@ def _hanging(skeleton: Skeleton, arms: Limb) -> Iterator[tuple[str, float]]:
 
 
 def _camera(
-    stance: Stance, head: tuple[int, int] | None, cameras: Sequence[CameraView]
+    stance: Stance, head: tuple[int, int] | None, cameras: Sequence[MountedCamera]
 ) -> tuple[str | None, Finding]:
     """Return a camera that looks forward, in the head if there is one."""
     forward = [c for c in cameras if float(stance.rotation[0] @ c.direction) > 0.5]
@@ -322,7 +322,7 @@ def _camera(
     return choices[0].name, Finding("camera", choices[0].name, "certain", reason)
 
 
-def _views(model: mujoco.MjModel, skeleton: Skeleton) -> Iterator[CameraView]:
+def _views(model: mujoco.MjModel, skeleton: Skeleton) -> Iterator[MountedCamera]:
     """Yield the cameras that are fixed to the robot, at zero angles."""
     data = mujoco.MjData(model)
     for j in range(model.njnt):
@@ -337,4 +337,4 @@ def _views(model: mujoco.MjModel, skeleton: Skeleton) -> Iterator[CameraView]:
         body = model.body(model.cam_bodyid[c]).name
         if model.cam_mode[c] == fixed and body in skeleton.group and model.camera(c).name:
             direction = -data.cam_xmat[c].reshape(3, 3)[:, 2] @ root
-            yield CameraView(model.camera(c).name, skeleton.group[body], direction)
+            yield MountedCamera(model.camera(c).name, skeleton.group[body], direction)

@@ -8,6 +8,7 @@ from annotated_types import Ge, Interval, Le, MultipleOf, doc
 from pydantic import model_validator
 
 from hsr8.scenario.section import CONTROL_PERIOD_MS, PeriodMs, Section
+from vision.camera import PinholeCamera
 
 IDEAL = {
     "camera": {"vertical_fov_deg": 70.0, "blind_above": 10_000.0},
@@ -93,6 +94,11 @@ class Camera(Section):
     def vertical_fov(self) -> float:
         """Vertical field of view [rad]."""
         return radians(self.vertical_fov_deg)
+
+    @property
+    def pinhole(self) -> PinholeCamera:
+        """Intrinsics."""
+        return PinholeCamera.from_vertical_fov(self.width, self.height, self.vertical_fov)
 
     @model_validator(mode="after")
     def _exposed_within_a_period(self) -> "Camera":

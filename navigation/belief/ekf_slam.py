@@ -151,7 +151,7 @@ class EkfSlam:
         R = np.zeros((2 * len(matched), 2 * len(matched)))
         y = np.zeros(2 * len(matched))
         smallest = min(bearing_variance(o) for o in matched.values())
-        R[1::2, 1::2] = min(frame.view.yaw_sigma**2, MAX_SHARED * smallest)
+        R[1::2, 1::2] = min(frame.view.model.yaw_sigma**2, MAX_SHARED * smallest)
         for row, (i, o) in enumerate(matched.items()):
             a, b = 2 * row, 2 * row + 2
             y[a:b], H[a:b][:, _entries(i)] = self._innovation(i, o)

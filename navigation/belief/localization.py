@@ -129,7 +129,7 @@ class Localizer:
         z = np.array([(o.distance, o.bearing) for o in beacons]).ravel()
         shared = MAX_SHARED * min(bearing_variance(o) for o in beacons)
         R = np.zeros((len(z), len(z)))
-        R[1::2, 1::2] = min(frame.view.yaw_sigma**2, shared)
+        R[1::2, 1::2] = min(frame.view.model.yaw_sigma**2, shared)
         for i, o in enumerate(beacons):
             R[2 * i : 2 * i + 2, 2 * i : 2 * i + 2] = o.covariance
         return z, R, np.array([self._beacons[o.label] for o in beacons])

@@ -57,7 +57,7 @@ def in_view(dx: float, dy: float, eye: np.record, shadow: Array) -> bool:
         dx: position from the camera along x of W [m].
         dy: position from the camera along y [m].
         eye: record of type `EYE`.
-        shadow: distance up to which the body hides the floor, see `Sight` (n,) [m].
+        shadow: distance up to which the body hides the floor, see `CameraModel` (n,) [m].
     """
     square = dx * dx + dy * dy
     if square > eye.range * eye.range:
@@ -188,7 +188,7 @@ class Viewpoint:
 
     Attributes:
         eye: record of type `EYE` (1,).
-        shadow: distance up to which the body hides the floor, see `Sight` (n,) [m].
+        shadow: distance up to which the body hides the floor, see `CameraModel` (n,) [m].
     """
 
     eye: Rows
@@ -197,9 +197,6 @@ class Viewpoint:
     @classmethod
     def of(cls, view: CameraView, pose: Array, reach: float, margin: float = 0.0) -> "Viewpoint":
         """Transform the camera of a frame to W; a blind camera has no range.
-
-        A horizontal field of view of pi or more means a panoramic camera, which also sees up and
-        down.
 
         Args:
             view: camera in R.
@@ -212,7 +209,7 @@ class Viewpoint:
         position = to_world @ view.position
         position[0] += x
         position[1] += y
-        half, top = 0.5 * view.horizontal_fov, view.sight.top
+        half, top = 0.5 * view.horizontal_fov, view.model.top
         panoramic = half >= 0.5 * pi
         row = (
             position,
@@ -224,7 +221,7 @@ class Viewpoint:
             top - float(position[2]) if top > 0.0 else 0.0,
             panoramic,
         )
-        return cls(np.array([row], EYE), view.sight.shadow)
+        return cls(np.array([row], EYE), view.model.shadow)
 
     def in_clear_view(
         self, points: Array, centres: Array, radii: Array, margin: float = 0.0

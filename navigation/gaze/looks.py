@@ -28,7 +28,7 @@ def set_look(
         look: record of type `LOOK`.
         point: position in R [m].
         weight: weight of the look [1].
-        shadow: distance up to which the body hides the floor, see `Sight` (n,) [m].
+        shadow: distance up to which the body hides the floor, see `CameraModel` (n,) [m].
         p: parameters; a camera that is not above the obstacles sees their feet only.
     """
     distance = sqrt(point[0] * point[0] + point[1] * point[1])

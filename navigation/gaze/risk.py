@@ -131,7 +131,7 @@ class RiskGaze(GazePolicy):
             (ground, belief.local_map.age_at(ground)),
             (self._beacons, self._beacon_weight(belief)),
             (pose, course),
-            belief.view.sight.shadow,
+            belief.view.model.shadow,
             self._limits_of(belief.view),
         )
 
@@ -144,7 +144,7 @@ class RiskGaze(GazePolicy):
 
     def _limits_of(self, view: CameraView) -> NDArray[np.record]:
         """Return the parameters of the looks for a camera, kept until the camera changes."""
-        top = view.sight.top if view.sight.top < view.position[2] else 0.0
+        top = view.model.top if view.model.top < view.position[2] else 0.0
         camera = (top, self._parameters.gaze.max_pan + 0.5 * view.horizontal_fov)
         if self._limits is None or self._limits[0] != camera:
             numbers = self._numbers | {"obstacle_height": top, "reach": camera[1]}

@@ -23,7 +23,7 @@ from hsr8.world.truth.truth import Contact, Truth
 from navigation.belief.belief import Belief, Motion, Track
 from navigation.belief.local_map import LocalMap
 from navigation.decision import GazeDecision, MotionDecision, Task, VirtualObstacle
-from navigation.observation import CameraView, Frame
+from navigation.observation import CameraModel, CameraView, Frame
 from navigation.parameters.belief import LocalMapParameters
 from vision.detection import Detection
 from walking.body.tree import JOINT_NAMES
@@ -94,7 +94,7 @@ def _frame(layout, time, pose, **change):
         "pose_covariance": np.diag([1e-4, 1e-4, 1e-4]),
         "tracks": tuple(_track(layout, i, time) for i in range(len(layout.obstacles))),
         "local_map": LocalMap(LocalMapParameters(), (float(pose[0]), float(pose[1])), time),
-        "view": CameraView(ROTATION, np.array([0.0, 0.0, 0.47]), 0.0, -0.3, 1.5, 1.22),
+        "view": CameraView(ROTATION, np.array([0.0, 0.0, 0.47]), 0.0, -0.3, CameraModel(1.5, 1.22)),
         "seen_beacons": (),
         "lost": False,
         "filter_faults": 0,

@@ -6,7 +6,7 @@ from hypothesis import strategies as st
 import hsr8
 from hsr8.errors import UsageError
 from hsr8.plugin_decisions import PluginGaze, PluginPlanner
-from hsr8.robot_builder import decision_limits, field_of_view, head_camera, known_beacons, neck
+from hsr8.robot_builder import decision_limits, field_of_view, known_beacons, neck
 from hsr8.seeds import named_rng
 from hsr8.world.field.generator import draw_layout
 from navigation.baselines.choice import build_planner
@@ -147,7 +147,7 @@ def test_the_built_in_planner_and_gaze_decide_the_same_as_plugins():
     scenario, seed = quick(), 4
     layout, limits = draw_layout(scenario, seed), scenario.speed_limits()
     planner = build_planner(scenario.navigation, limits, named_rng(seed, "planner"))
-    fov = field_of_view(scenario, head_camera(scenario))
+    fov = field_of_view(scenario)
     beacons = known_beacons(scenario, layout)
     gaze = GazePlanner(scenario.navigation, limits, beacons, fov, neck(scenario))
     plugins = hsr8.run(scenario, seed=seed, planner=planner, gaze=gaze)

@@ -7,7 +7,7 @@ import pytest
 
 from navigation.belief.belief import Belief, Motion, Particles, Track
 from navigation.decision import SpeedLimits, Task
-from navigation.observation import CameraView, Frame
+from navigation.observation import CameraModel, CameraView, Frame
 from navigation.transform import range_bearing
 from vision.detection import Detection
 
@@ -20,7 +20,7 @@ def _view(pan=0.0, tilt=-0.44, hfov=1.5, vfov=1.22):
     right = np.array([sp, -cp, 0.0])
     down = np.cross(forward, right)
     rotation = np.stack([right, down, forward], axis=1)
-    return CameraView(rotation, np.array([0.0, 0.0, HEIGHT]), pan, tilt, hfov, vfov)
+    return CameraView(rotation, np.array([0.0, 0.0, HEIGHT]), pan, tilt, CameraModel(hfov, vfov))
 
 
 def _observe(

@@ -20,12 +20,13 @@ from hsr8.world.camera.feed import CameraFaults
 from hsr8.world.field.layout import Beacon, Layout, Obstacle
 from hsr8.world.rotation import heading
 from navigation.angles import wrap, wrapped
-from navigation.observation import Sight, shadow_at
-from vision.camera import PinholeCamera
+from navigation.observation import CameraModel, shadow_at
 from vision.color import COLOR_CLASSES
 from vision.detection import Detection
+from vision.view import VIEW
 
 Array = NDArray[np.float64]
+Rows = NDArray[np.record]
 Pose = tuple[float, float, float]
 
 # Lengths are those in a world of scale 1.
@@ -58,31 +59,26 @@ class AnalyticCamera:
 
     Args:
         layout: obstacles and beacons.
-        camera: intrinsics.
         settings: settings of the camera.
+        camera: field of view, and what the robot's own body hides.
         rng: generator of noise and misses.
         faults: faults of the images.
-        fov: horizontal field of view, more than that of `camera` if panoramic [rad].
-        sight: what the robot's own body hides.
     """
 
     def __init__(
         self,
         layout: Layout,
-        camera: PinholeCamera,
         settings: Camera,
+        camera: CameraModel,
         rng: np.random.Generator,
         faults: CameraFaults,
-        *,
-        fov: float,
-        sight: Sight,
     ) -> None:
-        self._camera, self._sight = camera, sight
+        self._camera = camera
         self._scale = layout.scale
         self._rng = rng
         self._fault_rng = rng.spawn(1)[0]
         self._panoramic = settings.panoramic
-        self._half_fov = 0.5 * fov
+        self._half_fov = 0.5 * camera.horizontal_fov
         self._faults = faults
         self._movers = layout.motion()
         self._cylinders: tuple[Obstacle | Beacon, ...] = (*layout.obstacles, *layout.beacons)
@@ -90,8 +86,9 @@ class AnalyticCamera:
         self._moving = slice(len(layout.obstacles) - len(self._movers), len(layout.obstacles))
         self._sizes = np.array([(c.radius, c.height) for c in self._cylinders]).reshape(-1, 2)
         self._beacon = np.array([isinstance(c, Beacon) for c in self._cylinders], dtype=bool)
-        self._eye = np.zeros(16)
-        self._eye[12:] = camera.width, camera.height, camera.focal, self._panoramic
+        self._view: Rows = np.zeros(1, VIEW)
+        self._view["middle"] = 0.5 * settings.width, 0.5 * settings.height
+        self._view["focal"] = settings.pinhole.focal
 
     def capture(self, body: Body) -> tuple[Detection, ...]:
         """Return the detections in the present world, by distance and label."""
@@ -115,7 +112,7 @@ class AnalyticCamera:
             position: position of the camera in W (3,) [m].
             rotation: R_WC, columns right, down, forward (3, 3).
         """
-        self._eye[:3], self._eye[3:12] = position, rotation.ravel()
+        self._view["position"], self._view["rotation"] = position, rotation
         tick = ticks(time)
         detections = self._detect(time, robot, self._faults.missed(tick))
         detections += self._false_detections(robot, self._faults.false_detections(tick))
@@ -127,10 +124,11 @@ class AnalyticCamera:
         """Return the detections of cylinders; a fault hides the fraction `missed`."""
         if len(self._movers):
             self._positions[self._moving] = self._movers.positions(time)
-        offsets = self._positions - self._eye[:2]
+        offsets = self._positions - self._view["position"][0, :2]
         order = np.argsort(np.hypot(offsets[:, 0], offsets[:, 1]), kind="stable")
         positions = self._positions[order]
-        views = project_all(positions, self._sizes[order], self._beacon[order], self._eye)
+        sizes, beacon = self._sizes[order], self._beacon[order]
+        views = project_all(positions, sizes, beacon, self._view, self._panoramic)
         detections = []
         for i, row in zip(order.tolist(), views.tolist(), strict=True):
             cylinder, (distance, hidden, *box) = self._cylinders[i], row
@@ -167,12 +165,12 @@ class AnalyticCamera:
         distance, bearing = polar
         if self._panoramic or top > 0.0:
             return False
-        return distance < shadow_at(bearing, self._sight.shadow)
+        return distance < shadow_at(bearing, self._camera.shadow)
 
     def _false_detections(self, robot: Pose, mean: float) -> list[Detection]:
         """Return false detections of obstacles, `mean` on average."""
-        rng, eye = self._fault_rng, self._eye
-        ahead = atan2(eye[8], eye[5]) - robot[2]
+        rng, view = self._fault_rng, self._view[0]
+        ahead = atan2(view.rotation[1, 2], view.rotation[0, 2]) - robot[2]
         detections = []
         for _ in range(int(rng.poisson(mean)) if mean else 0):
             color = OBSTACLE_COLORS[rng.integers(len(OBSTACLE_COLORS))]
@@ -181,9 +179,9 @@ class AnalyticCamera:
             distance = self._scale * rng.uniform(*FALSE_RANGE)
             polar = (distance, ahead + rng.uniform(-self._half_fov, self._half_fov))
             direction = polar[1] + robot[2]
-            x = robot[0] + polar[0] * cos(direction) - float(eye[0])
-            y = robot[1] + polar[0] * sin(direction) - float(eye[1])
-            box = project(x, y, cylinder.radius, cylinder.height, False, eye)
+            x = robot[0] + polar[0] * cos(direction) - float(view.position[0])
+            y = robot[1] + polar[0] * sin(direction) - float(view.position[1])
+            box = project(x, y, radius, height, False, view, self._panoramic)
             if box[2]:
                 detections.append(
                     _detection(
@@ -251,46 +249,58 @@ def _detection(
 
 
 @compiled
-def _panorama_box(x: float, y: float, radius: float, height: float, eye: Array) -> Box:
+def _panorama_box(x: float, y: float, radius: float, height: float, view: np.record) -> Box:
     """Return the box in a panorama around the forward axis; it contains every direction."""
+    R, z = view.rotation, view.position[2]
+    columns, rows = 2.0 * view.middle[0], 2.0 * view.middle[1]
     distance = sqrt(x * x + y * y)
     half = asin(min(1.0, radius / distance))
-    left = wrapped(atan2(y, x) - atan2(eye[8], eye[5]))
-    column = eye[12] * (0.5 - left / (2.0 * pi))
-    reach = eye[12] * half / (2.0 * pi)
-    top = eye[13] * (0.5 - atan2(height - eye[2], distance) / pi)
-    bottom = eye[13] * (0.5 - atan2(-eye[2], distance) / pi)
+    left = wrapped(atan2(y, x) - atan2(R[1, 2], R[0, 2]))
+    column = columns * (0.5 - left / (2.0 * pi))
+    reach = columns * half / (2.0 * pi)
+    top = rows * (0.5 - atan2(height - z, distance) / pi)
+    bottom = rows * (0.5 - atan2(-z, distance) / pi)
     return column - reach, top, column + reach, bottom, False
 
 
 @compiled
-def _image_box(x: float, y: float, radius: float, height: float, eye: Array) -> Box:
+def _image_box(x: float, y: float, radius: float, height: float, view: np.record) -> Box:
     """Return the box in a pinhole image and whether it is cut; `NO_BOX` if outside."""
+    R, middle = view.rotation, view.middle
+    width, rows = 2.0 * middle[0], 2.0 * middle[1]
     left, top, right, bottom = inf, inf, -inf, -inf
     ratio = radius / sqrt(x * x + y * y)
     for side in (-ratio, ratio):
         X, Y = x - side * y, y + side * x
         for level in (0.0, 0.5, 1.0):
-            Z = level * height - eye[2]
-            depth = X * eye[5] + Y * eye[8] + Z * eye[11]
+            Z = level * height - view.position[2]
+            depth = X * R[0, 2] + Y * R[1, 2] + Z * R[2, 2]
             if depth < MIN_DEPTH:
                 return NO_BOX
-            u = 0.5 * eye[12] + eye[14] * (X * eye[3] + Y * eye[6] + Z * eye[9]) / depth
-            v = 0.5 * eye[13] + eye[14] * (X * eye[4] + Y * eye[7] + Z * eye[10]) / depth
+            u = middle[0] + view.focal * (X * R[0, 0] + Y * R[1, 0] + Z * R[2, 0]) / depth
+            v = middle[1] + view.focal * (X * R[0, 1] + Y * R[1, 1] + Z * R[2, 1]) / depth
             left, right = min(left, u), max(right, u)
             top, bottom = min(top, v), max(bottom, v)
     if (
         right < MIN_VISIBLE
-        or left > eye[12] - MIN_VISIBLE
+        or left > width - MIN_VISIBLE
         or bottom < MIN_VISIBLE
-        or top > eye[13] - MIN_VISIBLE
+        or top > rows - MIN_VISIBLE
     ):
         return NO_BOX
-    return left, top, right, bottom, left < 0.0 or top < 0.0 or right > eye[12] or bottom > eye[13]
+    return left, top, right, bottom, left < 0.0 or top < 0.0 or right > width or bottom > rows
 
 
 @compiled
-def project(x: float, y: float, radius: float, height: float, beacon: bool, eye: Array) -> Box:
+def project(
+    x: float,
+    y: float,
+    radius: float,
+    height: float,
+    beacon: bool,
+    view: np.record,
+    panoramic: bool,
+) -> Box:
     """Return left, top, right and bottom of a cylinder in the image [pixel], and whether it is cut.
 
     All are 0 if the cylinder is outside the image.
@@ -301,38 +311,43 @@ def project(x: float, y: float, radius: float, height: float, beacon: bool, eye:
         radius: [m].
         height: [m].
         beacon: whether the cylinder is a beacon, recognised only with both colours in the image.
-        eye: packed camera.
+        view: camera in W, a record of type `VIEW`.
+        panoramic: whether the camera is panoramic.
     """
-    if eye[15] != 0.0:
-        left, top, right, bottom, cut = _panorama_box(x, y, radius, height, eye)
+    width, rows = 2.0 * view.middle[0], 2.0 * view.middle[1]
+    if panoramic:
+        left, top, right, bottom, cut = _panorama_box(x, y, radius, height, view)
     else:
-        left, top, right, bottom, cut = _image_box(x, y, radius, height, eye)
-        if beacon and (top < 0.0 or bottom > eye[13]):
+        left, top, right, bottom, cut = _image_box(x, y, radius, height, view)
+        if beacon and (top < 0.0 or bottom > rows):
             return NO_BOX
         if right == 0.0:
             return NO_BOX
     left, top = float(int(max(left, 0.0))), float(int(max(top, 0.0)))
-    return left, top, min(eye[12], int(right) + 1.0), min(eye[13], int(bottom) + 1.0), cut
+    return left, top, min(width, int(right) + 1.0), min(rows, int(bottom) + 1.0), cut
 
 
 @compiled
-def project_all(positions: Array, sizes: Array, beacon: NDArray[np.bool_], eye: Array) -> Array:
+def project_all(
+    positions: Array, sizes: Array, beacon: NDArray[np.bool_], cameras: Rows, panoramic: bool
+) -> Array:
     """Return the view of every cylinder, from near to far.
 
     Args:
         positions: axes of the cylinders in W, sorted by distance from the camera (n, 2) [m].
         sizes: radii and heights (n, 2) [m].
         beacon: whether each cylinder is a beacon (n,).
-        eye: packed camera.
+        cameras: camera in W, a record of type `VIEW` (1,).
+        panoramic: whether the camera is panoramic.
 
     Returns:
         Distance from the camera [m], maximum fraction of the width that one nearer cylinder
         hides, and the box of each (n, 7).
     """
-    n = len(positions)
+    n, camera = len(positions), cameras[0]
     views, azimuth, half = np.empty((n, 7)), np.empty(n), np.empty(n)
     for i in range(n):
-        x, y = positions[i, 0] - eye[0], positions[i, 1] - eye[1]
+        x, y = positions[i, 0] - camera.position[0], positions[i, 1] - camera.position[1]
         distance, radius = sqrt(x * x + y * y), sizes[i, 0]
         views[i] = 0.0
         views[i, DISTANCE] = distance
@@ -346,7 +361,9 @@ def project_all(positions: Array, sizes: Array, beacon: NDArray[np.bool_], eye: 
             offset = wrapped(azimuth[j] - azimuth[i])
             low, high = max(-half[i], offset - half[j]), min(half[i], offset + half[j])
             views[i, HIDDEN] = max(views[i, HIDDEN], (high - low) / (2.0 * half[i]))
-        left, top, right, bottom, cut = project(x, y, radius, sizes[i, 1], beacon[i], eye)
+        left, top, right, bottom, cut = project(
+            x, y, radius, sizes[i, 1], beacon[i], camera, panoramic
+        )
         views[i, LEFT], views[i, TOP], views[i, RIGHT], views[i, BOTTOM] = left, top, right, bottom
         views[i, CUT] = cut
     return views

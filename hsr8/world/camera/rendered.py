@@ -17,7 +17,6 @@ from hsr8.world.camera.image_noise import ImageNoise
 from hsr8.world.camera.motion_blur import MotionBlur
 from hsr8.world.camera.offscreen import Offscreen
 from hsr8.world.model.assembly import FIELD
-from vision.camera import PinholeCamera
 
 if TYPE_CHECKING:
     from hsr8.world.body.body import Body
@@ -54,9 +53,7 @@ class RenderedCamera:
         self._offscreen = Offscreen(model, HEAD_CAMERA, settings.width, settings.height)
         self._blur: MotionBlur | None = None
         if settings.shutter_ms > 0.0:
-            fov = settings.vertical_fov
-            optics = PinholeCamera.from_vertical_fov(settings.width, settings.height, fov)
-            self._blur = MotionBlur(optics, 1e-3 * settings.shutter_ms)
+            self._blur = MotionBlur(settings.pinhole, 1e-3 * settings.shutter_ms)
         self._latest: Callable[[], Image] | None = None
         self._lights = _Lights(model)
         self._frustum = Frustum(model, HEAD_CAMERA, settings.width / settings.height)

@@ -8,7 +8,6 @@ import numpy as np
 import pytest
 
 from hsr8.loop import Simulation
-from hsr8.robot_builder import head_camera
 from hsr8.robots.normal_form import HEAD_CAMERA
 from hsr8.robots.posed_shapes import BEARINGS, ground_shadow
 from hsr8.scenario.loader import load_scenario
@@ -42,7 +41,7 @@ def test_the_self_mask_covers_the_swinging_arms(robot):
     scenario = load_scenario(
         "walk", ['camera.source="analytic"', f'robot.model="{robot}"', "duration=4.0"]
     )
-    rng, camera, masked, outside = np.random.default_rng(1), head_camera(scenario), 0, 0
+    rng, camera, masked, outside = np.random.default_rng(1), scenario.camera.pinhole, 0, 0
     with Simulation(scenario, 1) as simulation:
         model, humanoid = simulation.model, simulation.humanoid
         data = mujoco.MjData(model)

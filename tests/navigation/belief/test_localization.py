@@ -6,7 +6,7 @@ import pytest
 
 from navigation.angles import wrap
 from navigation.belief.localization import Localizer
-from navigation.observation import CameraView, Frame
+from navigation.observation import CameraModel, CameraView, Frame
 from navigation.parameters.belief import LocalizationParameters
 from navigation.transform import range_bearing
 from vision.detection import Detection
@@ -16,14 +16,14 @@ P0 = np.eye(3) * 4e-4
 DT = 0.1
 
 
-VIEW = CameraView(np.eye(3), np.zeros(3), 0.0, 0.0, 1.5, 1.2)
+VIEW = CameraView(np.eye(3), np.zeros(3), 0.0, 0.0, CameraModel(1.5, 1.2))
 
 
 SLIP, DRIFT, TURN_DRIFT, FOOTSTEP = 0.03, 0.003, 0.006, 0.34
 
 
 def frame(time, odometry, observations, motion=(4e-6, 4e-6, 1e-6), yaw_sigma=0.0):
-    view = replace(VIEW, yaw_sigma=yaw_sigma)
+    view = replace(VIEW, model=replace(VIEW.model, yaw_sigma=yaw_sigma))
     return Frame(time, np.array(odometry, float), np.diag(motion), view, tuple(observations))
 
 

@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 
 from navigation.belief.visibility import FREE, OCCUPIED, UNSEEN, Viewpoint, observed_cells
-from navigation.observation import Sight, shadow_at
+from navigation.observation import shadow_at
 from navigation.transform import yaw_rotation
 
 RANGE = 2.5
@@ -46,9 +46,9 @@ def scene(view):
 
     def drawn(seed):
         rng = np.random.default_rng(seed)
-        sight = Sight(0.3, rng.uniform(0.0, 1.5, 36))
+        shadow = rng.uniform(0.0, 1.5, 36)
         camera = view(pan=rng.uniform(-1, 1), tilt=-0.6, hfov=1.5, vfov=0.8)
-        camera = replace(camera, sight=sight)
+        camera = replace(camera, model=replace(camera.model, top=0.3, shadow=shadow))
         pose = rng.uniform(-1, 1, 3)
         points = rng.uniform(-3, 3, (200, 2))
         centres, radii = rng.uniform(-2, 2, (20, 2)), rng.uniform(0.05, 0.2, 20)
@@ -63,7 +63,7 @@ def eye(camera, pose):
 
 
 def contained(points, camera, pose, margin):
-    position, sight = eye(camera, pose), camera.sight
+    position, sight = eye(camera, pose), camera.model
     offset = points - position[:2]
     distance = np.hypot(offset[:, 0], offset[:, 1])
     bearing = np.arctan2(offset[:, 1], offset[:, 0]) - pose[2]

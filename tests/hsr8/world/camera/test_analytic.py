@@ -18,11 +18,13 @@ from hsr8.world.camera.analytic import (
 )
 from hsr8.world.camera.feed import CameraFaults
 from hsr8.world.field.layout import Obstacle
-from navigation.observation import Sight
+from navigation.observation import CameraModel
 from tests.vision.scene import CAMERA, pose
+from vision.view import view_of
 
+SIZE = {"width": CAMERA.width, "height": CAMERA.height, "vertical_fov_deg": 70.0}
 AHEAD = Camera(source="analytic")
-OPEN = Sight()
+OPEN = np.zeros(1)
 
 
 @pytest.fixture
@@ -36,16 +38,17 @@ def see(world, silent):
         pan=0.0,
         tilt=-0.35,
         settings=AHEAD,
-        sight=OPEN,
+        shadow=OPEN,
     ):
         layout, model = world(*obstacles, start=start)
         body = KinematicBody(model, load_robot("hsr8"), layout, silent, np.random.default_rng(0))
         body.data.joint("head_pan").qpos[0] = pan
         body.data.joint("head_tilt").qpos[0] = tilt
+        settings = settings.model_copy(update=SIZE)
         fov = {"analytic": CAMERA.horizontal_fov, "neck-reach": 4.2}.get(settings.source, 2.0 * pi)
+        constants = CameraModel(fov, pi, shadow=shadow)
         rng = np.random.default_rng(1)
-        faults = CameraFaults()
-        camera = AnalyticCamera(layout, CAMERA, settings, rng, faults, fov=fov, sight=sight)
+        camera = AnalyticCamera(layout, settings, constants, rng, CameraFaults())
         return [camera.capture(body) for _ in range(frames)]
 
     return make
@@ -153,7 +156,7 @@ def test_a_camera_within_reach_of_the_neck_sees_to_both_sides_but_not_behind(see
 @pytest.mark.parametrize("start", [(0.0, 0.0, 0.0), (1.0, -0.5, 2.2)])
 def test_the_body_hides_the_foot_of_an_obstacle_but_not_its_top(see, start):
     """The shadow of the body counts only where the border of the image cuts the top off."""
-    hidden = Sight(0.3, np.full(72, 0.7))
+    hidden = np.full(72, 0.7)
 
     def seen_at(distance):
         angle = start[2] + 1.2
@@ -162,9 +165,9 @@ def test_the_body_hides_the_foot_of_an_obstacle_but_not_its_top(see, start):
 
     near, far = seen_at(0.5), seen_at(0.85)
     assert obstacles_in(see(near, start=start, pan=1.2, tilt=-1.0))
-    assert not obstacles_in(see(near, start=start, pan=1.2, tilt=-1.0, sight=hidden))
-    assert obstacles_in(see(near, start=start, pan=1.2, tilt=-0.35, sight=hidden))
-    assert obstacles_in(see(far, start=start, pan=1.2, tilt=-1.0, sight=hidden))
+    assert not obstacles_in(see(near, start=start, pan=1.2, tilt=-1.0, shadow=hidden))
+    assert obstacles_in(see(near, start=start, pan=1.2, tilt=-0.35, shadow=hidden))
+    assert obstacles_in(see(far, start=start, pan=1.2, tilt=-1.0, shadow=hidden))
 
 
 RADIUS, HEIGHT = 0.08, 0.3
@@ -173,15 +176,12 @@ positions = st.tuples(st.floats(-3.0, 3.0), st.floats(-3.0, 3.0)).filter(
 )
 
 
-def eye(view, omnidirectional=False):
-    size = (CAMERA.width, CAMERA.height, CAMERA.focal, omnidirectional)
-    return np.array([*view.position, *view.rotation.ravel(), *size])
-
-
 @given(position=positions, pan=st.floats(-1.5, 1.5), tilt=st.floats(-0.6, 0.2))
 def test_a_box_bounds_the_projected_edges_of_the_cylinder(position, pan, tilt):
     view = pose(pan, tilt)
-    left, top, right, bottom, cut = project(*position, RADIUS, HEIGHT, False, eye(view))
+    left, top, right, bottom, cut = project(
+        *position, RADIUS, HEIGHT, False, view_of(CAMERA, view)[0], False
+    )
     across = np.array([-position[1], position[0]]) * RADIUS / np.hypot(*position)
     points = np.array(
         [[*(position + s * across), z] for s in (-1, 1) for z in (0.0, 0.5 * HEIGHT, HEIGHT)]
@@ -211,7 +211,7 @@ def test_what_is_hidden_is_the_overlap_of_two_intervals_of_azimuth(turn, offset)
         ]
     )
     sizes = np.array([[0.2, HEIGHT], [0.2, HEIGHT]])
-    views = project_all(there, sizes, np.zeros(2, bool), eye(pose()))
+    views = project_all(there, sizes, np.zeros(2, bool), view_of(CAMERA, pose()), False)
     a, b = np.arcsin(0.2 / near), np.arcsin(0.2 / far)
     overlap = min(b, offset + a) - max(-b, offset - a)
     assert views[:, DISTANCE] == pytest.approx([near, far])

@@ -6,7 +6,7 @@ from math import atan2
 import numpy as np
 import pytest
 
-from hsr8.robot_builder import build_model, camera_sight, head_camera
+from hsr8.robot_builder import build_model, camera_model
 from hsr8.robots.loaded import load_robot
 from hsr8.robots.normal_form import HEAD_CAMERA
 from hsr8.scenario.loader import load_scenario
@@ -14,7 +14,7 @@ from hsr8.world.body.kinematic import KinematicBody
 from hsr8.world.camera.rendered import RenderedCamera
 from hsr8.world.field.layout import Obstacle
 from navigation.belief.visibility import Viewpoint
-from navigation.observation import CameraView, Sight
+from navigation.observation import CameraModel, CameraView
 from vision.detector import Detector
 from vision.parameters import PoseParameters
 from vision.self_mask import BodyPart
@@ -28,12 +28,15 @@ SIGMA = PoseParameters(0.005, 0.005, 0.005, 0.005)
 def test_near_obstacles_are_found_where_they_are_expected(world, silent):
     """Of near obstacles next to the robot, whose foot its arms may hide, some are missed."""
     scenario = load_scenario("walk", [])
-    robot, camera = load_robot("hsr8"), head_camera(scenario)
+    robot, camera = load_robot("hsr8"), camera_model(scenario)
     layout, _ = world(Obstacle((1.0, 0.0), 0.065, 0.3, "red"), beacons=())
     model = build_model(scenario, layout)
     body = KinematicBody(model, robot, layout, silent, np.random.default_rng(0))
     parameters = replace(scenario.vision, pose=SIGMA)
-    detector = Detector(camera, parameters, tuple(BodyPart(*arm) for arm in robot.arms))
+    detector = Detector(
+        scenario.camera.pinhole, parameters, tuple(BodyPart(*arm) for arm in robot.arms)
+    )
+    fov = camera.horizontal_fov, camera.vertical_fov
     eyes = RenderedCamera(model, scenario.camera, np.random.default_rng(0))
     obstacle = next(
         b for b in range(model.nbody) if model.body(b).name.startswith("field/obstacle_")
@@ -49,11 +52,10 @@ def test_near_obstacles_are_found_where_they_are_expected(world, silent):
         image = eyes.capture(body)()
         rotation = body.data.camera(HEAD_CAMERA).xmat.reshape(3, 3) * (1.0, -1.0, -1.0)
         position = body.data.camera(HEAD_CAMERA).xpos.copy()
-        fov = camera.horizontal_fov, camera.vertical_fov
-        view = CameraView(rotation, position, pan, tilt, *fov, sight=camera_sight(scenario))
+        view = CameraView(rotation, position, pan, tilt, camera)
         looked, foot = (
             Viewpoint.of(v, np.zeros(3), 2.5, 0.07).in_clear_view(point[None], *NOTHING)[0]
-            for v in (view, replace(view, sight=Sight()))
+            for v in (view, replace(view, model=CameraModel(*fov)))
         )
         if not foot:
             continue  # the foot is outside the image
