@@ -36,8 +36,7 @@ from hsr8.world.truth.truth import Truth
 from navigation.decision import GazeDecision, MotionDecision
 from walking.engine import PlanDiverged
 from walking.parameters import CONTROL_PERIOD
-from walking.signals import JointTargets
-from walking.state import Phase
+from walking.state import JointTargets, Phase
 
 GOAL_DWELL = 1.0  # simulated time after the goal is reached [s]
 FALL_DWELL = 0.6  # simulated time after the final fall, so that it is visible [s]

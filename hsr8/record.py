@@ -13,8 +13,7 @@ from hsr8.scenario.fault import Fault
 from hsr8.world.truth.saturation import Saturation
 from hsr8.world.truth.truth import CollisionCounter, Falls, Truth
 from walking.command import Command, HeadTarget, Limit
-from walking.signals import BodySensors
-from walking.state import WalkingState
+from walking.state import BodySensors, WalkingState
 
 SAME_TIME = 1e-6  # times closer than this are equal [s]
 

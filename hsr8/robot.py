@@ -18,8 +18,7 @@ from vision.camera import CameraPose
 from vision.detection import Detection
 from walking.command import Command, HeadTarget, VelocityCommand
 from walking.odometry import Odometry, increment
-from walking.signals import BodySensors, JointTargets
-from walking.state import WalkingState
+from walking.state import BodySensors, JointTargets, WalkingState
 from walking.walker import Walker
 
 MAX_PENDING = 128  # images captured but not yet delivered

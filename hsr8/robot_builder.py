@@ -39,8 +39,8 @@ from navigation.motion.landmark_obstacles import LandmarkObstacles
 from navigation.observation import CameraModel
 from vision.detector import Detector
 from vision.self_mask import BodyPart
+from walking.dimension import override
 from walking.parameters import CONTROL_PERIOD, WalkingParameters
-from walking.scaling import override
 from walking.walker import Walker
 
 MARGINS = (("pattern", "sole_margin"), ("pattern", "plan_margin"), ("stabilizer", "sole_margin"))

@@ -12,7 +12,7 @@ from hsr8.robots.description import read_description
 from hsr8.robots.loaded import load_robot
 from walking.command import VelocityCommand
 from walking.parameters import GRAVITY
-from walking.signals import BodySensors
+from walking.state import BodySensors
 
 EXAMPLES = Path(__file__).parents[1] / "examples"
 PERIOD = 0.005

@@ -1,7 +1,7 @@
 """Walking: velocity commands become footsteps, footsteps become joint setpoints.
 
 The library reads the robot from one :class:`walking.body.robot_model.RobotModel` and its sensors
-from :class:`walking.signals.BodySensors` only, so it would run on the real robot unchanged.
+from :class:`walking.state.BodySensors` only, so it would run on the real robot unchanged.
 
 Another humanoid is another `walking.body.tree.RobotTree`::
 

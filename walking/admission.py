@@ -11,14 +11,19 @@ A plan that is tried is a copy: the plan in force changes only when one is taken
 """
 
 from compilation import compiled
-from walking.foothold import foothold, towards
-from walking.footsteps import landing_of, towards_strides
-from walking.gait import aimed, copy_plan, plan_walk, retime, support_foot, update_phase
+from walking.footsteps import foothold, landing_of, towards, towards_strides
+from walking.gait import aimed, retime, support_foot, update_phase
 from walking.patterns import is_feasible, remains_feasible
 from walking.pendulum import plan_pendulum
-from walking.records import BEST, LIVE, PAPER, TRIAL, WANTED, Record
+from walking.records import Record, record
+from walking.reference import BEST, LIVE, TRIAL, WANTED, copy_plan, plan_walk
 from walking.steering import moves
 from walking.support import Region
+from walking.timing import CLOCK, TIMING
+
+ADMISSION = record(stepping=bool, completed=int, clock=CLOCK, fraction=float, between=TIMING)
+"""Admission, see `walking.admission`: whether the gait was stepping, completed footsteps and clock
+in the last tick; admitted fraction of the wanted change [1]; timing of a plan that is tried."""
 
 BISECTIONS = 4  # at most 1/16 short of the maximum admissible change
 
@@ -56,7 +61,7 @@ def admit(walk: Record, plans: Record, knots: Record, region: Region, robot: Rec
         goal = aimed(gait, last, landing_of(support_foot(gait), walk.steering.wanted), robot)
     wanted.gait = gait
     plan_walk(wanted, goal, walk.steering.wanted, moves(walk.steering), robot)
-    plans[BEST].zmp = live.zmp
+    plans[BEST].functions = live.functions
     if not (admission.stepping and gait.stepping):
         _take(walk, plans, WANTED, 1.0)
         return False
@@ -65,8 +70,7 @@ def admit(walk: Record, plans: Record, knots: Record, region: Region, robot: Rec
         _take(walk, plans, WANTED, 1.0)
     else:
         accepted = _compromise(walk, plans, knots, region, robot)
-    if robot.pattern.generator == PAPER:
-        live.zmp = plans[BEST].zmp
+    live.functions = plans[BEST].functions
     return accepted
 
 

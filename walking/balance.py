@@ -15,9 +15,17 @@ from typing import NamedTuple
 from compilation import compiled
 from walking.admission import admit
 from walking.command import BALANCE, LANDING_FROZEN, LANDING_SPEED, ZMP_REGION
-from walking.foothold import Foothold, equal, foothold, put
-from walking.footsteps import equal_strides, is_same, landing_of, reachable
-from walking.gait import aimed, equal_clocks, plan_walk, shorten, support_foot
+from walking.footsteps import (
+    Foothold,
+    equal,
+    equal_strides,
+    foothold,
+    is_same,
+    landing_of,
+    put,
+    reachable,
+)
+from walking.gait import aimed, shorten, support_foot
 from walking.parameters import CONTROL_PERIOD
 from walking.patterns import advance_pattern, planned_dcm, rejects_infeasible, reset_plan
 from walking.pendulum import (
@@ -29,10 +37,15 @@ from walking.pendulum import (
     track_reference,
 )
 from walking.plane import Point, clamp, dead_zone, rotate, rotate_back
-from walking.records import LIVE, WANTED, Record
-from walking.reference import reference_of
+from walking.records import Record, record
+from walking.reference import LIVE, WANTED, plan_walk, reference_of
 from walking.steering import moves
 from walking.support import Region, clip
+from walking.timing import equal_clocks
+
+PLACING = record(applied=(float, 3), bound=int, moved_x=float, moved_y=float, accepted=bool)
+"""Foot placement: velocity that the footsteps follow; limits that bind, as bits; shift of the
+landing by a capture step [m]; whether the ZMP plan of this tick was admitted."""
 
 ROUNDING = 1e-6  # rounding error of a time in control ticks [1]
 
@@ -323,4 +336,4 @@ def end_capture(walk: Record, plan: Record) -> None:
 def merge_pendulums(walk: Record, plan: Record) -> None:
     """Drop the plan of the generator."""
     walk.off_plan = False
-    reset_plan(plan.zmp)
+    reset_plan(plan)

@@ -34,8 +34,8 @@ class CommandState:
 
     The command state of the modifiable walking pattern (Lee et al., IEEE T-RO 2008). Under a
     command state the robot steps; a zero velocity command closes the stance and stops it. The
-    defaults step in place with HSR-VIII's timing; `walking.scaling.scale_parameters` scales them to
-    another robot.
+    defaults step in place with HSR-VIII's timing; `walking.dimension.scale_parameters` scales them
+    to another robot.
 
     Attributes:
         single_support: duration of single support [s].

@@ -1,20 +1,93 @@
-"""Constants of a walk: records of the robot and its joints, from model and parameters."""
+"""Constants of a walk, from model and parameters: records of the robot and of its joints."""
 
 from math import cosh, sinh
 
 import numpy as np
 
 from walking.balance import ankle_gain
-from walking.body.robot_model import RobotModel
+from walking.body.robot_model import NECK, RobotModel
+from walking.dimension import HSR_VIII, override, scale_parameters
 from walking.estimation import steady_gains
-from walking.footsteps import STILL, velocity_strides
+from walking.feedforward import JOINT
+from walking.footsteps import STILL, STRIDES, velocity_strides
 from walking.parameters import CONTROL_PERIOD, GRAVITY, LIGHT_LOAD, WalkingParameters
-from walking.patterns import preview_gains
+from walking.patterns import PREVIEW_SUM, preview_gains
 from walking.pendulum import natural_frequency
-from walking.records import JOINT, PREVIEW_SUM, Record, parameters_record
+from walking.records import GENERATORS, SECTIONS, Record, record
 from walking.swing_reaction import leg_reaction
 
+SOLE = record(centre=float, half_length=float, half_width=float)
+"""Rectangle of a sole in the foot frame [m]."""
+
+ROBOT = record(
+    # Parameters: gait, pattern, estimator, ...
+    **SECTIONS,
+    # Pendulum: ω [1/s], cosh and sinh of ω times the control period [1].
+    omega=float,
+    cosh=float,
+    sinh=float,
+    # Weight [N], load of an unloaded foot [N], length of a leg [m].
+    weight=float,
+    light_load=float,
+    leg_length=float,
+    # Soles: all of it, and the part that the ankles can press on the floor.
+    sole=SOLE,
+    support=SOLE,
+    # Nominal centre of mass ahead of the base, and height of the base above the floor [m].
+    com_ahead=float,
+    height=float,
+    # Chains of the legs, see `walking.body.kinematics`; hip in the base frame (3) [m], ankle in the
+    # foot frame (3) [m] and maximum distance of both [m].
+    chains=(float, 2, 7, 15),
+    reach=(float, 2, 7),
+    # First joint of the ankle in a leg; factor on the stiffness of the legs [1].
+    ankle=int,
+    stiffening=float,
+    # Index and sign of the shoulder joints, -1 and 0 for none.
+    shoulders=(int, 2),
+    shoulder_signs=(float, 2),
+    neck=NECK,
+    # Strides of stepping in place.
+    still=STRIDES,
+    # Reaction of a swing leg, see `walking.swing_reaction`.
+    thrust=float,
+    knee=float,
+    lifted_weight=float,
+    # Gains: of the CoM filter (position [1], velocity [1/s]), of the ankles per DCM error [1].
+    position_gain=float,
+    velocity_gain=float,
+    ankle_gain=float,
+    # Gains of preview control, see `walking.patterns`.
+    preview_position=float,
+    preview_velocity=float,
+    preview_zmp=float,
+    preview_total=float,
+)
+"""Constants of the robot and of its walk."""
+
 LEGS = slice(0, 12)  # joints
+
+
+def parameters_for(robot: RobotModel, chosen: WalkingParameters | None = None) -> WalkingParameters:
+    """Return the parameters of a robot; for HSR-VIII exactly the defaults.
+
+    Args:
+        robot: model of the robot.
+        chosen: parameters to keep where they differ from the defaults; the others are scaled.
+    """
+    defaults = WalkingParameters()
+    scaled = scale_parameters(defaults, HSR_VIII, robot.measures())
+    return scaled if chosen is None else override(scaled, chosen, defaults)
+
+
+def parameters_record(parameters: WalkingParameters) -> Record:
+    """Return constants of which only the parameters are set (1,)."""
+    robots = np.zeros(1, ROBOT)
+    for name, section in SECTIONS.items():
+        for key in section.names or ():
+            value = getattr(getattr(parameters, name), key)
+            robots[name][key] = GENERATORS.index(value) if isinstance(value, str) else value
+    return robots
 
 
 def robot_record(robot: RobotModel, parameters: WalkingParameters) -> tuple[Record, Record]:

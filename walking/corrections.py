@@ -9,7 +9,35 @@ from math import cos, exp, sin
 from compilation import compiled
 from walking.parameters import CONTROL_PERIOD
 from walking.plane import Point, Vector, clamp
-from walking.records import Record
+from walking.records import Record, record
+
+CORRECTIONS = record(
+    # Gait cycle: first support foot and the last one, -1 for none.
+    first=int,
+    support=int,
+    # Decaying maximum of the DCM error [m].
+    max_error=float,
+    # Heading: held offset [rad], yaw rate [rad/s].
+    held=float,
+    turn=float,
+    # Speed: command, correction [m/s], last odometry pose, displacement [m] and ticks of the cycle.
+    steady=bool,
+    command=(float, 3),
+    speed=(float, 2),
+    posed=bool,
+    pose=(float, 3),
+    displacement=(float, 2),
+    ticks=int,
+    whole=bool,
+    # CoM offset: goal, sum of the errors and their number (-1: cycle discarded), offset [m].
+    goal=(float, 2),
+    error_sum=(float, 2),
+    errors=int,
+    com_offset=(float, 2),
+    # Ticks of contact of the swing foot.
+    contact=int,
+)
+"""Slow corrections, see `walking.corrections`."""
 
 NO_FOOT = -1
 

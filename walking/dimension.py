@@ -1,4 +1,4 @@
-"""Dimensions of parameters: scaling by dynamic similarity.
+"""Dimensions of parameters, and their scaling by dynamic similarity.
 
 A length scales with the legs, a time with the period of the pendulum. Powers of the robot's
 measures therefore scale parameters tuned for one robot to another one: twice the size, longer steps
@@ -8,7 +8,11 @@ gaits in the locomotion of vertebrates", Physiol. Rev. 1989).
 
 from __future__ import annotations
 
-from dataclasses import astuple, dataclass
+from dataclasses import astuple, dataclass, fields, is_dataclass, replace
+from functools import cache
+from typing import Any, TypeVar, get_type_hints
+
+Section = TypeVar("Section")
 
 
 @dataclass(frozen=True, slots=True)
@@ -111,3 +115,46 @@ ANKLE_TIME = Dimension(ankle=1.0) * TIME  # ankle setpoint per angular velocity
 PER_LENGTH = LENGTH**-1.0  # angle per length of the walk
 DECAY_PER_TICK = DecayPerTick()  # decay factor per control tick
 GAIN_PER_TICK = GainPerTick()  # filter gain per control tick
+
+
+def scale_parameters(parameters: Section, old: RobotMeasures, new: RobotMeasures) -> Section:
+    """Scale parameters from a robot with measures `old` to one with measures `new`.
+
+    Args:
+        parameters: parameters of the engine, a section of them, or a command.
+        old: measures of the robot of the parameters.
+        new: measures of the other robot.
+    """
+    section: Any = type(parameters)
+    rules = rules_of(section)
+    scaled: dict[str, Any] = {}
+    for name in (field.name for field in fields(section)):
+        value = getattr(parameters, name)
+        if is_dataclass(value):
+            scaled[name] = scale_parameters(value, old, new)
+        elif name in rules:
+            scaled[name] = rules[name].scale(value, old, new)
+    return replace(parameters, **scaled)  # type: ignore[type-var]
+
+
+@cache
+def rules_of(section: type) -> dict[str, Rule]:
+    """Return the scaling rules of the parameters of a section by name."""
+    rules = {}
+    for name, hint in get_type_hints(section, include_extras=True).items():
+        for mark in getattr(hint, "__metadata__", ()):
+            if isinstance(mark, Dimension | DecayPerTick | GainPerTick):
+                rules[name] = mark
+    return rules
+
+
+def override(scaled: Section, chosen: Section, defaults: Section) -> Section:
+    """Return `chosen` with the scaled value wherever it equals the default."""
+    values: dict[str, Any] = {}
+    for name in (field.name for field in fields(chosen)):  # type: ignore[arg-type]
+        value, default = getattr(chosen, name), getattr(defaults, name)
+        if is_dataclass(value):
+            values[name] = override(getattr(scaled, name), value, default)
+        elif value == default:
+            values[name] = getattr(scaled, name)
+    return replace(chosen, **values)  # type: ignore[type-var]

@@ -17,15 +17,16 @@ from walking.command import (
 from walking.constants import joint_records, robot_record
 from walking.odometry import LegOdometry
 from walking.parameters import CONTROL_PERIOD, WalkingParameters
+from walking.patterns import PLAN
 from walking.plane import Array
 from walking.published import PUBLISHED, publish, walking_state
-from walking.records import KNOT, LIVE, PLAN, WALK
-from walking.signals import BodySensors, JointTargets
-from walking.state import WalkingState
-from walking.tick import begin, finish, stand_ready, watch
-from walking.zmp_plan import max_knots
+from walking.reference import LIVE
+from walking.state import BodySensors, JointTargets, WalkingState
+from walking.tick import WALK, begin, finish, stand_ready, watch
+from walking.zmp_program import max_knots
+from walking.zmp_solver import KNOT
 
-PLANS = 4  # see `walking.records.LIVE`
+PLANS = 4  # see `walking.reference.LIVE`
 SUPPORTS = 5  # whose ZMP is planned
 MAX_STRETCH = 2.0  # of a single support by the minimum time in the air [1]
 

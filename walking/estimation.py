@@ -14,7 +14,37 @@ from compilation import compiled
 from walking.odometry import reckon
 from walking.parameters import CONTROL_PERIOD, EstimatorParameters
 from walking.plane import Array, Point, Vector, from_frame, norm, rotate, rotate_back
-from walking.records import Record
+from walking.records import Record, record
+
+FOOT = record(x=float, y=float, z=float, yaw=float, load=float, pressure_x=float, pressure_y=float)
+"""Measured foot: position [m] and yaw [rad] in the level frame of the heading, load [N], centre of
+pressure in the foot frame [m]."""
+
+SENSING = record(
+    started=bool,
+    roll=float,
+    pitch=float,
+    heading=float,
+    turn_rate=float,
+    feet=(FOOT, 2),
+    com=(float, 3),
+    right_load=float,
+    # Error of the body against the plan.
+    x=float,
+    y=float,
+    vx=float,
+    vy=float,
+    weighted=bool,
+    right_weight=float,
+    dcm_x=float,
+    dcm_y=float,
+    pressure_x=float,
+    pressure_y=float,
+)
+"""Measured body: filtered roll and pitch, heading of the IMU [rad]; yaw rate [rad/s]; feet; centre
+of mass [m]; load fraction of the right foot, 0.5 in the air [1]. Error of the CoM, x, y [m], vx, vy
+[m/s]; planned load fraction of the right foot, once known; error of the DCM in the plan frame [m],
+of the centre of pressure forward and left [m]."""
 
 
 def steady_gains(omega: float, parameters: EstimatorParameters) -> tuple[float, float]:

@@ -8,7 +8,25 @@ the DCM error and damp the trunk.
 from compilation import compiled
 from walking.parameters import CONTROL_PERIOD
 from walking.plane import Array, Point, Vector, clamp, rotate_back
-from walking.records import Record
+from walking.records import Record, record
+
+JOINT = record(
+    lower=float,
+    upper=float,
+    load_gain=float,
+    lag=float,
+    compliance=float,
+    ready=float,
+    in_q=int,
+    in_v=int,
+    angle=float,
+    rate=float,
+    rate_ahead=float,
+    offset=float,
+)
+"""Joint: limits [rad], feed-forward per load [rad/(N m)], velocity lag [s], compliance [rad/(N m)],
+angle of the ready posture [rad], indices in position and velocity of the dynamic model; planned
+angle [rad] and rate [rad/s], rate for the feed-forward [rad/s], feed-forward offset [rad]."""
 
 LEG_JOINTS = 6
 

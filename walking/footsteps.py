@@ -1,4 +1,4 @@
-"""Footsteps: velocities and command states become strides and timing, strides become footholds.
+"""Footsteps: velocities and command states become strides, strides become footholds.
 
 The foot on the side of a lateral or turning motion opens the stance by twice the motion of one
 footstep, the other foot closes it again; so the feet never cross and the mean velocity is the
@@ -6,6 +6,7 @@ commanded one.
 """
 
 from math import cos, sin, sqrt
+from typing import NamedTuple
 
 from compilation import compiled
 from walking.command import (
@@ -14,13 +15,19 @@ from walking.command import (
     STEP_LENGTH,
     STEP_SIDE,
     STEP_TURN,
-    SWING_HEIGHT,
-    TIMING,
 )
-from walking.foothold import Foothold, placed
 from walking.parameters import CONTROL_PERIOD
-from walking.plane import Array, Point, Vector, clamp, rotate_back
-from walking.records import Record
+from walking.plane import Array, Frame, Point, Vector, clamp, from_frame, rotate_back
+from walking.records import Record, record
+
+FOOTHOLD = record(left=bool, x=float, y=float, yaw=float)
+"""`Foothold`."""
+
+PLACEMENT = record(x=float, y=float, yaw=float)
+"""Landing in the frame of the support foot, x, y [m], yaw [rad]."""
+
+STRIDES = record(right=PLACEMENT, left=PLACEMENT)
+"""Landing of either foot in the frame of the other."""
 
 POSITION_TOLERANCE = 0.024  # of equal footholds, per half stance [1]
 YAW_TOLERANCE = 1e-3  # of equal footholds [rad]
@@ -29,11 +36,65 @@ STANCE_YAW_TOLERANCE = 0.05  # of a parallel stance [rad]
 STILL = (0.0, 0.0, 0.0)
 RIGHT, LEFT = -1.0, 1.0  # side of a foot
 
-Timing = tuple[int, int, float]
-"""Control ticks in double and single support [1], swing height [m]."""
 
 Command = tuple[float, float, float, float, float, float]
 """Fields of a `walking.command.CommandState` in order."""
+
+
+class Foothold(NamedTuple):
+    """Pose of a foot on the floor, in the plan frame; in a `WalkingState`, in the odometry frame.
+
+    Attributes:
+        left: whether it is the left foot.
+        x, y: position of the foot frame on the floor [m].
+        yaw: yaw of the foot [rad].
+    """
+
+    left: bool
+    x: float
+    y: float
+    yaw: float
+
+    @property
+    def frame(self) -> Frame:
+        """Foot frame in the plan frame."""
+        return self.x, self.y, self.yaw
+
+
+@compiled
+def foothold(record: Record) -> Foothold:
+    """Return the value of a record `FOOTHOLD`."""
+    return Foothold(record.left, record.x, record.y, record.yaw)
+
+
+@compiled
+def put(record: Record, foot: Foothold) -> None:
+    """Set a record `FOOTHOLD`."""
+    record.left, record.x, record.y, record.yaw = foot.left, foot.x, foot.y, foot.yaw
+
+
+@compiled
+def towards(one: Foothold, other: Foothold, fraction: float) -> Foothold:
+    """Interpolate linearly to another foothold of the same foot."""
+    return Foothold(
+        other.left,
+        one.x + fraction * (other.x - one.x),
+        one.y + fraction * (other.y - one.y),
+        one.yaw + fraction * (other.yaw - one.yaw),
+    )
+
+
+@compiled
+def placed(support: Foothold, x: float, y: float, turned: float) -> Foothold:
+    """Return the other foot at x, y [m] and yaw [rad] in the frame of the support foot."""
+    px, py = from_frame((support.x, support.y, support.yaw), x, y)
+    return Foothold(not support.left, px, py, support.yaw + turned)
+
+
+@compiled
+def equal(one: Foothold, other: Foothold) -> bool:
+    """Whether two footholds are the same number by number."""
+    return one.left == other.left and one.x == other.x and one.y == other.y and one.yaw == other.yaw
 
 
 @compiled
@@ -70,51 +131,6 @@ def is_same(one: Foothold, other: Foothold, robot: Record) -> bool:
 
 
 # Timing
-
-
-@compiled
-def duration(timing: Record) -> float:
-    """Return the duration of a footstep [s]."""
-    time: float = (timing.double + timing.single) * CONTROL_PERIOD
-    return time
-
-
-@compiled
-def cadence(velocity: Vector, robot: Record) -> Timing:
-    """Return the timing for a velocity (vx, vy, wz) [m/s, m/s, rad/s].
-
-    Footsteps that would exceed their limits are made faster instead.
-    """
-    gait, limits = robot.gait, robot.limits
-    vx, vy, wz = velocity
-    x, y = vx / limits.step_forward, 2.0 * vy / limits.step_side
-    turned = 2.0 * wz / limits.step_turn
-    rate = sqrt(x * x + y * y + turned * turned)
-    time = max(gait.min_footstep_time, 1.0 / max(rate, 1.0 / gait.footstep_time))
-    ticks = max(2, round(time / CONTROL_PERIOD))  # at least one of each support
-    double = min(ticks - 1, max(1, round(gait.double_support * ticks)))
-    return double, ticks - double, gait.swing_height
-
-
-@compiled
-def command_timing(command: Array, robot: Record) -> tuple[Timing, int]:
-    """Return the timing of a command state and the limits that bind."""
-    limits, bound = robot.limits, 0
-    single_support, double_support, swing_height = command[0], command[1], command[5]
-    double = min(limits.max_double, max(CONTROL_PERIOD, double_support))
-    single = min(limits.max_single, max(limits.min_single, single_support))
-    height = min(limits.max_swing_height, max(0.0, swing_height))
-    if double != double_support or single != single_support:
-        bound |= TIMING
-    if height != swing_height:
-        bound |= SWING_HEIGHT
-    return (round(double / CONTROL_PERIOD), round(single / CONTROL_PERIOD), height), bound
-
-
-@compiled
-def put_timing(record: Record, timing: Timing) -> None:
-    """Set a record `TIMING`."""
-    record.double, record.single, record.swing_height = timing
 
 
 # Strides

@@ -1,4 +1,4 @@
-"""Gait: sequence of double and single supports, landing of the swing foot, and ZMP reference.
+"""Gait: sequence of double and single supports, and landing of the swing foot.
 
 Feet are indexed 0 left, 1 right. A footstep is a double support, in which the ZMP moves onto the
 support foot, and a single support, in which the other foot swings. The plan frame is that of the
@@ -6,98 +6,50 @@ first stance. Times are control ticks.
 """
 
 from compilation import compiled
-from walking.foothold import Foothold, foothold, put
-from walking.footsteps import is_parallel, landing_of
+from walking.footsteps import FOOTHOLD, Foothold, foothold, is_parallel, landing_of, put
 from walking.parameters import CONTROL_PERIOD
-from walking.plane import Point, clamp
-from walking.records import Record
-from walking.reference import (
-    chain_footholds,
-    reference_ramps,
-    set_ramp,
-    zmp_between,
-    zmp_under,
-)
+from walking.plane import Point, clamp, from_frame
+from walking.records import Record, record
 from walking.swing import NO_FOOT, min_swing_ticks, move_feet, moved, rest_at
+from walking.timing import (
+    CLOCK,
+    phase_of,
+    put_shift,
+    put_single_support,
+    retime_single_support,
+    shift_fraction,
+    ticks_of,
+)
 
-NO_STEPS = 0
-
+GAIT = record(
+    stepping=bool,
+    support=int,
+    completed=int,
+    landed_early=bool,
+    shortened=bool,
+    shift_fixed=bool,
+    footholds=(FOOTHOLD, 2),
+    landing=FOOTHOLD,
+    clock=CLOCK,
+    tick=int,
+    swing_height=float,
+    # Of clock and tick, see `walking.gait.update_phase`.
+    elapsed=int,
+    double=bool,
+    right_weight=float,
+    ticks_left=int,
+    swing_phase=float,
+    adjustable=bool,
+)
+"""Gait, see `walking.gait`: whether a footstep is under way; index of the support foot; completed
+footsteps; whether the swing foot touched down early, this is a capture step shorter than its
+timing, and the weight shift must keep its timing; present or last foothold of each foot; landing of
+the swing foot; clock, and ticks since the begin of the footstep; height of this swing [m]; then
+ticks since the begin of single support, whether double support is planned, planned load fraction of
+the right foot [1], ticks until the end of single support, phase of the swing [1], whether the
+landing may change."""
 
 # Clock
-
-
-@compiled
-def ticks_of(time: float) -> int:
-    """Return the control ticks nearest to a time [s]."""
-    return round(time / CONTROL_PERIOD)
-
-
-@compiled
-def put_single_support(single: Record, ticks: int, robot: Record) -> None:
-    """Set a single support of a duration in control ticks."""
-    gait = robot.gait
-    single.ticks, single.origin = ticks, 0.0
-    single.first, single.last = round(gait.swing_start * ticks), round(gait.swing_end * ticks)
-
-
-@compiled
-def phase_of(single: Record, elapsed: int) -> float:
-    """Return the phase of the swing, 0 before and 1 after it [1]."""
-    fraction = (elapsed - single.first) / (single.last - single.first)
-    phase = single.origin + (1.0 - single.origin) * fraction
-    clipped: float = 0.0 if phase < 0.0 else 1.0 if phase > 1.0 else phase
-    return clipped
-
-
-@compiled
-def retime_single_support(single: Record, elapsed: int, ticks: int, robot: Record) -> None:
-    """Change the total duration of a single support that began `elapsed` ticks ago.
-
-    The swing continues from its present phase, and takes at least the minimum ticks.
-    """
-    gait, phase = robot.gait, phase_of(single, elapsed)
-    min_ticks = ticks_of(gait.min_swing_time)
-    while round(gait.swing_end * ticks) < elapsed + min_ticks:
-        ticks += 1
-    put_single_support(single, ticks, robot)
-    if phase > 0.0 or elapsed > single.first:
-        single.first, single.origin = elapsed, phase
-
-
-@compiled
-def shift_fraction(shift: Record, tick: int) -> float:
-    """Return the progress of a weight shift at a tick [1]."""
-    fraction: float = min(1.0, (tick - shift.begin) / (shift.end - shift.begin))
-    return fraction
-
-
-@compiled
-def put_shift(shift: Record, begin: int, end: int, zmp: Point, right_weight: float) -> None:
-    """Set a weight shift that begins with a ZMP [m] and a load fraction of the right foot [1]."""
-    shift.begin, shift.end, shift.right_weight = begin, end, right_weight
-    shift.zmp_x, shift.zmp_y = zmp
-
-
-@compiled
-def equal_clocks(one: Record, other: Record) -> bool:
-    """Whether two clocks are the same number by number."""
-    a, b, s, t = one.timing, other.timing, one.shift, other.shift
-    u, v = one.single, other.single
-    equal: bool = (
-        a.double == b.double
-        and a.single == b.single
-        and a.swing_height == b.swing_height
-        and s.begin == t.begin
-        and s.end == t.end
-        and s.zmp_x == t.zmp_x
-        and s.zmp_y == t.zmp_y
-        and s.right_weight == t.right_weight
-        and u.ticks == v.ticks
-        and u.first == v.first
-        and u.last == v.last
-        and u.origin == v.origin
-    )
-    return equal
 
 
 @compiled
@@ -145,6 +97,24 @@ def is_airborne(gait: Record) -> bool:
         gait.stepping and not gait.landed_early and not gait.double and 0.0 < gait.swing_phase < 1.0
     )
     return airborne
+
+
+@compiled
+def zmp_under(foot: Foothold, robot: Record) -> Point:
+    """Return the ZMP of single support on a foot [m]."""
+    pattern = robot.pattern
+    inward = -pattern.zmp_inward if foot.left else pattern.zmp_inward
+    return from_frame(
+        (foot.x, foot.y, foot.yaw), robot.support.centre + pattern.zmp_forward, inward
+    )
+
+
+@compiled
+def zmp_between(one: Foothold, other: Foothold, robot: Record) -> Point:
+    """Return the ZMP of equal loads on two feet [m]."""
+    ax, ay = zmp_under(one, robot)
+    bx, by = zmp_under(other, robot)
+    return 0.5 * (ax + bx), 0.5 * (ay + by)
 
 
 @compiled
@@ -358,51 +328,3 @@ def _land(plan: Record, feet: Record, robot: Record) -> None:
     _begin(gait, swing, gait.clock.timing.double, here, float(support), robot)
     if plan.step_count > 1:
         put(gait.landing, foothold(plan.steps[1]))
-
-
-# Plan
-
-
-@compiled
-def plan_walk(
-    plan: Record, landing: Foothold, following: Record, moving: bool, robot: Record
-) -> None:
-    """Set footholds and ZMP reference of a plan from now on.
-
-    Args:
-        plan: plan whose gait is read; all but its ZMP plan is set.
-        landing: foothold of the swing foot.
-        following: strides of the footsteps after it.
-        moving: whether the walk goes on.
-        robot: constants.
-    """
-    gait, ramps, steps = plan.gait, plan.ramps, plan.steps
-    put(plan.landing, landing)
-    plan.following, plan.moving = following, moving
-    support, swing = support_foot(gait), swing_foot(gait)
-    if not gait.stepping:
-        left, right = foothold(gait.footholds[0]), foothold(gait.footholds[1])
-        centre = zmp_between(left, right, robot)
-        zmp = scheduled_zmp(gait, robot)
-        set_ramp(ramps[0], max(1, -gait.elapsed), zmp, centre, support, swing)
-        plan.ramp_count, plan.step_count = 1, NO_STEPS
-        return
-    timing, single = gait.clock.timing, gait.clock.single.ticks
-    count, ends = chain_footholds(steps, support, landing, following, moving, robot)
-    shift, carry, zmp = 0, gait.ticks_left, (0.0, 0.0)
-    if gait.double:
-        shift, carry, zmp = -gait.elapsed, single, scheduled_zmp(gait, robot)
-    ticks = (shift, carry, timing.double, timing.single, stop_ticks(robot))
-    plan.step_count = count
-    plan.ramp_count = reference_ramps(ramps, swing, support, steps, count, ends, zmp, ticks, robot)
-
-
-@compiled
-def copy_plan(copy: Record, plan: Record) -> None:
-    """Copy a plan, except for its ZMP plan."""
-    copy.gait, copy.landing, copy.following = plan.gait, plan.landing, plan.following
-    copy.moving, copy.ramp_count, copy.step_count = plan.moving, plan.ramp_count, plan.step_count
-    for k in range(plan.ramp_count):
-        copy.ramps[k] = plan.ramps[k]
-    for k in range(plan.step_count):
-        copy.steps[k] = plan.steps[k]

@@ -1,4 +1,4 @@
-"""State estimation under a walking controller without a plan: measurements only."""
+"""State estimation and head under a walking controller without a plan: measurements only."""
 
 from math import asin, atan2
 
@@ -7,10 +7,10 @@ import numpy as np
 from compilation.value import value
 from walking.body.kinematics import inclined
 from walking.body.robot_model import RobotModel
-from walking.command import CommandLimits, VelocityCommand
-from walking.constants import robot_record
+from walking.command import CommandLimits, HeadTarget, VelocityCommand
+from walking.constants import joint_records, robot_record
 from walking.estimation import filter_error, pressure
-from walking.foothold import Foothold
+from walking.footsteps import Foothold
 from walking.odometry import LegOdometry, reckon
 from walking.parameters import (
     CONTROL_PERIOD,
@@ -20,11 +20,10 @@ from walking.parameters import (
     WalkingParameters,
 )
 from walking.plane import Array, Frame, Point, Vector, from_frame, norm, rotate, rotate_back
-from walking.records import WALK
-from walking.signals import BodySensors
-from walking.state import Balance, HeadCameraPose, Phase, WalkingState
+from walking.posture import LIMBS, advance_head, head_joints
+from walking.state import Balance, BodySensors, HeadCameraPose, Phase, WalkingState
 from walking.support import depth, polygon
-from walking.tick import watch
+from walking.tick import WALK, watch
 
 CONTACT_LOAD = 2.0 * LIGHT_LOAD  # of the weight; a lifted foot with more of it has landed [1]
 VELOCITY_TIME = 0.05  # time constant of the legs in the velocity filter [s]
@@ -350,3 +349,38 @@ class BodyObserver:
         """Return the frame of a foot in the odometry frame."""
         x, y, _, yaw = self._feet[side].tolist()
         return x, y, yaw
+
+
+class Head:
+    """Head of a robot whose legs something else moves.
+
+    Args:
+        robot: model of the robot.
+        parameters: parameters of its motion.
+    """
+
+    def __init__(self, robot: RobotModel, parameters: WalkingParameters) -> None:
+        self._limbs, self._robot = np.zeros(1, LIMBS)[0], robot_record(robot, parameters)[0][0]
+        self._joints = joint_records(robot, parameters)
+        self._limbs.head = robot.neck.angles(robot.ready)
+
+    def advance(self, target: HeadTarget) -> Array:
+        """Run one tick; return the setpoints of pan and tilt joint [rad], none if it is fixed."""
+        advance_head(self._limbs, (target.pan, target.tilt), self._robot)
+        return self.joints(*self._limbs.head.tolist())
+
+    @property
+    def angles(self) -> Array:
+        """Pan and tilt (2,) [rad]."""
+        return np.array(self._limbs.head)
+
+    @property
+    def rates(self) -> Array:
+        """Rates of pan and tilt (2,) [rad/s]."""
+        return np.array(self._limbs.head_rate)
+
+    def joints(self, pan: float, tilt: float) -> Array:
+        """Return the angles of pan and tilt joint for pan and tilt [rad], none if it is fixed."""
+        if not self._robot.neck.movable:
+            return np.zeros(0)
+        return np.array(head_joints(pan, tilt, self._joints, self._robot))

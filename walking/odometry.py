@@ -15,7 +15,40 @@ from compilation import compiled
 from compilation.value import value
 from walking.parameters import CONTROL_PERIOD, OdometryParameters
 from walking.plane import Array, Point, norm
-from walking.records import ODOMETRY, Record
+from walking.records import Record, record
+
+ODOMETRY = record(
+    x=float,
+    y=float,
+    yaw=float,
+    turned=bool,
+    imu_yaw=float,
+    placed=bool,
+    left_x=float,
+    left_y=float,
+    right_x=float,
+    right_y=float,
+    right_stance=bool,
+    sliding=bool,
+    apart_x=float,
+    apart_y=float,
+    xx=float,
+    xy=float,
+    xw=float,
+    yy=float,
+    yw=float,
+    ww=float,
+    # Unmeasured variance per tick forward, lateral [m²] and of the yaw [rad²]; slip of the stance
+    # foot per relative slip of the feet [1].
+    forward_variance=float,
+    lateral_variance=float,
+    yaw_variance=float,
+    slip_ratio=float,
+)
+"""Dead reckoning: pose, heading unwrapped; whether the yaw of the IMU is known, and its value;
+whether the vectors from foot to body are known, and their values in the odometry frame; whether the
+right foot is the stance foot; distance of the feet at the begin of a double support; covariance of
+the error; constants."""
 
 RELEASED = 0.2  # load fraction below which a foot is not the stance foot [1]
 
@@ -77,7 +110,7 @@ class LegOdometry:
         parameters: unmeasured motion.
 
     Attributes:
-        records: state and constants, see `walking.records.ODOMETRY` (1,).
+        records: state and constants, see `ODOMETRY` (1,).
     """
 
     def __init__(self, parameters: OdometryParameters) -> None:

@@ -21,9 +21,24 @@ from compilation import compiled
 from walking.parameters import CONTROL_PERIOD
 from walking.pendulum import dcm_of, dcm_reference, hold, ramp_weights, track_reference
 from walking.plane import Point, clamp, rotate
-from walking.records import Record
+from walking.records import Record, record
 from walking.reference import is_single
 from walking.support import Region
+
+ZMP_FUNCTIONS = record(
+    aimed=bool,
+    xi=(float, 2),
+    zeta=(float, 2),
+    free=bool,
+    level=(float, 2),
+    switch=(float, 2),
+    missed_x=float,
+    missed_y=float,
+)
+"""ZMP functions, see `walking.paper_pattern`: whether there is a target, DCM and convergent
+component at the end of single support along and across the foot [m] (whether the latter is free);
+level [m] and time of the switch before the end [s] of each function; part of the DCM that is out of
+reach [m]."""
 
 SAME_TARGET = 1e-7  # rounding error of a walking state [m]
 

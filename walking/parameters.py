@@ -1,8 +1,8 @@
 """Parameters of the walking engine.
 
 The defaults were tuned for HSR-VIII in full physics with ``scripts/walk_study.py``. Each has a
-dimension, by which `walking.scaling.parameters_for` scales it to another robot. Fields with bounds
-and a docstring are public keys of a scenario; the others are constants.
+dimension, by which `walking.constants.parameters_for` scales it to another robot. Fields with
+bounds and a docstring are public keys of a scenario; the others are constants.
 """
 
 from dataclasses import dataclass, field

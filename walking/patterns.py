@@ -18,7 +18,10 @@ import numpy as np
 from scipy.linalg import solve_discrete_are
 
 from compilation import compiled
+from walking.footsteps import FOOTHOLD, STRIDES
+from walking.gait import GAIT
 from walking.paper_pattern import (
+    ZMP_FUNCTIONS,
     admits_target,
     advance_functions,
     forget_target,
@@ -27,11 +30,30 @@ from walking.paper_pattern import (
 from walking.parameters import CONTROL_PERIOD, PatternParameters
 from walking.pendulum import dcm_of, dcm_reference, step_pendulum, track_reference
 from walking.plane import Point
-from walking.records import BEST, DCM, LIVE, PAPER, PREVIEW, PREVIEW_SUM, ROBUST, Record
-from walking.reference import reference_of
+from walking.records import DCM, PAPER, PREVIEW, ROBUST, Record, record
+from walking.reference import BEST, LIVE, RAMP, STEPS, reference_of
 from walking.support import Region
-from walking.zmp_plan import admits_knots, advance_knots
+from walking.zmp_plan import ZMP_PLAN, admits_knots, advance_knots
 from walking.zmp_plan import remains_feasible as knots_remain_feasible
+
+PREVIEW_SUM = record(gain=float, moment=float)
+"""Running sums Σ f_j and Σ j f_j of the gains of preview control [1]."""
+
+PLAN = record(
+    gait=GAIT,
+    landing=FOOTHOLD,
+    following=STRIDES,
+    moving=bool,
+    ramps=(RAMP, 2 * STEPS + 2),
+    ramp_count=int,
+    steps=(FOOTHOLD, STEPS),
+    step_count=int,
+    zmp=ZMP_PLAN,
+    functions=ZMP_FUNCTIONS,
+)
+"""Plan of the walk: gait with its timing; landing of the swing foot, strides after it, and whether
+the walk goes on; ZMP reference and its number of ramps; footholds and their number; plan of the ZMP
+of the generators that have one."""
 
 
 class PreviewGains(NamedTuple):
@@ -132,39 +154,37 @@ def is_feasible(
     """Whether the pendulum can follow a plan with the ZMP inside the soles.
 
     Args:
-        plans: plans, see `walking.records.LIVE` (4,); the ZMP plan of `BEST` is set if feasible.
+        plans: plans, see `walking.reference.LIVE` (4,); the ZMP plan of `BEST` is set if feasible.
         knots: knots of the plans (4, k); those of `BEST` are set if feasible.
         which: index of the plan.
         pendulum: present pendulum.
         region: admissible ZMP in this tick.
         robot: constants.
     """
-    pattern, ramps, trial = robot.pattern, reference_of(plans[which]), plans[BEST].zmp
+    pattern, ramps = robot.pattern, reference_of(plans[which])
     if pattern.generator == ROBUST:
-        live, margin, rate = plans[LIVE].zmp, pattern.plan_margin, pattern.zmp_rate
-        return admits_knots(trial, live, knots[BEST], pendulum, ramps, robot, margin, rate)
+        return admits_knots(plans, knots, pendulum, ramps, pattern.plan_margin, robot)
     if pattern.generator == PAPER:
-        return admits_target(trial, pendulum, ramps, region, robot)
+        return admits_target(plans[BEST].functions, pendulum, ramps, region, robot)
     return True
 
 
 @compiled
 def remains_feasible(plan: Record, robot: Record) -> bool:
     """Whether the ZMP plan of a plan stays feasible under its reference."""
-    live = plan.zmp
     if robot.pattern.generator == ROBUST:
-        return knots_remain_feasible(live, reference_of(plan))
+        return knots_remain_feasible(plan.zmp, reference_of(plan))
     if robot.pattern.generator == PAPER:
-        reached: bool = live.missed_x == 0.0 and live.missed_y == 0.0
+        reached: bool = plan.functions.missed_x == 0.0 and plan.functions.missed_y == 0.0
         return reached
     return True
 
 
 @compiled
-def reset_plan(live: Record) -> None:
+def reset_plan(plan: Record) -> None:
     """Drop the present ZMP plan after a jump of the pendulum."""
-    live.exists, live.age = False, 0
-    forget_target(live)
+    plan.zmp.exists, plan.zmp.age = False, 0
+    forget_target(plan.functions)
 
 
 @compiled
@@ -180,7 +200,7 @@ def advance_pattern(
     """Advance the pendulum by a tick; its ZMP stays in the region.
 
     Args:
-        plans: plans, see `walking.records.LIVE` (4,); the ZMP plan in force is changed.
+        plans: plans, see `walking.reference.LIVE` (4,); the ZMP plan in force is changed.
         knots: knots of the plans (4, k); those of the plan in force are changed.
         accepted: whether the ZMP plan of `BEST` belongs to the reference.
         pendulum: changed.
@@ -188,13 +208,11 @@ def advance_pattern(
         robot: constants.
         sums: sums of the gains of preview control.
     """
-    live, ramps = plans[LIVE].zmp, reference_of(plans[LIVE])
-    generator = robot.pattern.generator
+    generator, ramps = robot.pattern.generator, reference_of(plans[LIVE])
     if generator == ROBUST:
-        trial, tried = plans[BEST].zmp, knots[BEST]
-        advance_knots(live, knots[LIVE], trial, tried, accepted, pendulum, ramps, region, robot)
+        advance_knots(plans, knots, accepted, pendulum, ramps, region, robot)
     elif generator == PAPER:
-        advance_functions(live, pendulum, ramps, region, robot)
+        advance_functions(plans[LIVE].functions, pendulum, ramps, region, robot)
     elif generator == PREVIEW:
         advance_preview(pendulum, ramps, region, robot, sums)
     else:
@@ -209,7 +227,7 @@ def planned_dcm(plan: Record, pendulum: Record, robot: Record) -> Point:
     """
     generator = robot.pattern.generator
     if generator == PAPER:
-        return reachable_dcm(plan.zmp, pendulum, robot)
+        return reachable_dcm(plan.functions, pendulum, robot)
     if generator == DCM or (generator == ROBUST and not plan.zmp.exists):
         return dcm_reference(reference_of(plan), robot)
     return dcm_of(pendulum, robot)

@@ -8,8 +8,11 @@ from math import cosh, exp, sinh, sqrt
 from compilation import compiled
 from walking.parameters import CONTROL_PERIOD, GRAVITY
 from walking.plane import Point, Vector
-from walking.records import Record
+from walking.records import Record, record
 from walking.support import Region, clip
+
+PENDULUM = record(x=float, y=float, vx=float, vy=float, zmp_x=float, zmp_y=float)
+"""Pendulum in the plan frame: position [m], velocity [m/s], ZMP of the last tick [m]."""
 
 
 def natural_frequency(height: float) -> float:
@@ -54,7 +57,7 @@ def dcm_reference(ramps: Record, robot: Record) -> Point:
     weight ω e^{-ωs}: preview control in the limit of zero weight on the jerk.
 
     Args:
-        ramps: reference, see `walking.records.RAMP` (n,).
+        ramps: reference, see `walking.reference.RAMP` (n,).
         robot: constants.
     """
     wh = robot.omega * CONTROL_PERIOD

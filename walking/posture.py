@@ -4,14 +4,42 @@ A foot in the air is kept parallel to the floor against the tilt of the trunk. T
 leg would be stretched. The arms swing against the legs.
 """
 
-from math import cos, sin, sqrt
+from math import asin, atan2, cos, sin, sqrt
 
 from compilation import compiled
 from walking.body.kinematics import Pose, solve_leg
 from walking.gait import is_airborne, swing_of
+from walking.parameters import CONTROL_PERIOD
 from walking.plane import Array, Point, Vector, clamp, rotate_back
-from walking.records import Record
-from walking.swing import NO_FOOT
+from walking.records import Record, record
+from walking.swing import NO_FOOT, REFERENCE
+
+LIMBS = record(
+    moved=bool,
+    feet=(REFERENCE, 2),
+    pelvis=(float, 3),
+    turn_rate=float,
+    com=(float, 2),
+    # Compensation of the swing leg, see `walking.swing_reaction`.
+    offset=(float, 2),
+    ahead=(float, 2),
+    offset_acceleration=(float, 2),
+    # Tilt of the feet against that of the trunk, roll and pitch of each [rad].
+    foot_roll=(float, 2),
+    foot_pitch=(float, 2),
+    leg_angles=(float, 12),
+    axes=(float, 2, 6, 3),
+    origins=(float, 2, 6, 3),
+    leg_error=float,
+    head=(float, 2),
+    head_rate=(float, 2),
+    load=float,
+)
+"""Whether there is a posture before this tick; references of the feet; pelvis x, y [m], heading
+[rad] in the plan frame, and its yaw rate [rad/s]; centre of mass of the last posture in the base
+frame [m]; angles of the legs, also beyond their limits [rad], axes and origins of their joints in
+the base frame [m], and remaining error of the inverse kinematics [rad]; pan and tilt [rad] and
+their rates [rad/s]; load fraction of the right foot in this tick [1]."""
 
 MIN_TILT = 1e-6  # smaller tilts of a foot are set to zero [rad]
 LEG_JOINTS = 6
@@ -76,6 +104,48 @@ def set_posture(
         angles[neck.pan_joint], angles[neck.tilt_joint] = head
     if robot.shoulders[0] >= 0:
         _swing_arms(angles, limbs.feet, pelvis[2], robot)
+
+
+@compiled
+def advance_head(limbs: Record, target: Point, robot: Record) -> None:
+    """Run one tick: time-optimal approach to the target on each axis, without overshoot.
+
+    Args:
+        limbs: pan and tilt and their rates, changed.
+        target: pan and tilt [rad].
+        robot: constants.
+    """
+    p, neck = robot.head, robot.neck
+    step = p.max_acceleration * CONTROL_PERIOD
+    for axis in range(2):
+        goal = min(neck.upper[axis], max(neck.lower[axis], target[axis]))
+        error = goal - limbs.head[axis]
+        # Maximum speed from which whole ticks of braking end at the target.
+        reach = step * (sqrt(0.25 + 2.0 * abs(error) / (step * CONTROL_PERIOD)) - 0.5)
+        wanted = min(p.max_rate, reach, abs(error) / CONTROL_PERIOD)
+        wanted = wanted if error >= 0.0 else -wanted
+        limbs.head_rate[axis] += min(step, max(-step, wanted - limbs.head_rate[axis]))
+        limbs.head[axis] += limbs.head_rate[axis] * CONTROL_PERIOD
+
+
+@compiled
+def head_joints(pan: float, tilt: float, joints: Record, robot: Record) -> Point:
+    """Return the angles of pan and tilt joint, within their range, for pan and tilt [rad]."""
+    neck = robot.neck
+    if not neck.movable:
+        return 0.0, 0.0
+    if neck.tilt_first:
+        # The pan joint turns about a tilted axis: it alone moves the optical axis sideways.
+        flat = cos(neck.rest_tilt)
+        side = asin(min(1.0, max(-1.0, cos(tilt) * sin(pan) / flat)))
+        raised = atan2(sin(tilt), cos(tilt) * cos(pan))
+        bent = atan2(sin(neck.rest_tilt), flat * cos(side))
+        pan, tilt = side, raised - bent + neck.rest_tilt
+    first, second = joints[neck.pan_joint], joints[neck.tilt_joint]
+    return (
+        min(first.upper, max(first.lower, neck.pan_sign * (pan - neck.rest_pan))),
+        min(second.upper, max(second.lower, neck.tilt_sign * (tilt - neck.rest_tilt))),
+    )
 
 
 @compiled

@@ -16,14 +16,24 @@ from walking.command import (
     limits_of,
 )
 from walking.estimation import is_fallen
-from walking.foothold import Foothold, foothold, put
-from walking.footsteps import command_of, command_strides, duration, mean_velocity, velocity_strides
+from walking.footsteps import (
+    FOOTHOLD,
+    Foothold,
+    command_of,
+    command_strides,
+    foothold,
+    mean_velocity,
+    put,
+    velocity_strides,
+)
 from walking.gait import support_foot, swing_foot
 from walking.odometry import Odometry
 from walking.plane import Array, Frame, Indices, from_frame, rotate
-from walking.records import FOOTHOLD, LIVE, STEPS, Record, record
+from walking.records import Record, record
+from walking.reference import LIVE, STEPS
 from walking.state import Balance, HeadCameraPose, Phase, WalkingState
 from walking.support import CORNERS, polygon
+from walking.timing import duration
 
 PHASES = (Phase.STANDING, Phase.DOUBLE_SUPPORT, Phase.LEFT_SUPPORT, Phase.RIGHT_SUPPORT)
 STANDING, DOUBLE_SUPPORT, LEFT_SUPPORT, RIGHT_SUPPORT = range(len(PHASES))
@@ -114,7 +124,7 @@ def publish(
     Args:
         records: record `PUBLISHED` (1,), set.
         walks: state of the walk (1,).
-        plans: plans of the walk (4,), see `walking.records.LIVE`.
+        plans: plans of the walk (4,), see `walking.reference.LIVE`.
         odometry: dead reckoning (1,).
         robots: constants (1,).
         angles: measured angles of all joints (n,) [rad].

@@ -1,116 +1,116 @@
-"""Planned footholds, and the ZMP reference that they give."""
+"""Plan of the walk: footholds, and the ZMP reference that they give."""
 
 from compilation import compiled
-from walking.foothold import Foothold, foothold, put
-from walking.footsteps import is_parallel, landing_of
-from walking.plane import Point, from_frame
-from walking.records import Record
+from walking.footsteps import FOOTHOLD, Foothold, foothold, is_parallel, landing_of, put
+from walking.gait import (
+    scheduled_zmp,
+    stop_ticks,
+    support_foot,
+    swing_foot,
+    zmp_between,
+    zmp_under,
+)
+from walking.plane import Point
+from walking.records import Record, record
+
+RAMP = record(
+    ticks=int,
+    ax=float,
+    ay=float,
+    bx=float,
+    by=float,
+    unloading=FOOTHOLD,
+    loading=FOOTHOLD,
+)
+"""Linear segment of the ZMP reference: control ticks; ZMP at its start and its end [m]; unloading
+and loading foot, in single support twice the support foot."""
+
+STEPS = 4  # planned footholds
+
+LIVE, WANTED, TRIAL, BEST = range(4)
+"""Plans: the one in force, the wanted one, one that is tried, and the best that was admitted."""
 
 
 @compiled
-def zmp_under(foot: Foothold, robot: Record) -> Point:
-    """Return the ZMP of single support on a foot [m]."""
-    pattern = robot.pattern
-    inward = -pattern.zmp_inward if foot.left else pattern.zmp_inward
-    return from_frame(
-        (foot.x, foot.y, foot.yaw), robot.support.centre + pattern.zmp_forward, inward
-    )
-
-
-@compiled
-def zmp_between(one: Foothold, other: Foothold, robot: Record) -> Point:
-    """Return the ZMP of equal loads on two feet [m]."""
-    ax, ay = zmp_under(one, robot)
-    bx, by = zmp_under(other, robot)
-    return 0.5 * (ax + bx), 0.5 * (ay + by)
-
-
-@compiled
-def chain_footholds(
-    steps: Record,
-    support: Foothold,
-    landing: Foothold,
-    following: Record,
-    moving: bool,
-    robot: Record,
-) -> tuple[int, bool]:
-    """Set the footholds of a walk, that of the swing foot first.
+def plan_walk(
+    plan: Record, landing: Foothold, following: Record, moving: bool, robot: Record
+) -> None:
+    """Set footholds and ZMP reference of a plan from now on.
 
     Args:
-        steps: footholds (n,), set.
-        support: support foot.
+        plan: plan whose gait is read; all but its ZMP plan is set.
         landing: foothold of the swing foot.
         following: strides of the footsteps after it.
         moving: whether the walk goes on; if not, it ends as soon as the stance is parallel.
         robot: constants.
-
-    Returns:
-        number of footholds, and whether the walk ends after the last.
     """
-    before, last = support, landing
-    number = steps.shape[0]
-    for k in range(number):
-        put(steps[k], last)
-        if k + 1 < number and not moving and is_parallel(before, last, robot):
-            return k + 1, True
-        before, last = last, landing_of(last, following)
-    return number, False
+    gait, ramps = plan.gait, plan.ramps
+    put(plan.landing, landing)
+    plan.following, plan.moving = following, moving
+    if gait.stepping:
+        ends = _chain_footholds(plan, robot)
+        _set_ramps(plan, ends, robot)
+        return
+    left, right = foothold(gait.footholds[0]), foothold(gait.footholds[1])
+    zmp, centre = scheduled_zmp(gait, robot), zmp_between(left, right, robot)
+    set_ramp(ramps[0], max(1, -gait.elapsed), zmp, centre, support_foot(gait), swing_foot(gait))
+    plan.ramp_count, plan.step_count = 1, 0
 
 
 @compiled
-def reference_ramps(
-    ramps: Record,
-    unloading: Foothold,
-    support: Foothold,
-    steps: Record,
-    count: int,
-    ends: bool,
-    zmp: Point,
-    ticks: tuple[int, int, int, int, int],
-    robot: Record,
-) -> int:
-    """Set the ZMP reference of a walk from now on; return the number of its ramps.
+def _chain_footholds(plan: Record, robot: Record) -> bool:
+    """Set the footholds, that of the swing foot first; return whether the walk ends with them."""
+    steps, before, last = plan.steps, support_foot(plan.gait), foothold(plan.landing)
+    for k in range(len(steps)):
+        put(steps[k], last)
+        plan.step_count = k + 1
+        if k + 1 < len(steps) and not plan.moving and is_parallel(before, last, robot):
+            return True
+        before, last = last, landing_of(last, plan.following)
+    return False
 
-    Args:
-        ramps: set (n,).
-        unloading: foot that swings next.
-        support: support foot of this footstep.
-        steps: planned footholds.
-        count: number of these.
-        ends: whether the walk ends with equal loads after the last foothold.
-        zmp: present ZMP, in double support [m].
-        ticks: remaining ticks of the present double support, zero in single support; of the
-            single support after it; ticks of later double and single supports; of the last
-            double support.
-        robot: constants.
-    """
-    shift, carry, double, single, stop = ticks
-    px, py = zmp_under(support, robot)
-    row = 0
-    if shift > 0:
-        set_ramp(ramps[row], shift, zmp, (px, py), unloading, support)
+
+@compiled
+def _set_ramps(plan: Record, ends: bool, robot: Record) -> None:
+    """Set the reference; it ends with equal loads after the last foothold if the walk `ends`."""
+    gait, ramps, timing, row = plan.gait, plan.ramps, plan.gait.clock.timing, 0
+    before, left = support_foot(gait), gait.ticks_left
+    px, py = zmp_under(before, robot)
+    if gait.double:
+        zmp, left = scheduled_zmp(gait, robot), gait.clock.single.ticks
+        set_ramp(ramps[row], -gait.elapsed, zmp, (px, py), swing_foot(gait), before)
         row += 1
-    set_ramp(ramps[row], carry, (px, py), (px, py), support, support)
+    set_ramp(ramps[row], left, (px, py), (px, py), before, before)
     row += 1
-    before = support
-    for k in range(count):
-        step = foothold(steps[k])
+    for k in range(plan.step_count):
+        step = foothold(plan.steps[k])
         x, y = zmp_under(step, robot)
-        if ends and k == count - 1:
-            bx, by = zmp_under(before, robot)
-            set_ramp(ramps[row], stop, (px, py), (0.5 * (bx + x), 0.5 * (by + y)), before, step)
+        if ends and k == plan.step_count - 1:
+            centre = zmp_between(before, step, robot)
+            set_ramp(ramps[row], stop_ticks(robot), (px, py), centre, before, step)
             row += 1
         else:
-            set_ramp(ramps[row], double, (px, py), (x, y), before, step)
-            set_ramp(ramps[row + 1], single, (x, y), (x, y), step, step)
+            set_ramp(ramps[row], timing.double, (px, py), (x, y), before, step)
+            set_ramp(ramps[row + 1], timing.single, (x, y), (x, y), step, step)
             row += 2
         before, px, py = step, x, y
-    return row
+    plan.ramp_count = row
+
+
+@compiled
+def copy_plan(copy: Record, plan: Record) -> None:
+    """Copy a plan, except for its ZMP plan."""
+    copy.gait, copy.landing, copy.following = plan.gait, plan.landing, plan.following
+    copy.moving, copy.ramp_count, copy.step_count = plan.moving, plan.ramp_count, plan.step_count
+    for k in range(plan.ramp_count):
+        copy.ramps[k] = plan.ramps[k]
+    for k in range(plan.step_count):
+        copy.steps[k] = plan.steps[k]
 
 
 @compiled
 def reference_of(plan: Record) -> Record:
-    """Return the ramps of a plan from now on, see `walking.records.RAMP` (n,)."""
+    """Return the ramps of a plan from now on, see `RAMP` (n,)."""
     reference: Record = plan.ramps[: plan.ramp_count]
     return reference
 

@@ -15,18 +15,33 @@ from walking.command import (
 )
 from walking.footsteps import (
     STILL,
-    cadence,
+    STRIDES,
     command_of,
     command_strides,
-    command_timing,
-    duration,
-    put_timing,
     stride_limits,
     velocity_strides,
 )
 from walking.parameters import CONTROL_PERIOD
 from walking.plane import Vector, clamp
-from walking.records import PAPER, Record
+from walking.records import PAPER, Record, record
+from walking.timing import TIMING, cadence, command_timing, duration, put_timing
+
+COMMAND = record(explicit=bool, values=(float, 6))
+"""Velocity (vx, vy, wz), or the fields of a command state in order, see `walking.command`."""
+
+STEERING = record(
+    command=COMMAND,
+    state=COMMAND,
+    velocity=(float, 3),
+    peak=(float, 3),
+    timing=TIMING,
+    wanted=STRIDES,
+    scratch=STRIDES,
+    bound=int,
+)
+"""Steering: present command; command state in force, if `explicit`; wanted velocity (vx, vy, wz)
+[m/s, m/s, rad/s], and its last peak per axis; wanted timing and strides; strides for intermediate
+results; limits that bind, as bits."""
 
 SAME_SPEED = 1e-9  # rounding error of velocities [m/s, rad/s]
 

@@ -10,7 +10,7 @@ from typing import NamedTuple
 import numpy as np
 
 from compilation import compiled
-from walking.foothold import Foothold
+from walking.footsteps import Foothold
 from walking.plane import Array, Point, from_frame, norm
 from walking.records import Record
 

@@ -7,10 +7,16 @@ to a landing at rest, replanned in every tick.
 from math import ceil
 
 from compilation import compiled
-from walking.foothold import Foothold, towards
+from walking.footsteps import Foothold, towards
 from walking.parameters import CONTROL_PERIOD
 from walking.plane import norm
-from walking.records import Record
+from walking.records import Record, record
+
+REFERENCE = record(
+    x=float, y=float, yaw=float, height=float, rate=(float, 3), acceleration=(float, 3)
+)
+"""Reference of a foot in the plan frame: position [m], yaw [rad], height above the floor [m]; rates
+and accelerations of x, y and yaw."""
 
 PEAK = 1.875  # peak speed over mean speed of a minimum-jerk motion from rest to rest [1]
 ROUNDING = 1e-7  # rounding error, relative to the maximum change [1]

@@ -27,13 +27,12 @@ from compilation import compiled
 from walking.body.kinematics import FootPose
 from walking.body.robot_model import RobotModel
 from walking.body.tree import LEFT_LEG, RIGHT_LEG
-from walking.foothold import Foothold, foothold
-from walking.gait import support_foot, swing_foot
+from walking.footsteps import Foothold, foothold
+from walking.gait import support_foot, swing_foot, zmp_under
 from walking.parameters import CONTROL_PERIOD, GRAVITY
 from walking.pendulum import ramp_weights
 from walking.plane import Point
 from walking.records import Record
-from walking.reference import zmp_under
 
 SMALL = 1e-4  # step of finite differences [m]
 

@@ -7,11 +7,12 @@ feed-forward.
 import numpy as np
 
 from compilation import compiled
-from walking.admission import remember
-from walking.balance import advance_pendulum, end_capture, exceeds, place_foot, zmp_shift
+from walking.admission import ADMISSION, remember
+from walking.balance import PLACING, advance_pendulum, end_capture, exceeds, place_foot, zmp_shift
 from walking.body.kinematics import feet_poses
 from walking.command import BALANCE, FALLEN, SWING_HEIGHT, TIMING
 from walking.corrections import (
+    CORRECTIONS,
     correct_offset,
     cycle_begins,
     detects_touchdown,
@@ -22,13 +23,11 @@ from walking.corrections import (
     speed_correction,
     speed_ratio,
 )
-from walking.estimation import estimate, is_fallen, measure
+from walking.estimation import SENSING, estimate, is_fallen, measure
 from walking.feedforward import set_motion, set_offsets, set_setpoints
-from walking.foothold import Foothold, foothold, put
-from walking.footsteps import STILL, Command, cadence, put_timing, tendency
+from walking.footsteps import FOOTHOLD, STILL, Command, Foothold, foothold, put, tendency
 from walking.gait import (
     advance,
-    plan_walk,
     retime,
     stand,
     start,
@@ -36,14 +35,16 @@ from walking.gait import (
     swing_foot,
     swing_of,
     touch_down,
+    zmp_under,
 )
-from walking.head import advance_head, head_joints
 from walking.parameters import CONTROL_PERIOD
+from walking.pendulum import PENDULUM
 from walking.plane import Array, Indices, Point, norm, rotate, rotate_back
-from walking.posture import pelvis_over, set_posture
-from walking.records import LIVE, Record
-from walking.reference import zmp_under
+from walking.posture import LIMBS, advance_head, head_joints, pelvis_over, set_posture
+from walking.records import Record, record
+from walking.reference import LIVE, plan_walk
 from walking.steering import (
+    STEERING,
     follow_command,
     moves,
     set_wanted_strides,
@@ -53,6 +54,32 @@ from walking.steering import (
 from walking.support import Region, depth, load_fraction, polygon, support_region
 from walking.swing import rest_at
 from walking.swing_reaction import compensate
+from walking.timing import cadence, put_timing
+
+WALK = record(
+    ticks=int,
+    sensing=SENSING,
+    steering=STEERING,
+    corrections=CORRECTIONS,
+    admission=ADMISSION,
+    placing=PLACING,
+    pendulum=PENDULUM,
+    planned=PENDULUM,
+    off_plan=bool,
+    zmp_shift_x=float,
+    zmp_shift_y=float,
+    zmp_depth=float,
+    single=bool,
+    unloading=FOOTHOLD,
+    loading=FOOTHOLD,
+    last_opening_left=bool,
+    bound=int,
+    limbs=LIMBS,
+)
+"""State of the walk: ticks; the parts above; pendulum of the body, and that of the plan if it
+differs; shift of the ZMP by the ankles [m]; depth of the planned ZMP in the support polygon [m],
+whether one foot supports, and the feet in contact; foot of the last opening step; limits that bind,
+as bits."""
 
 SAME_HEIGHT = 1e-9  # rounding error of swing heights [m]
 DIVERGED = 1e6  # distance of the pendulum from the support foot per length of the leg [1]
@@ -113,7 +140,7 @@ def watch(
         com: centre of mass for these joints in the base frame (3,) [m].
         orientation: attitude of the IMU, quaternion w-x-y-z (4,).
         gyro: angular velocity of the trunk (3,) [rad/s].
-        pads: load on the pads of each sole, see `walking.signals.BodySensors` (2, 4) [N].
+        pads: load on the pads of each sole, see `walking.state.BodySensors` (2, 4) [N].
         feet_chains: see `walking.body.kinematics.feet_poses`.
         feet_joints: joints of these chains.
         robots: constants (1,).

@@ -13,8 +13,7 @@ from walking.engine import WalkingEngine
 from walking.get_up import GetUp, Outcome
 from walking.odometry import LegOdometry
 from walking.parameters import CONTROL_PERIOD, GRAVITY, WalkingParameters
-from walking.signals import BodySensors, JointTargets
-from walking.state import Phase, WalkingState
+from walking.state import BodySensors, JointTargets, Phase, WalkingState
 
 START_TIME = 0.03  # double support before the first footstep of the warm-up [s]
 TICKS = 20  # of the warm-up, enough for a double and a single support

@@ -7,7 +7,33 @@ boxes do not reach the DCM in the direction of the residual.
 
 from compilation import compiled
 from walking.plane import Array, Point
-from walking.records import Record
+from walking.records import Record, record
+
+KNOT = record(ticks=float, x=float, y=float)
+"""Knot of the planned ZMP: ticks since the previous knot, position [m]."""
+
+CELL = record(
+    x=float,
+    y=float,
+    ax=float,
+    ay=float,
+    bx=float,
+    by=float,
+    nominal_u=float,
+    nominal_v=float,
+    low_u=float,
+    high_u=float,
+    low_v=float,
+    high_v=float,
+    weight=float,
+    square=float,
+    max_weight=float,
+    begin=int,
+    end=int,
+)
+"""Parallelogram of knots, see `walking.zmp_plan`: centre [m]; sides, columns of M [1]; nominal u
+and v, and their bounds [m]; Σ w, Σ w² and max w of its knots [1]; first knot, and the one after the
+last."""
 
 SOLVED = 1e-10  # maximum residual of the DCM [m]
 ITERATIONS = 20

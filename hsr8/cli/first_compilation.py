@@ -22,7 +22,7 @@ from hsr8.plugin_walker import RobotInfo
 from hsr8.scenario.loader import load_scenario
 from walking.command import VelocityCommand
 from walking.observer import BodyEstimate
-from walking.signals import BodySensors
+from walking.state import BodySensors
 
 TEXT = "compiling the inner loops, once per installation: half a minute"
 NOT_KEPT = (

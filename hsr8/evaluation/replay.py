@@ -30,7 +30,7 @@ from hsr8.world.field.generator import draw_layout
 from navigation.observation import CameraModel, CameraView, Frame
 from vision.detection import Detection
 from walking.parameters import CONTROL_PERIOD
-from walking.signals import JointTargets
+from walking.state import JointTargets
 
 BELIEF = (
     *("pose", "pose_covariance", "lost", "filter_faults", "seen_beacons", "tracks"),

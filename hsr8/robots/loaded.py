@@ -29,8 +29,8 @@ from hsr8.robots.skeleton import HINGE, Posed
 from hsr8.robots.soles import soles_of
 from hsr8.robots.tree import tree_of
 from walking.body.robot_model import RobotModel
+from walking.constants import parameters_for
 from walking.parameters import WalkingParameters
-from walking.scaling import parameters_for
 
 Array = NDArray[np.float64]
 

@@ -15,7 +15,7 @@ from walking.command import HeadTarget, VelocityCommand
 from walking.engine import WalkingEngine
 from walking.parameters import CONTROL_PERIOD, GRAVITY, WalkingParameters
 from walking.plane import Array
-from walking.signals import BodySensors
+from walking.state import BodySensors
 
 AXES = ("vx", "vx_backward", "vy", "wz")
 """Speed limits, each of which bounds a command along one axis."""

@@ -28,7 +28,7 @@ from navigation.parameters.belief import LocalMapParameters
 from vision.detection import Detection
 from walking.body.tree import JOINT_NAMES
 from walking.command import HeadTarget, VelocityCommand
-from walking.foothold import Foothold
+from walking.footsteps import Foothold
 from walking.odometry import Odometry
 from walking.state import Balance, HeadCameraPose, Phase, WalkingState
 

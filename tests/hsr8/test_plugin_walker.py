@@ -17,11 +17,11 @@ from hsr8.robots.loaded import load_robot
 from hsr8.scenario.plugin import Plugin
 from navigation.decision import GazeDecision
 from walking.command import CommandState, HeadTarget, VelocityCommand
+from walking.constants import parameters_for
 from walking.engine import WalkingEngine
 from walking.odometry import LegOdometry
 from walking.parameters import CONTROL_PERIOD, GRAVITY, WalkingParameters
-from walking.scaling import parameters_for
-from walking.signals import BodySensors
+from walking.state import BodySensors
 
 FAST = {"robot.body": "kinematic", "camera.source": "analytic", "duration": 2.0}
 SOURCE = """

@@ -12,10 +12,10 @@ from hsr8.world.body.physics import PhysicsBody
 from hsr8.world.field.layout import Layout
 from hsr8.world.model.assembly import Optics, assemble
 from walking.command import CommandState, HeadTarget, VelocityCommand
-from walking.dimension import HSR_VIII
+from walking.constants import parameters_for
+from walking.dimension import HSR_VIII, scale_parameters
 from walking.engine import WalkingEngine
 from walking.parameters import CONTROL_PERIOD, WalkingParameters
-from walking.scaling import parameters_for, scale_parameters
 
 EMPTY = Layout((4.0, 4.0), (), (), (0.0, 0.0, 0.0), np.zeros((0, 2)), None, endless=False)
 SILENT = SensorNoise(**dict.fromkeys(SensorNoise.__dataclass_fields__, 0.0))

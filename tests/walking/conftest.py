@@ -10,13 +10,16 @@ from hsr8.robots.loaded import load_robot
 from walking.body.robot_model import RobotModel
 from walking.body.tree import LEFT_LEG, RIGHT_LEG
 from walking.constants import robot_record
-from walking.foothold import Foothold, put
-from walking.footsteps import STILL, cadence, put_timing, velocity_strides
+from walking.footsteps import STILL, STRIDES, Foothold, put, velocity_strides
 from walking.gait import stand
 from walking.parameters import CONTROL_PERIOD, PatternParameters, WalkingParameters
-from walking.records import LIVE, PLAN, STRIDES, WALK, Record
-from walking.signals import BodySensors
+from walking.patterns import PLAN
+from walking.records import Record
+from walking.reference import LIVE
+from walking.state import BodySensors
 from walking.swing import rest_at
+from walking.tick import WALK
+from walking.timing import cadence, put_timing
 
 
 @pytest.fixture(scope="session")

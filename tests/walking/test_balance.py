@@ -20,12 +20,11 @@ from walking.balance import (
     zmp_shift,
 )
 from walking.command import BALANCE
-from walking.foothold import Foothold, foothold
-from walking.footsteps import STILL, is_same, landing_of, reachable
+from walking.footsteps import STILL, Foothold, foothold, is_same, landing_of, reachable
 from walking.gait import advance, retime, start, support_foot, swing_foot, swing_of
 from walking.parameters import CONTROL_PERIOD, StabilizerParameters
 from walking.pendulum import hold_tick
-from walking.records import KNOT, LIVE
+from walking.reference import LIVE
 from walking.steering import (
     follow_command,
     moves,
@@ -33,6 +32,7 @@ from walking.steering import (
     use_next_timing,
 )
 from walking.support import support_region
+from walking.zmp_solver import KNOT
 
 GENERATORS = ["dcm", "robust", "paper", "preview"]
 NONE = (0.0, 0.0)

@@ -9,19 +9,18 @@ from scipy.spatial.transform import Rotation
 
 from walking.command import CommandState, HeadTarget, Limit, VelocityCommand
 from walking.engine import WalkingEngine
-from walking.foothold import foothold
 from walking.footsteps import (
     STILL,
-    cadence,
+    STRIDES,
     command_strides,
-    duration,
+    foothold,
     is_same,
     landing_of,
     velocity_strides,
 )
 from walking.gait import support_foot
 from walking.parameters import CONTROL_PERIOD, WalkingParameters
-from walking.records import STRIDES
+from walking.timing import cadence, duration
 
 AHEAD = HeadTarget()
 LIMITS = WalkingParameters().limits

@@ -8,7 +8,9 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from walking.constants import parameters_record
 from walking.corrections import (
+    CORRECTIONS,
     correct_offset,
     cycle_begins,
     detects_touchdown,
@@ -19,7 +21,6 @@ from walking.corrections import (
     speed_ratio,
 )
 from walking.parameters import CONTROL_PERIOD, StabilizerParameters, WalkingParameters
-from walking.records import CORRECTIONS, parameters_record
 
 LIMITS = StabilizerParameters()
 PARAMETERS = parameters_record(WalkingParameters())[0]

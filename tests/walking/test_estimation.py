@@ -9,6 +9,7 @@ from hypothesis import strategies as st
 
 from walking.body.kinematics import feet_poses
 from walking.estimation import (
+    SENSING,
     compare_with_plan,
     filter_error,
     follow_tilt,
@@ -20,7 +21,7 @@ from walking.estimation import (
 )
 from walking.parameters import CONTROL_PERIOD, EstimatorParameters
 from walking.pendulum import hold_tick
-from walking.records import SENSING, WALK
+from walking.tick import WALK
 
 PARAMETERS = EstimatorParameters()
 SEEDS = st.integers(0, 10**6)

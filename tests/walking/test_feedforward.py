@@ -17,7 +17,7 @@ from walking.feedforward import (
     support_torque,
 )
 from walking.parameters import CONTROL_PERIOD, StabilizerParameters, WalkingParameters
-from walking.records import WALK
+from walking.tick import WALK
 
 PAN = 12
 SOLES = ((0.01, 0.042), (0.01, -0.042))

@@ -9,24 +9,23 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from walking.command import CLEARANCE, CommandState
-from walking.foothold import Foothold
+from walking.constants import parameters_record
 from walking.footsteps import (
     STILL,
-    cadence,
+    STRIDES,
+    Foothold,
     clear_of,
     command_of,
     command_strides,
-    command_timing,
     landing_of,
     mean_velocity,
-    put_timing,
     reachable,
     stride_limits,
     tendency,
     towards_strides,
 )
 from walking.parameters import CONTROL_PERIOD, GaitParameters, LimitParameters, WalkingParameters
-from walking.records import STRIDES, TIMING, parameters_record
+from walking.timing import TIMING, cadence, command_timing, put_timing
 
 GAIT, LIMITS = GaitParameters(), LimitParameters()
 LEFT = Foothold(True, 0.0, GAIT.half_stance, 0.0)

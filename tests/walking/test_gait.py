@@ -5,16 +5,12 @@ from itertools import pairwise
 import numpy as np
 import pytest
 
-from walking.foothold import foothold, put
-from walking.footsteps import STILL, is_parallel, landing_of, put_timing
+from walking.constants import parameters_record
+from walking.footsteps import STILL, foothold, is_parallel, landing_of, put
 from walking.gait import (
     advance,
     aimed,
-    phase_of,
-    plan_walk,
-    put_single_support,
     retime,
-    retime_single_support,
     scheduled_zmp,
     shorten,
     start,
@@ -23,8 +19,16 @@ from walking.gait import (
     touch_down,
 )
 from walking.parameters import CONTROL_PERIOD, WalkingParameters
-from walking.records import LIVE, SINGLE, TIMING, parameters_record
+from walking.reference import LIVE, plan_walk
 from walking.steering import follow_command, moves, set_wanted_strides, use_next_timing
+from walking.timing import (
+    SINGLE,
+    TIMING,
+    phase_of,
+    put_single_support,
+    put_timing,
+    retime_single_support,
+)
 
 PARAMETERS = WalkingParameters()
 GAIT, LIMITS = PARAMETERS.gait, PARAMETERS.limits

@@ -11,7 +11,7 @@ from scipy.spatial.transform import Rotation
 from walking.get_up import GetUp, Lying, Outcome, PostureTrack, RestDetector, lying_on, up_in_trunk
 from walking.get_up_motions import MOTIONS, STRAIGHT
 from walking.parameters import CONTROL_PERIOD, GetUpParameters
-from walking.signals import BodySensors
+from walking.state import BodySensors
 
 PARAMETERS = GetUpParameters(enabled=True)
 

@@ -8,9 +8,9 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from walking.command import HeadTarget
-from walking.head import Head, advance_head
+from walking.observer import Head
 from walking.parameters import CONTROL_PERIOD, HeadParameters, WalkingParameters
-from walking.records import LIMBS
+from walking.posture import LIMBS, advance_head
 
 HEAD = HeadParameters(max_rate=6.0, max_acceleration=60.0)
 PARAMETERS = replace(WalkingParameters(), head=HEAD)

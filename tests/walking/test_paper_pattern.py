@@ -7,8 +7,9 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from walking.foothold import Foothold
+from walking.footsteps import Foothold
 from walking.paper_pattern import (
+    ZMP_FUNCTIONS,
     admits_target,
     advance_functions,
     reachable_dcm,
@@ -16,9 +17,8 @@ from walking.paper_pattern import (
     zmp_function,
 )
 from walking.parameters import CONTROL_PERIOD
-from walking.pendulum import dcm_of, dcm_reference, natural_frequency
-from walking.records import PENDULUM, RAMP, ZMP_PLAN
-from walking.reference import set_ramp
+from walking.pendulum import PENDULUM, dcm_of, dcm_reference, natural_frequency
+from walking.reference import RAMP, set_ramp
 from walking.support import clip, support_region
 
 W = natural_frequency(0.19)
@@ -69,7 +69,7 @@ class Paper:
     def __init__(self, make_model):
         self.model = make_model("paper")
         robot, ramps = self.model.robot, reference(54)
-        self.plan, self.pendulum = np.zeros(1, ZMP_PLAN)[0], np.zeros(1, PENDULUM)[0]
+        self.plan, self.pendulum = np.zeros(1, ZMP_FUNCTIONS)[0], np.zeros(1, PENDULUM)[0]
         growth = exp(W * 54 * CONTROL_PERIOD)
         # Under a ZMP at rest ζ only decays.
         zeta = [growth * z for z in walking_target(ramps, robot).zeta]

@@ -4,15 +4,14 @@ import numpy as np
 import pytest
 
 from walking.admission import admit, remember
-from walking.foothold import Foothold, foothold
-from walking.footsteps import STILL
+from walking.footsteps import STILL, Foothold, foothold
 from walking.gait import start, update_phase
 from walking.parameters import PatternParameters
-from walking.patterns import advance_pattern, is_feasible, preview_gains, rejects_infeasible
-from walking.pendulum import dcm_of, dcm_reference
-from walking.records import BEST, KNOT, LIVE, PENDULUM, PLAN, RAMP
-from walking.reference import set_ramp
+from walking.patterns import PLAN, advance_pattern, is_feasible, preview_gains, rejects_infeasible
+from walking.pendulum import PENDULUM, dcm_of, dcm_reference
+from walking.reference import BEST, LIVE, RAMP, set_ramp
 from walking.support import clip, support_region
+from walking.zmp_solver import KNOT
 
 LEFT, RIGHT = Foothold(True, 0.0, 0.042, 0.0), Foothold(False, 0.0, -0.042, 0.0)
 TRACKING = ["dcm", "preview"]

@@ -6,9 +6,10 @@ from hypothesis import given
 from hypothesis import strategies as st
 from scipy.integrate import solve_ivp
 
-from walking.foothold import Foothold
+from walking.footsteps import Foothold
 from walking.parameters import CONTROL_PERIOD
 from walking.pendulum import (
+    PENDULUM,
     dcm_of,
     dcm_reference,
     hold,
@@ -19,7 +20,7 @@ from walking.pendulum import (
     track_reference,
 )
 from walking.plane import clamp, dead_zone
-from walking.records import PENDULUM, RAMP
+from walking.reference import RAMP
 from walking.support import support_region
 
 RAMPS = np.zeros(3, RAMP)

@@ -5,11 +5,11 @@ import pytest
 
 from walking.body.tree import HEAD, LEFT_ARM, LEFT_LEG, RIGHT_ARM, RIGHT_LEG
 from walking.constants import joint_records
-from walking.foothold import Foothold
+from walking.footsteps import Foothold
 from walking.gait import advance, start
 from walking.parameters import WalkingParameters
 from walking.posture import pelvis_over, set_posture
-from walking.records import LIVE
+from walking.reference import LIVE
 
 PARAMETERS = WalkingParameters()
 NONE = (0.0, 0.0)

@@ -9,10 +9,12 @@ from scipy.spatial.transform import Rotation
 from walking.body.kinematics import chain_end
 from walking.body.tree import HEAD
 from walking.command import VelocityCommand
-from walking.foothold import foothold
-from walking.gait import plan_walk, start
+from walking.estimation import SENSING
+from walking.footsteps import foothold
+from walking.gait import start
+from walking.odometry import ODOMETRY
 from walking.published import PUBLISHED, publish_camera, publish_plan, walking_state
-from walking.records import LIVE, ODOMETRY, SENSING
+from walking.reference import LIVE, plan_walk
 from walking.state import Phase
 
 FEET = ((0.01, 0.042, -0.22, 0.1), (-0.01, -0.042, -0.21, -0.05))  # x, y, z, yaw

@@ -7,21 +7,30 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from walking.foothold import Foothold, foothold, put
-from walking.footsteps import STILL, is_parallel, landing_of
+from walking.footsteps import STILL, Foothold, foothold, is_parallel, landing_of, put
+from walking.gait import scheduled_zmp, stand, start, update_phase, zmp_between, zmp_under
 from walking.parameters import PatternParameters, WalkingParameters
-from walking.records import FOOTHOLD, RAMP
-from walking.reference import (
-    chain_footholds,
-    is_single,
-    reference_ramps,
-    zmp_between,
-    zmp_under,
-)
+from walking.patterns import PLAN
+from walking.reference import LIVE, is_single, plan_walk
+from walking.timing import put_timing
 
 LEFT, RIGHT = Foothold(True, 0.0, 0.042, 0.1), Foothold(False, 0.05, -0.042, -0.1)
-STEPS = (RIGHT, Foothold(True, 0.1, 0.042, 0.0), Foothold(False, 0.1, -0.042, 0.0))
 DOUBLE, SINGLE, STOP = 14, 54, 60
+
+
+def planned(model, tick, landing, strides, *, moving, support=LEFT, swing=RIGHT):
+    """Plan from a tick of the first footstep on, with given landing, strides and timing."""
+    plan = np.zeros(1, PLAN)[0]
+    gait, first = plan.gait, 0 if support.left else 1
+    put(gait.footholds[first], support)
+    put(gait.footholds[1 - first], swing)
+    put_timing(gait.clock.timing, (DOUBLE, SINGLE, 0.02))
+    stand(gait, model.robot)
+    start(gait, first, True, model.robot)
+    gait.tick = tick
+    update_phase(gait, model.robot)
+    plan_walk(plan, landing, strides, moving, model.robot)
+    return plan
 
 
 @given(st.integers(0, 10**6), st.booleans())
@@ -29,15 +38,16 @@ def test_each_foothold_is_the_stride_of_the_one_before(model, strides_of, seed, 
     rng = np.random.default_rng(seed)
     support = Foothold(bool(rng.integers(2)), *rng.uniform(-1.0, 1.0, 3).tolist())
     velocity = tuple((rng.uniform(-1.0, 1.0, 3) * (0.4, 0.15, 1.5)).tolist())
-    strides, steps = strides_of(STILL if seed % 3 == 0 else velocity), np.zeros(4, FOOTHOLD)
+    strides = strides_of(STILL if seed % 3 == 0 else velocity)
     landing = landing_of(support, strides)
-    count, ends = chain_footholds(steps, support, landing, strides, moving, model.robot)
-    feet = [support, *map(foothold, steps[:count])]
+    swing = Foothold(not support.left, 0.0, 0.0, 0.0)
+    plan = planned(model, 0, landing, strides, moving=moving, support=support, swing=swing)
+    feet = [support, *map(foothold, plan.steps[: plan.step_count])]
     assert feet[1] == landing
     for before, after in pairwise(feet[1:]):
         assert after == landing_of(before, strides)
-    assert ends == (not moving and count < 4)
-    if ends:
+    if plan.step_count < 4:
+        assert not moving
         assert is_parallel(*feet[-2:], model.robot)
 
 
@@ -50,36 +60,33 @@ def test_the_zmp_turns_with_the_foot_and_is_ahead_of_the_ankle_and_inward(robot,
     assert turned == pytest.approx((1.0 - y, 2.0 + x))
 
 
-def reference(model, steps, *, ends, zmp=(0.0, 0.0), left=(0, 30)):
-    records, ramps = np.zeros(4, FOOTHOLD), np.zeros(10, RAMP)
-    for record, step in zip(records, steps, strict=False):
-        put(record, step)
-    ticks = (*left, DOUBLE, SINGLE, STOP)
-    rest = (records, len(steps), ends, zmp, ticks, model.robot)
-    return ramps[: reference_ramps(ramps, RIGHT, LEFT, *rest)]
-
-
-@pytest.mark.parametrize("ends", [False, True])
-@pytest.mark.parametrize("left", [(0, 30), (5, 54)])
-def test_it_goes_from_foot_to_foot_without_jumps(model, ends, left):
-    ramps = reference(model, STEPS, ends=ends, zmp=(0.01, 0.02), left=left)
-    under = zmp_under(LEFT, model.robot)
-    assert (ramps[0].ax, ramps[0].ay) == ((0.01, 0.02) if left[0] else under)
+@pytest.mark.parametrize("moving", [True, False])
+@pytest.mark.parametrize(("tick", "left"), [(DOUBLE + 24, (30,)), (DOUBLE - 5, (5, SINGLE))])
+def test_it_goes_from_foot_to_foot_without_jumps(model, strides_of, moving, tick, left):
+    robot, strides = model.robot, strides_of(STILL)
+    plan = planned(
+        model, tick, landing_of(LEFT, strides_of((0.1, 0.0, 0.0))), strides, moving=moving
+    )
+    ramps, count = plan.ramps[: plan.ramp_count], int(plan.step_count)
+    steps = [LEFT, *map(foothold, plan.steps[:count])]
+    now = scheduled_zmp(plan.gait, robot) if len(left) == 2 else zmp_under(LEFT, robot)
+    assert (ramps[0].ax, ramps[0].ay) == now
     assert all((a.bx, a.by) == (b.ax, b.ay) for a, b in pairwise(ramps))
-    end = zmp_under(STEPS[-1], model.robot)
-    if ends:
-        end = zmp_between(*STEPS[1:], model.robot)
+    assert count == (4 if moving else 2)
+    end = zmp_under(steps[-1], robot) if moving else zmp_between(*steps[-2:], robot)
     assert (ramps[-1].bx, ramps[-1].by) == end
-    rest = 2 * (DOUBLE + SINGLE) + STOP if ends else 3 * (DOUBLE + SINGLE)
-    assert ramps["ticks"].sum() == sum(left) + rest
+    rest = [STOP] if not moving else [DOUBLE, SINGLE]
+    assert ramps["ticks"].tolist() == [*left, *[DOUBLE, SINGLE] * (count - 1), *rest]
     assert all(is_single(r) for r in ramps if (r.ax, r.ay) == (r.bx, r.by))
     assert all(foothold(a.loading) == foothold(b.unloading) for a, b in pairwise(ramps))
 
 
-def test_each_step_takes_its_double_and_its_single_support(model):
-    ramps = reference(model, [RIGHT], ends=False)
-    assert ramps["ticks"].tolist() == [30, DOUBLE, SINGLE]
-    assert [foothold(ramps[1].unloading), foothold(ramps[1].loading)] == [LEFT, RIGHT]
-    last = reference(model, [RIGHT], ends=True, zmp=(0.0, 0.01), left=(3, 54))
-    assert last["ticks"].tolist() == [3, 54, STOP]
-    assert [foothold(last[0].unloading), foothold(last[0].loading)] == [RIGHT, LEFT]
+def test_standing_the_zmp_goes_between_the_feet(model, make_walk, strides_of):
+    plan = make_walk((LEFT, RIGHT))[1][LIVE]
+    plan.gait.tick -= 3
+    update_phase(plan.gait, model.robot)
+    plan_walk(plan, RIGHT, strides_of(STILL), False, model.robot)
+    (ramp,) = plan.ramps[: plan.ramp_count]
+    assert ramp.ticks == 3
+    assert (ramp.bx, ramp.by) == zmp_between(LEFT, RIGHT, model.robot)
+    assert plan.step_count == 0

@@ -8,6 +8,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from walking.command import CommandState, VelocityCommand
+from walking.constants import parameters_for
 from walking.dimension import (
     ACCELERATION,
     DECAY_PER_TICK,
@@ -21,9 +22,10 @@ from walking.dimension import (
     TIME,
     Dimension,
     RobotMeasures,
+    rules_of,
+    scale_parameters,
 )
 from walking.parameters import CONTROL_PERIOD, GRAVITY, WalkingParameters
-from walking.scaling import parameters_for, rules_of, scale_parameters
 
 SECTIONS = [type(getattr(WalkingParameters(), f.name)) for f in fields(WalkingParameters)]
 

@@ -6,11 +6,13 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from walking.command import ACCELERATION, BALANCE, STRIDE_LIMITS
-from walking.footsteps import STILL, cadence, duration, mean_velocity, put_timing
+from walking.constants import parameters_record
+from walking.footsteps import STILL, mean_velocity
 from walking.parameters import CONTROL_PERIOD, WalkingParameters
+from walking.patterns import PLAN
 from walking.published import PUBLISHED, publish_limits
-from walking.records import PLAN, STEERING, TIMING, WALK, parameters_record
 from walking.steering import (
+    STEERING,
     follow_command,
     limited,
     moves,
@@ -18,6 +20,8 @@ from walking.steering import (
     use_next_timing,
     wanted_velocity,
 )
+from walking.tick import WALK
+from walking.timing import TIMING, cadence, duration, put_timing
 
 LIMITS = WalkingParameters().limits
 LONG = 250  # control ticks in which any velocity is reached

@@ -7,7 +7,7 @@ from hypothesis import strategies as st
 from scipy.spatial import ConvexHull
 
 from walking.body.tree import Sole
-from walking.foothold import Foothold
+from walking.footsteps import Foothold
 from walking.support import clip, depth, load_fraction, polygon, support_region
 
 MARGIN = 0.005

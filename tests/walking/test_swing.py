@@ -5,12 +5,12 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from walking.foothold import Foothold
+from walking.footsteps import Foothold
 from walking.parameters import CONTROL_PERIOD
-from walking.records import REFERENCE
 from walking.swing import (
     NO_FOOT,
     PEAK,
+    REFERENCE,
     lift_profile,
     min_swing_ticks,
     minimum_jerk,

@@ -7,9 +7,12 @@ import pytest
 
 from walking.command import HeadTarget, VelocityCommand
 from walking.engine import WalkingEngine
-from walking.foothold import Foothold, put
+from walking.footsteps import FOOTHOLD, Foothold, put
+from walking.gait import GAIT
 from walking.parameters import CONTROL_PERIOD, WalkingParameters
-from walking.records import FOOTHOLD, GAIT, LIMBS, PLAN, record
+from walking.patterns import PLAN
+from walking.posture import LIMBS
+from walking.records import record
 from walking.reference import zmp_under
 from walking.swing_reaction import compensate
 

@@ -6,23 +6,15 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy.integrate import solve_ivp
 
-from walking.foothold import Foothold, foothold, put
+from walking.footsteps import Foothold, foothold, put
 from walking.parameters import CONTROL_PERIOD
-from walking.pendulum import dcm_of, dcm_reference
-from walking.records import CELL, KNOT, PENDULUM, RAMP, ZMP_PLAN
-from walking.reference import is_single, set_ramp
+from walking.patterns import PLAN
+from walking.pendulum import PENDULUM, dcm_of, dcm_reference
+from walking.reference import LIVE, RAMP, is_single, set_ramp
 from walking.support import clip, support_region
-from walking.zmp_plan import (
-    Sole,
-    admits_knots,
-    advance_knots,
-    along_sides,
-    lay_out,
-    limit_cell,
-    put_between,
-    remains_feasible,
-)
-from walking.zmp_solver import solve
+from walking.zmp_plan import admits_knots, advance_knots, remains_feasible
+from walking.zmp_program import Sole, along_sides, lay_out, limit_cell, put_between
+from walking.zmp_solver import CELL, KNOT, solve
 
 NOMINAL = (0.005, -0.003)
 BOUNDS = (-0.04, 0.04, -0.02, 0.02)
@@ -251,8 +243,8 @@ class Robust:
     """Generator on a straight walk, from its DCM on."""
 
     def __init__(self, model, stride=0.05):
-        self.model, self.plans = model, np.zeros(2, ZMP_PLAN)
-        self.knots, self.pendulum = np.zeros((2, 200), KNOT), np.zeros(1, PENDULUM)[0]
+        self.model, self.plans = model, np.zeros(4, PLAN)
+        self.knots, self.pendulum = np.zeros((4, 200), KNOT), np.zeros(1, PENDULUM)[0]
         x, y = dcm_reference(straight(stride, 54), model.robot)
         p, w = self.pendulum, float(model.robot.omega)
         p.x, p.y, p.zmp_x, p.zmp_y = -0.02, 0.042, 0.01, 0.042
@@ -261,18 +253,15 @@ class Robust:
         self.region = support_region(model.robot.support, foot, foot, 0.005)
 
     def admits(self, stride, left):
-        live, trial = self.plans
-        pattern, ramps = self.model.robot.pattern, straight(stride, left)
-        margin, rate = pattern.plan_margin, pattern.zmp_rate
-        rest = (self.pendulum, ramps, self.model.robot, margin, rate)
-        return admits_knots(trial, live, self.knots[1], *rest)
+        robot, ramps = self.model.robot, straight(stride, left)
+        rest = (self.pendulum, ramps, robot.pattern.plan_margin, robot)
+        return admits_knots(self.plans, self.knots, *rest)
 
     def tick(self, stride, left):
         """Whether the reference is admitted, and the ZMP."""
-        live, trial = self.plans
         accepted, ramps = self.admits(stride, left), straight(stride, left)
         rest = (self.pendulum, ramps, self.region, self.model.robot)
-        advance_knots(live, self.knots[0], trial, self.knots[1], accepted, *rest)
+        advance_knots(self.plans, self.knots, accepted, *rest)
         zmp = (float(self.pendulum.zmp_x), float(self.pendulum.zmp_y))
         assert clip(self.region, *zmp) == pytest.approx(zmp, abs=1e-12)
         return accepted, *zmp
@@ -299,7 +288,7 @@ def test_an_infeasible_landing_is_rejected_and_the_last_plan_remains_feasible(mo
     for k in range(40):
         generator.tick(0.05, 54 - k)
     assert not generator.admits(0.15, 14)
-    live = generator.plans[0]
+    live = generator.plans[LIVE].zmp
     assert remains_feasible(live, straight(0.05, 14))
     assert not remains_feasible(live, straight(0.15, 14))
 
@@ -308,7 +297,7 @@ def test_after_a_push_no_plan_is_feasible_and_the_zmp_stays_in_the_sole(model):
     generator = Robust(model)
     generator.pendulum.vx += 1.5
     assert not generator.tick(0.05, 54)[0]
-    assert not generator.plans[0].exists
+    assert not generator.plans[LIVE].zmp.exists
     for k in range(1, 30):
         generator.tick(0.05, 54 - k)
 

@@ -14,7 +14,22 @@ from walking.body.tree import LEFT_LEG, RIGHT_LEG, Frame, RobotTree, Sole
 from walking.dimension import RobotMeasures
 from walking.parameters import GRAVITY
 from walking.plane import Array, Indices, Point
-from walking.records import Record
+from walking.records import Record, record
+
+NECK = record(
+    movable=bool,
+    tilt_first=bool,
+    pan_joint=int,
+    tilt_joint=int,
+    pan_sign=float,
+    tilt_sign=float,
+    rest_pan=float,
+    rest_tilt=float,
+    lower=(float, 2),
+    upper=(float, 2),
+)
+"""Joints of the head (-1 for none), their signs [1], pan and tilt with these joints at zero, and
+limits of pan and tilt [rad]."""
 
 
 class Neck:
@@ -71,7 +86,7 @@ class Neck:
         return np.sort(ends, axis=0).T
 
     def describe(self, record: Record) -> None:
-        """Set a record `walking.records.NECK`."""
+        """Set a record `NECK`."""
         record.movable, record.tilt_first = self._head is not None, self._tilt_first
         record.pan_joint, record.tilt_joint = self._head or (-1, -1)
         record.pan_sign, record.tilt_sign = self._signs

@@ -13,7 +13,7 @@ from hsr8.world.rotation import heading, up_component
 from hsr8.world.truth.contacts import ContactWatch
 from hsr8.world.truth.saturation import Saturation
 from hsr8.world.truth.truth import ActivePush, Truth
-from walking.signals import BodySensors, JointTargets
+from walking.state import BodySensors, JointTargets
 
 
 class Body(Protocol):

@@ -26,7 +26,7 @@ from hsr8.scenario.fault import (
 from hsr8.world.model.index import ModelIndex
 from hsr8.world.rotation import quaternion_from_yaw, quaternion_product, small_rotation
 from walking.parameters import CONTROL_PERIOD
-from walking.signals import BodySensors, JointTargets
+from walking.state import BodySensors, JointTargets
 
 AXES = {"roll": 0, "pitch": 1, "yaw": 2}
 

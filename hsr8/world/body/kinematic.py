@@ -20,7 +20,7 @@ from hsr8.world.field.layout import Layout
 from hsr8.world.rotation import Quaternion, product, rotate
 from hsr8.world.truth.truth import Truth
 from walking.parameters import CONTROL_PERIOD, GRAVITY
-from walking.signals import BodySensors, JointTargets
+from walking.state import BodySensors, JointTargets
 
 Array = NDArray[np.float64]
 

@@ -20,7 +20,7 @@ from hsr8.world.rotation import heading, quaternion_from_yaw
 from hsr8.world.truth.saturation import Saturation, SaturationWatch
 from hsr8.world.truth.truth import Truth
 from walking.parameters import CONTROL_PERIOD
-from walking.signals import BodySensors, JointTargets
+from walking.state import BodySensors, JointTargets
 
 Array = NDArray[np.float64]
 

@@ -10,7 +10,7 @@ from compilation import compiled
 from hsr8.scenario.sensors import SensorNoise
 from hsr8.world.model.index import ModelIndex
 from hsr8.world.rotation import product
-from walking.signals import BodySensors
+from walking.state import BodySensors
 
 Array = NDArray[np.float64]
 Ints = NDArray[np.intp]

@@ -7,8 +7,8 @@ import pytest
 
 from hsr8.robots import rules
 from walking.body.robot_model import MAX_COMPLIANCE, MAX_STIFFENING, RobotModel
+from walking.constants import parameters_for
 from walking.parameters import CONTROL_PERIOD, WalkingParameters
-from walking.scaling import parameters_for
 
 KNEES = [3, 9]
 ANKLES = [4, 5, 10, 11]

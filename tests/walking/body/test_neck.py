@@ -11,8 +11,9 @@ from hypothesis import strategies as st
 from walking.body.kinematics import chain_end
 from walking.body.robot_model import Neck
 from walking.body.tree import turn
-from walking.head import head_joints
-from walking.records import JOINT, ROBOT
+from walking.constants import ROBOT
+from walking.feedforward import JOINT
+from walking.posture import head_joints
 
 ANGLES = st.floats(-0.6, 0.6)
 

@@ -30,7 +30,7 @@ from hsr8.world.model.assembly import Optics, assemble
 from hsr8.world.model.index import ModelIndex
 from hsr8.world.rotation import heading, quaternion_from_yaw
 from walking.body.tree import JOINT_NAMES
-from walking.signals import BodySensors, JointTargets
+from walking.state import BodySensors, JointTargets
 
 KNEE = 3
 

@@ -10,7 +10,7 @@ from hsr8.world.model.index import ModelIndex
 from walking.command import HeadTarget, VelocityCommand
 from walking.engine import WalkingEngine
 from walking.parameters import WalkingParameters
-from walking.signals import JointTargets
+from walking.state import JointTargets
 
 
 @pytest.fixture(scope="module")

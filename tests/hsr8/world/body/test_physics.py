@@ -7,7 +7,7 @@ from hsr8.world.body.physics import PhysicsBody
 from hsr8.world.field.layout import Obstacle
 from hsr8.world.field.motion import Line, Shuttle
 from walking.parameters import CONTROL_PERIOD
-from walking.signals import JointTargets
+from walking.state import JointTargets
 
 
 def body_in(world, noise, *obstacles, seed=0, **details):

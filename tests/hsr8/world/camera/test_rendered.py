@@ -17,8 +17,7 @@ from vision.detector import Detector
 from vision.parameters import VisionParameters
 from walking.body.tree import JOINT_NAMES
 from walking.parameters import CONTROL_PERIOD
-from walking.signals import JointTargets
-from walking.state import HeadCameraPose
+from walking.state import HeadCameraPose, JointTargets
 
 CLEAN = Camera(noise=CameraNoise(pixel=0.0, exposure=0.0))
 pytestmark = pytest.mark.gl
