@@ -1,14 +1,13 @@
 """Rigid transforms of the plane, SE(2), between the robot frame R and the field frame W."""
 
 from collections.abc import Sequence
-from math import atan2, cos, hypot, sin
+from math import atan2, cos, sin
 from typing import NamedTuple, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
 
 from compilation import compiled
-from navigation.angles import wrap
 
 Array = NDArray[np.float64]
 Coordinate = TypeVar("Coordinate", float, Array)
@@ -43,18 +42,6 @@ def yaw_rotation(angle: float) -> Array:
     """Return the rotation matrix about the vertical axis (3, 3); `angle` [rad]."""
     c, s = cos(angle), sin(angle)
     return np.array([[c, -s, 0.0], [s, c, 0.0], [0.0, 0.0, 1.0]])
-
-
-def range_bearing(pose: Sequence[float], landmark: tuple[float, float]) -> tuple[float, float]:
-    """Return range [m] and bearing in R, wrapped [rad], of a landmark.
-
-    Args:
-        pose: x, y, heading of R in W [m, m, rad].
-        landmark: position in W [m].
-    """
-    dx = landmark[0] - pose[0]
-    dy = landmark[1] - pose[1]
-    return hypot(dx, dy), wrap(atan2(dy, dx) - pose[2])
 
 
 def to_world(pose: Sequence[float], distance: float, bearing: float) -> tuple[float, float]:

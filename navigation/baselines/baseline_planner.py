@@ -12,7 +12,7 @@ from navigation.belief.belief import Belief
 from navigation.belief.tracks import Tracks
 from navigation.decision import MotionDecision, SpeedLimits, Task, read_only
 from navigation.motion.move_to_goal import ArrivalSide, arrival_gain, move_to_goal
-from navigation.motion.velocity_mapping import arriving, idle_velocity, towards
+from navigation.motion.velocity_mapping import idle_velocity, target_heading
 from navigation.parameters.navigation import NavigationParameters
 
 Array = NDArray[np.float64]
@@ -82,7 +82,6 @@ class BaselinePlanner:
         obstacles = obstacles.where(~obstacles.lost | (obstacles.age <= p.planner.memory))
         sigma = np.minimum(p.planner.max_sigma, obstacles.sigma)
         course, speed, side = self._move_to_goal(belief.pose, task)
-        turning = arriving(belief.pose[:2], task, p.univector.holonomic_distance)
         return PlanningScene(
             pose=belief.pose,
             body=self._body,
@@ -91,16 +90,11 @@ class BaselinePlanner:
             task=task,
             course=course,
             speed=speed,
-            facing=task.heading if turning else self._heading(look, course),
+            facing=target_heading(belief.pose[:2], task, look, course, p),
             side=side,
             limits=self._limits,
             parameters=p,
         )
-
-    def _heading(self, look: float | None, course: float) -> float | None:
-        """Return the target heading for a fixed camera, None for the course [rad]."""
-        most = self._parameters.gaze.max_pan
-        return None if look is None else towards(look, course, most).heading
 
     def _move_to_goal(self, pose: Array, task: Task) -> tuple[float, float, int]:
         """Return direction [rad], speed [m/s] and arrival side without obstacles."""

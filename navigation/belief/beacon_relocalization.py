@@ -5,7 +5,7 @@ separates a lost robot from an outlier; a beacon that is rejected while others a
 displaced.
 """
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Mapping
 from math import hypot
 
 import numpy as np
@@ -100,7 +100,8 @@ class BeaconRelocalization:
         pose, misfit = self._fit(frame, recent)
         if misfit <= p.recovery_sigma:
             return pose
-        for name, others in _leave_one_out(recent):
+        for name in recent if len(recent) > 2 else ():
+            others = {n: point for n, point in recent.items() if n != name}
             pose, misfit = self._fit(frame, others)
             distance = hypot(float(pose[0] - before[0]), float(pose[1] - before[1]))
             if misfit <= p.recovery_sigma and distance <= 2.0 * p.recovery_sigma:
@@ -115,10 +116,3 @@ class BeaconRelocalization:
         pose = pose_from_points(observed, known)
         aligned = points_to_world(pose, observed)
         return pose, float(np.max(np.linalg.norm(aligned - known, axis=1)))
-
-
-def _leave_one_out(points: dict[str, Point]) -> Iterator[tuple[str, dict[str, Point]]]:
-    """Yield each name and the points without it, for three or more points."""
-    if len(points) > 2:
-        for name in points:
-            yield name, {n: p for n, p in points.items() if n != name}

@@ -19,7 +19,7 @@ from navigation.belief.belief import Motion, Track
 from navigation.belief.detections import in_world, variance_inflation
 from navigation.belief.localization import MAX_SHARED
 from navigation.belief.map_relocalization import MapRelocalization
-from navigation.belief.visibility import Viewpoint
+from navigation.belief.visibility import Viewpoint, clear_points
 from navigation.observation import Frame, Observation, bearing_variance
 from navigation.parameters.belief import BeliefParameters
 from navigation.transform import propagate, yaw_rotation
@@ -182,9 +182,8 @@ class EkfSlam:
         pose, covariance = self.pose, self.covariance
         detections = in_world(frame.observations, pose, covariance, max_pose_sigma=p.max_pose_sigma)
         viewpoint = Viewpoint.of(frame.view, pose, p.detection_range, p.view_margin)
-        expected = viewpoint.in_clear_view(
-            self._x[3:].reshape(-1, 2), detections.positions, detections.radii, p.occlusion_margin
-        )
+        landmarks, discs = self._x[3:].reshape(-1, 2), (detections.positions, detections.radii)
+        expected = clear_points(landmarks, *viewpoint, *discs, p.occlusion_margin)
         for i in np.flatnonzero(expected).tolist():
             if i not in matched:
                 _, count = self._missing.get(self._ids[i], (0.0, 0))

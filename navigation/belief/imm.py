@@ -85,13 +85,9 @@ def predict(weights: Array, states: Array, covariances: Array, dt: float, p: np.
         dt: time since the last prediction [s].
         p: parameters of tracking.
     """
-    turn_variance = p.turn_rate_sigma * p.turn_rate_sigma
-    variance = p.velocity_sigma * p.velocity_sigma
-    mixed = mix(weights, states, covariances, transition(dt, p), dt, variance, turn_variance)
+    mixed = mix(weights, states, covariances, transition(dt, p), dt, p)
     weights[:], states[:], covariances[:] = mixed
-    keep = exp(-dt / p.turn_rate_time)
-    q, diffusion = p.acceleration_noise, p.static_diffusion
-    move(states, covariances, dt, q, diffusion, keep, turn_variance)
+    move(states, covariances, dt, p)
 
 
 @compiled
@@ -104,13 +100,7 @@ def _reversal(i: int, j: int) -> float:
 
 @compiled
 def mix(
-    weights: Array,
-    states: Array,
-    covariances: Array,
-    changes: Array,
-    dt: float,
-    start_variance: float,
-    turn_variance: float,
+    weights: Array, states: Array, covariances: Array, changes: Array, dt: float, p: np.record
 ) -> Parts:
     """Return weights, states and covariances mixed by the transitions (Blom & Bar-Shalom).
 
@@ -120,10 +110,12 @@ def mix(
         covariances: (n, 3, 5, 5).
         changes: probability of mode j after mode i (3, 3).
         dt: time since the last mixing [s].
-        start_variance: variance of the velocity of an obstacle that starts to move [m²/s²].
-        turn_variance: variance of its turn rate [rad²/s²].
+        p: parameters of tracking.
     """
     n = len(weights)
+    # Of an obstacle that starts to move.
+    velocity_variance = p.velocity_sigma * p.velocity_sigma
+    turn_variance = p.turn_rate_sigma * p.turn_rate_sigma
     mixed_weights, mixed = np.zeros((n, 3)), np.zeros((n, 3, SIZE))
     spread, parts = np.zeros((n, 3, SIZE, SIZE)), np.empty((3, SIZE))
     factor, fraction = np.ones(SIZE), np.empty(3)
@@ -156,7 +148,7 @@ def mix(
                             square = forth * states[k, i, 2 + a] * forth * states[k, i, 2 + b]
                             part += square / 3.0
                         if a == b and a > 1 and i == STATIC and j == FORWARD:
-                            part += start_variance if a < 4 else turn_variance
+                            part += velocity_variance if a < 4 else turn_variance
                         spread[k, j, a, b] += fraction[i] * part
     return mixed_weights, mixed, spread
 
@@ -184,26 +176,18 @@ def arc(turn: float, dt: float) -> tuple[float, float, float, float]:
 
 
 @compiled
-def move(
-    states: Array,
-    covariances: Array,
-    dt: float,
-    q: float,
-    diffusion: float,
-    keep: float,
-    turn_variance: float,
-) -> None:
+def move(states: Array, covariances: Array, dt: float, p: np.record) -> None:
     """Predict all filters in place: constant speed and turn rate, or a random walk if static.
 
     Args:
         states: (n, 3, 5).
         covariances: (n, 3, 5, 5).
         dt: [s].
-        q: square root of the density of the white acceleration [m/s^1.5].
-        diffusion: diffusion of a static obstacle [m²/s].
-        keep: autocorrelation of the turn rate after dt [1].
-        turn_variance: stationary variance of the turn rate [rad²/s²].
+        p: parameters of tracking.
     """
+    q, diffusion = p.acceleration_noise, p.static_diffusion
+    keep = exp(-dt / p.turn_rate_time)  # autocorrelation of the turn rate
+    turn_variance = p.turn_rate_sigma * p.turn_rate_sigma  # stationary
     F = np.eye(SIZE)
     moved = np.empty((SIZE, SIZE))
     for k in range(len(states)):
@@ -249,19 +233,20 @@ def move(
 
 
 @compiled
-def mahalanobis(u: float, v: float, xx: float, xy: float, yy: float) -> tuple[float, float]:
-    """Return the squared Mahalanobis distance and log likelihood of an innovation.
+def mahalanobis(x: Array, P: Array, z: Array, R: Array) -> tuple[float, float]:
+    """Return the squared Mahalanobis distance and log likelihood of a detection under one mode.
 
     Args:
-        u: innovation along x [m].
-        v: innovation along y [m].
-        xx: innovation variance along x [m²].
-        xy: innovation covariance [m²].
-        yy: innovation variance along y [m²].
+        x: state of the mode (5,).
+        P: its covariance (5, 5).
+        z: detected position (2,) [m].
+        R: covariance of the position (2, 2) [m²].
 
     Returns:
         Squared Mahalanobis distance [1], and log likelihood up to a constant [1].
     """
+    u, v = z[0] - x[0], z[1] - x[1]
+    xx, xy, yy = P[0, 0] + R[0, 0], P[0, 1] + R[0, 1], P[1, 1] + R[1, 1]
     det = xx * yy - xy * xy
     distance = (yy * u * u - 2.0 * xy * u * v + xx * v * v) / det
     return distance, -0.5 * (distance + log(det))
@@ -279,11 +264,7 @@ def nis(states: Array, covariances: Array, z: Array, R: Array) -> float:
     """
     nearest = inf
     for mode in range(3):
-        x, P = states[mode], covariances[mode]
-        distance, _ = mahalanobis(
-            z[0] - x[0], z[1] - x[1], P[0, 0] + R[0, 0], P[0, 1] + R[0, 1], P[1, 1] + R[1, 1]
-        )
-        nearest = min(nearest, distance)
+        nearest = min(nearest, mahalanobis(states[mode], covariances[mode], z, R)[0])
     return nearest
 
 
@@ -306,13 +287,7 @@ def costs(
         for m in range(len(z)):
             nearest, likelihood = inf, 1e-30
             for mode in range(3):
-                distance, logarithm = mahalanobis(
-                    z[m, 0] - states[k, mode, 0],
-                    z[m, 1] - states[k, mode, 1],
-                    covariances[k, mode, 0, 0] + R[m, 0, 0],
-                    covariances[k, mode, 0, 1] + R[m, 0, 1],
-                    covariances[k, mode, 1, 1] + R[m, 1, 1],
-                )
+                distance, logarithm = mahalanobis(states[k, mode], covariances[k, mode], z[m], R[m])
                 nearest = min(nearest, distance)
                 likelihood += weights[k, mode] * exp(logarithm)
             cost[k, m] = -2.0 * log(likelihood) if nearest < gate else inf
@@ -335,7 +310,7 @@ def correct(x: Array, P: Array, z: Array, R: Array) -> float:
     a, b, d = P[0, 0] + R[0, 0], P[0, 1] + R[0, 1], P[1, 1] + R[1, 1]
     det = a * d - b * b
     u, v = z[0] - x[0], z[1] - x[1]
-    _, likelihood = mahalanobis(u, v, a, b, d)
+    _, likelihood = mahalanobis(x, P, z, R)
     K, left = np.empty((SIZE, 2)), np.empty((SIZE, SIZE))
     for i in range(SIZE):
         K[i, 0] = (P[i, 0] * d - P[i, 1] * b) / det

@@ -106,8 +106,8 @@ class LocalMap:
         dt = min(time - self._time, p.max_look_time)
         self._time = time
         self._scroll(centre)
-        corner, seen_from = np.array(self._corner, float), (viewpoint.eye, viewpoint.shadow)
-        marks = observed_cells(corner, p.cell, self._count, *seen_from, obstacles, radii)
+        corner = np.array(self._corner, float)
+        marks = observed_cells(corner, p.cell, self._count, *viewpoint, obstacles, radii)
         evidence = (dt * p.free_rate, dt * p.occupied_rate, p.max_log_odds)
         update_grid(marks, self._seen_at, self._log_odds, time, evidence)
 

@@ -133,8 +133,7 @@ class Tracker:
         if (self._objects["last_time"] == time).all():
             return
         p, clouds, rng = self._parameters, self._clouds, self._rng
-        seen_from = viewpoint.eye, viewpoint.shadow
-        fates = misses(self._objects, clouds, detections.rows, *seen_from, time, dt, self._limits)
+        fates = misses(self._objects, clouds, detections.rows, *viewpoint, time, dt, self._limits)
         for i in np.flatnonzero(fates >= SPAWNS).tolist():
             if fates[i] == REFUTED:
                 clouds[i] = particles.resample(clouds[i], p, rng)

@@ -1,13 +1,13 @@
 """Visibility of points of the floor: field of view, range and occlusion of the camera."""
 
 from math import atan2, cos, pi, sqrt, tan
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from compilation import compiled
 from compilation.record import record_type
-from compilation.value import value
 from navigation.observation import CameraView, shadow_at
 from navigation.transform import yaw_rotation
 
@@ -127,9 +127,9 @@ def clearly_visible(points: Array, eye: np.record, shadow: Array, discs: Array) 
 
 @compiled
 def clear_points(
-    points: Array, eyes: Rows, shadow: Array, centres: Array, radii: Array, margin: float
+    points: Array, eyes: Rows, shadow: Array, centres: Array, radii: Array, margin: float = 0.0
 ) -> Mask:
-    """Return whether points of the floor are in view and not occluded (n,).
+    """Return whether an obstacle at each point is in clear view: its top or its foot (n,).
 
     Args:
         points: points in W (n, 2) [m].
@@ -182,8 +182,7 @@ def observed_cells(
     return marks
 
 
-@value
-class Viewpoint:
+class Viewpoint(NamedTuple):
     """Camera of one frame in the field frame W, as compiled functions take it.
 
     Attributes:
@@ -222,16 +221,3 @@ class Viewpoint:
             panoramic,
         )
         return cls(np.array([row], EYE), view.model.shadow)
-
-    def in_clear_view(
-        self, points: Array, centres: Array, radii: Array, margin: float = 0.0
-    ) -> Mask:
-        """Return whether an obstacle at each point is in clear view: its top or its foot (n,).
-
-        Args:
-            points: points in W (n, 2) [m].
-            centres: centres of the occluding discs (m, 2) [m].
-            radii: radii of these discs (m,) [m].
-            margin: enlargement of every disc [m].
-        """
-        return clear_points(points, self.eye, self.shadow, centres, radii, margin)

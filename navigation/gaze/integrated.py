@@ -45,15 +45,13 @@ def self_votes(scene: GazeScene, pan: Array, tilt: Array, p: GazeParameters) -> 
     if p.obstacle_votes == "mean":
         each = value / max(1, len(pan) + beacon_count)
         together = beacon_count * each
-    beacons = beacon_votes(scene, together)
-    within = np.clip(beacons.pan, -p.max_pan, p.max_pan)
-    return [Votes(pan, tilt, np.full(len(pan), each)), Votes(within, beacons.tilt, beacons.value)]
-
-
-def beacon_votes(scene: GazeScene, value: float) -> Votes:
-    """Split one `value` among all beacons within reach, at the height of the horizon."""
-    n = len(scene.beacon_bearing)
-    return Votes(scene.beacon_bearing, np.zeros(n), np.full(n, value / max(1, n)))
+    # The beacons share one value, at the height of the horizon.
+    within = np.clip(scene.beacon_bearing, -p.max_pan, p.max_pan)
+    beacons = np.full(beacon_count, together / max(1, beacon_count))
+    return [
+        Votes(pan, tilt, np.full(len(pan), each)),
+        Votes(within, np.zeros(beacon_count), beacons),
+    ]
 
 
 def map_votes(scene: GazeScene, weight: float, form: str) -> list[Votes]:

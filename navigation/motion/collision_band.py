@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from compilation.value import value
+from navigation.motion.rollout import contact_time
 from navigation.transform import rotate
 
 Array = NDArray[np.float64]
@@ -56,17 +57,9 @@ class Encounter:
     def contact_time(self, speed: float) -> float:
         """Return the time to collision at constant `speed` [m/s]: inf for none, 0 inside [s]."""
         u, w = self.forward - speed, self.left
-        c = self.along**2 + self.across**2 - self.radius**2
-        b = self.along * u + self.across * w
-        if b >= 0.0:
-            return inf
-        if c <= 0.0:
-            return 0.0
-        a = u * u + w * w
-        discriminant = b * b - a * c
-        if discriminant <= 0.0:
-            return inf
-        return max(0.0, (-b - sqrt(discriminant)) / a)
+        outside = self.along**2 + self.across**2 - self.radius**2
+        rate = self.along * u + self.across * w
+        return inf if rate >= 0.0 else contact_time(rate, u * u + w * w, outside)
 
     def collides(self, speed: float, horizon: float) -> bool:
         """Whether constant `speed` [m/s] leads to a collision within `horizon` [s]."""
@@ -142,17 +135,12 @@ class Encounter:
         free; they are case (b) here.
         """
         meets_line = abs(self.across) < self.radius
+        free = free_intervals((self,), v_max, inf)
         if self.in_band():
-            if meets_line and not free_intervals((self,), v_max, inf):
-                return CollisionCase.DEFINITE
-            return CollisionCase.ESCAPE
-        if not any(isfinite(self.contact_time(v)) for v in self._probes(v_max)):
+            return CollisionCase.ESCAPE if free or not meets_line else CollisionCase.DEFINITE
+        if free == [(0.0, v_max)]:
             return None
         return CollisionCase.RECEDING if meets_line else CollisionCase.CROSSING
-
-    def _probes(self, v_max: float) -> tuple[float, ...]:
-        cuts = _cuts((self,), v_max, inf)
-        return tuple(0.5 * (a + b) for a, b in pairwise(cuts))
 
 
 def free_intervals(
@@ -163,7 +151,8 @@ def free_intervals(
     One test between two successive breakpoints decides the interval. Several movers give the
     union of their colliding intervals.
     """
-    cuts = _cuts(encounters, v_max, horizon)
+    inner = {v for e in encounters for v in e.breakpoints(horizon) if 0.0 < v < v_max}
+    cuts = sorted({0.0, v_max, *inner})
     intervals: list[tuple[float, float]] = []
     for low, high in pairwise(cuts):
         middle = 0.5 * (low + high)
@@ -172,8 +161,3 @@ def free_intervals(
             start = intervals.pop()[0] if joins else low
             intervals.append((start, high))
     return intervals
-
-
-def _cuts(encounters: tuple[Encounter, ...], v_max: float, horizon: float) -> list[float]:
-    inner = {v for e in encounters for v in e.breakpoints(horizon) if 0.0 < v < v_max}
-    return sorted({0.0, v_max, *inner})

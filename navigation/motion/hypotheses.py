@@ -43,15 +43,17 @@ def chord_velocity(vx: float, vy: float, turn_rate: float, time: float) -> tuple
 
 
 @compiled
-def set_disc(disc: np.record, x: float, y: float, velocity: tuple[float, float]) -> None:
-    """Set position [m] and velocity [m/s] of a disc."""
-    disc.position[0], disc.position[1] = x, y
-    disc.velocity[0], disc.velocity[1] = velocity[0], velocity[1]
-
-
-@compiled
-def set_penalty(disc: np.record, radius: float, horizon: float, weight: float) -> None:
-    """Set radius [m], horizon [s] and weight [1] of a disc."""
+def set_disc(
+    disc: np.record,
+    position: tuple[float, float],
+    velocity: tuple[float, float],
+    radius: float,
+    horizon: float,
+    weight: float,
+) -> None:
+    """Set position [m], velocity [m/s], radius [m], horizon [s] and weight [1] of a disc."""
+    disc.position[0], disc.position[1] = position
+    disc.velocity[0], disc.velocity[1] = velocity
     disc.radius, disc.horizon, disc.weight = radius, horizon, weight
 
 
@@ -100,17 +102,14 @@ def collision_discs(
             radius = s_robot + track.radius + track.radius_sigma + p.margin
             if not static:
                 radius += min(p.max_sigma, track.sigma)
+            position = track.position[0], track.position[1]
             vx, vy = track.velocity[0], track.velocity[1]
+            velocity = chord_velocity(vx, vy, turn_rate, p.bend_time)
+            horizon, weight = p.static_horizon if static else p.moving_horizon, 1.0
             if reversed_:
                 u, v = chord_velocity(vx, vy, -turn_rate, p.bend_time)
-                set_disc(discs[count], track.position[0], track.position[1], (-u, -v))
-                set_penalty(discs[count], radius, p.reversal_horizon, p.reversal_weight)
-            else:
-                velocity = chord_velocity(vx, vy, turn_rate, p.bend_time)
-                set_disc(discs[count], track.position[0], track.position[1], velocity)
-                set_penalty(
-                    discs[count], radius, p.static_horizon if static else p.moving_horizon, 1.0
-                )
+                velocity, horizon, weight = (-u, -v), p.reversal_horizon, p.reversal_weight
+            set_disc(discs[count], position, velocity, radius, horizon, weight)
             count += 1
     for i in range(len(tracks)):
         track = tracks[i]
@@ -119,10 +118,8 @@ def collision_discs(
         cloud, radius = clouds[track.cloud], s_robot + track.radius + track.radius_sigma + p.margin
         for k in range(cloud.shape[1]):
             velocity = chord_velocity(cloud[VX, k], cloud[VY, k], cloud[TURN_RATE, k], p.bend_time)
-            set_disc(discs[count], cloud[X, k], cloud[Y, k], velocity)
-            set_penalty(
-                discs[count], radius, p.moving_horizon, p.particle_weight * cloud[WEIGHT, k]
-            )
+            position, weight = (cloud[X, k], cloud[Y, k]), p.particle_weight * cloud[WEIGHT, k]
+            set_disc(discs[count], position, velocity, radius, p.moving_horizon, weight)
             count += 1
     for i in range(len(tracks)):
         track = tracks[i]
@@ -130,8 +127,8 @@ def collision_discs(
             continue
         grown = min(p.reachable_radius, track.speed * (track.age - p.reachable_delay))
         radius = s_robot + track.radius + track.radius_sigma + p.margin + grown
-        set_disc(discs[count], track.last_seen[0], track.last_seen[1], (0.0, 0.0))
-        set_penalty(discs[count], radius, p.static_horizon, 1.0)
+        position = track.last_seen[0], track.last_seen[1]
+        set_disc(discs[count], position, (0.0, 0.0), radius, p.static_horizon, 1.0)
         count += 1
     return discs[:count]
 

@@ -27,13 +27,7 @@ from navigation.motion.passing_side import PassingSides
 from navigation.motion.safety_filter import RolloutStart, SafetyFilter
 from navigation.motion.univector import extended_radius, physical_radius
 from navigation.motion.unseen_ground import ground_seen
-from navigation.motion.velocity_mapping import (
-    Facing,
-    arriving,
-    body_velocity,
-    idle_velocity,
-    towards,
-)
+from navigation.motion.velocity_mapping import body_velocity, idle_velocity, target_heading
 from navigation.motion.velocity_modification import ModifiedSpeed, modify_speed, sample_speed
 from navigation.motion.waypoint_search import search_waypoint
 from navigation.parameters.navigation import NavigationParameters
@@ -110,14 +104,15 @@ class Planner:
         task = self._search_waypoint(belief, task, obstacles)
         scene, radii = self._scene(belief, task, obstacles)
         wanted = self._wanted(belief, task, scene)
-        facing = self._facing(belief, task, wanted, look)
+        last = wanted.direction if self._path is None else self._path[0]
+        facing = target_heading(belief.pose[:2], task, look, last, self._parameters)
         course, speed = self._filtered(belief, wanted, facing, obstacles)
         self._path = course, speed
         self._body = body_velocity(
             course,
             speed,
             heading,
-            facing.on(course),
+            course if facing is None else facing,
             limits=self._limits,
             turn_gain=self._parameters.velocity_mapping.turn_gain,
         )
@@ -147,7 +142,7 @@ class Planner:
         return replace(task, target=waypoint, heading=atan2(dy, dx), is_goal=False)
 
     def _filtered(
-        self, belief: Belief, wanted: _Wanted, facing: Facing, obstacles: Tracks
+        self, belief: Belief, wanted: _Wanted, facing: float | None, obstacles: Tracks
     ) -> tuple[float, float]:
         """Return direction [rad] and speed [m/s] after the safety filter."""
         p = self._parameters
@@ -206,16 +201,6 @@ class Planner:
             tuple(f.obstacle for f in virtual),
             field=self._field.planned(float(pose[2]), scene, virtual),
         )
-
-    def _facing(self, belief: Belief, task: Task, wanted: _Wanted, look: float | None) -> Facing:
-        """Return the target heading: that of the goal, of the look, or the course."""
-        p = self._parameters
-        if arriving(belief.pose[:2], task, p.univector.holonomic_distance):
-            return Facing(task.heading)
-        if look is None:
-            return Facing()
-        course = wanted.direction if self._path is None else self._path[0]
-        return towards(look, course, p.gaze.max_pan)
 
     def _steer(self, pose: Array, scene: FieldScene, virtual: ActiveVirtualObstacles) -> float:
         u_x, u_y = self._field.at(pose[:2], float(pose[2]), scene, virtual).tolist()

@@ -14,7 +14,7 @@ from compilation.value import value
 from navigation.decision import SpeedLimits
 from navigation.motion import rollout
 from navigation.motion.hypotheses import within_reach
-from navigation.motion.velocity_mapping import Facing, envelope
+from navigation.motion.velocity_mapping import envelope
 from navigation.parameters.motion import SafetyFilterParameters, VelocityMappingParameters
 from navigation.transform import velocity_in_world
 
@@ -29,13 +29,13 @@ class RolloutStart:
         pose: pose of the robot (3,) [m, m, rad].
         body: present velocity in R, vx, vy, wz (3,) [m/s, m/s, rad/s].
         course: direction of motion in W, defined also for zero velocity [rad].
-        facing: target heading of the body.
+        facing: target heading of the body; None for the direction of motion [rad].
     """
 
     pose: Array
     body: Array
     course: float
-    facing: Facing
+    facing: float | None
 
 
 class SafetyFilter:
@@ -106,12 +106,11 @@ class SafetyFilter:
 
     def rollout(self, start: RolloutStart, candidates: Array) -> tuple[Array, Array]:
         """Return velocities (k, n, 2) [m/s] and durations (k, n) [s] of the path segments."""
-        facing = start.facing
         return rollout.rollout(
             candidates,
             float(start.pose[2]),
             start.course,
-            nan if facing.heading is None else facing.heading,
+            nan if start.facing is None else start.facing,
             start.body,
             self._envelope,
             self._gait,

@@ -5,10 +5,10 @@ from math import hypot
 import numpy as np
 from numpy.typing import NDArray
 
-from compilation.value import value
 from navigation.angles import wrap
 from navigation.decision import SpeedLimits, Task
 from navigation.motion import rollout
+from navigation.parameters.navigation import NavigationParameters
 
 Array = NDArray[np.float64]
 
@@ -59,24 +59,30 @@ def idle_velocity(searching: bool, turn_rate: float, limits: SpeedLimits) -> Arr
     return np.array([0.0, 0.0, min(turn_rate, limits.wz) if searching else 0.0])
 
 
-@value
-class Facing:
-    """Target heading of the body.
+def target_heading(
+    position: Array,
+    task: Task,
+    look: float | None,
+    course: float,
+    parameters: NavigationParameters,
+) -> float | None:
+    """Return the target heading of the body in W, None for the direction of motion [rad].
 
-    Attributes:
-        heading: target in W; None for the course [rad].
+    Args:
+        position: position of the robot in W (2,) [m].
+        task: task of the mission.
+        look: direction in W that the body turns to for a fixed camera, if any [rad].
+        course: direction of motion in W [rad].
+        parameters: profile.
     """
-
-    heading: float | None = None
-
-    def on(self, course: float) -> float:
-        """Return the target heading while walking along `course` [rad]."""
-        return course if self.heading is None else self.heading
+    if arriving(position, task, parameters.univector.holonomic_distance):
+        return task.heading
+    return None if look is None else towards(look, course, parameters.gaze.max_pan)
 
 
-def towards(direction: float, course: float, most: float) -> Facing:
+def towards(direction: float, course: float, most: float) -> float:
     """Return the heading nearest to a direction in W, at most `most` from the course [rad]."""
-    return Facing(course + min(max(wrap(direction - course), -most), most))
+    return course + min(max(wrap(direction - course), -most), most)
 
 
 def arriving(position: Array, task: Task, distance: float) -> bool:

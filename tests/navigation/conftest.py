@@ -8,7 +8,7 @@ import pytest
 from navigation.belief.belief import Belief, Motion, Particles, Track
 from navigation.decision import SpeedLimits, Task
 from navigation.observation import CameraModel, CameraView, Frame
-from navigation.transform import range_bearing
+from tests.navigation.sightings import range_bearing
 from vision.detection import Detection
 
 HEIGHT = 0.47

@@ -12,10 +12,10 @@ from navigation.transform import (
     points_to_world,
     pose_from_points,
     propagate,
-    range_bearing,
     to_world,
     velocity_in_world,
 )
+from tests.navigation.sightings import range_bearing
 
 metres = st.floats(-5.0, 5.0)
 headings = st.floats(-3.14, 3.14)

@@ -8,7 +8,7 @@ from navigation.angles import wrap
 from navigation.belief.belief import Motion
 from navigation.belief.ekf_slam import EkfSlam
 from navigation.parameters.belief import BeliefParameters
-from navigation.transform import range_bearing
+from tests.navigation.sightings import range_bearing
 
 DT = 0.1
 MOTION = (4e-6, 4e-6, 4e-7)  # variances per frame, forward, left and turn

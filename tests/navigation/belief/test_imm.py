@@ -1,3 +1,4 @@
+from dataclasses import replace
 from typing import NamedTuple
 
 import numpy as np
@@ -190,10 +191,23 @@ def test_mixing_is_the_mixture_of_all_that_may_have_happened(seed):
         forth[..., None] * forth[..., None, :] / 3.0
     )
     inner[:, imm.STATIC, FORWARD, (2, 3, 4), (2, 3, 4)] += (variance, variance, turning)
-    actual = imm.mix(weights, states, covariances, rates, dt, variance, turning)
+    p = replace(P, velocity_sigma=variance**0.5, turn_rate_sigma=turning**0.5)
+    actual = imm.mix(weights, states, covariances, rates, dt, record(p)[0])
     assert actual[0] == pytest.approx(joint.sum(axis=1))
     assert actual[1] == pytest.approx(mean)
     assert actual[2] == pytest.approx(np.einsum("nij,nijab->njab", share, inner))
+
+
+def move(states, covariances, dt, q=0.0, diffusion=0.0, keep=1.0, turn_variance=0.0):
+    """Predict by `imm.move`; `keep` is the autocorrelation of the turn rate after `dt`."""
+    p = replace(
+        P,
+        acceleration_noise=q,
+        static_diffusion=diffusion,
+        turn_rate_time=np.inf if keep == 1.0 else -dt / np.log(keep),
+        turn_rate_sigma=turn_variance**0.5,
+    )
+    imm.move(states, covariances, dt, record(p)[0])
 
 
 def test_without_turn_rate_it_is_the_kalman_filter_of_filterpy():
@@ -209,7 +223,7 @@ def test_without_turn_rate_it_is_the_kalman_filter_of_filterpy():
     kf.Q = np.kron(block, np.eye(2))
     for _ in range(30):
         z, R = rng.standard_normal(2), random_covariances(rng, 2)
-        imm.move(x, P, dt, q, 1e-6, 1.0, 0.0)
+        move(x, P, dt, q, 1e-6)
         likelihood = imm.correct(x[0, FORWARD], P[0, FORWARD], z, R)
         kf.predict()
         kf.update(z, R=R)
@@ -223,7 +237,7 @@ def test_without_turn_rate_it_is_the_kalman_filter_of_filterpy():
 def test_a_static_obstacle_has_random_walk_noise_only():
     _, states, covariances, *_ = drawn(5)
     moved, spread = states.copy(), covariances.copy()
-    imm.move(moved, spread, 0.5, 0.03, 2e-3, 0.9, 0.04)
+    move(moved, spread, 0.5, 0.03, 2e-3, 0.9, 0.04)
     assert np.array_equal(moved[:, 0], states[:, 0])
     grown = np.broadcast_to(np.diag([1e-3, 1e-3, 0.0, 0.0, 0.0]), (4, 5, 5))
     assert spread[:, 0] - covariances[:, 0] == pytest.approx(grown)
@@ -232,7 +246,7 @@ def test_a_static_obstacle_has_random_walk_noise_only():
 def moved(x, dt, keep=1.0):
     """One state, carried on."""
     states = np.tile(np.array(x, float), (1, 3, 1))
-    imm.move(states, np.zeros((1, 3, 5, 5)), dt, 0.0, 0.0, keep, 0.0)
+    move(states, np.zeros((1, 3, 5, 5)), dt, keep=keep)
     return states[0, FORWARD]
 
 
@@ -244,7 +258,7 @@ def test_doubt_follows_the_slope_of_the_motion(turn):
         covariances = np.zeros((1, 3, 5, 5))
         covariances[..., j, j] = 1.0
         states = np.tile(x, (1, 3, 1))
-        imm.move(states, covariances, dt, 0.0, 0.0, keep, 0.0)
+        move(states, covariances, dt, keep=keep)
         off = step * np.eye(5)[j]
         slope = (moved(x + off, dt, keep) - moved(x - off, dt, keep)) / (2.0 * step)
         assert covariances[0, FORWARD] == pytest.approx(np.outer(slope, slope), abs=1e-9)
@@ -266,9 +280,9 @@ def test_a_constant_turn_rate_gives_a_circle(turn):
 def test_predictions_add_up():
     _, states, covariances, *_ = drawn(2)
     once, twice = (states.copy(), covariances.copy()), (states.copy(), covariances.copy())
-    imm.move(*once, 1.0, 0.0, 1e-4, 1.0, 0.0)
-    imm.move(*twice, 0.4, 0.0, 1e-4, 1.0, 0.0)
-    imm.move(*twice, 0.6, 0.0, 1e-4, 1.0, 0.0)
+    move(*once, 1.0, diffusion=1e-4)
+    move(*twice, 0.4, diffusion=1e-4)
+    move(*twice, 0.6, diffusion=1e-4)
     assert np.allclose(once[0], twice[0])
     assert np.allclose(once[1], twice[1])
 
@@ -277,7 +291,7 @@ def test_turn_rates_of_movers_keep_their_spread():
     """The stationary variance of the turn rate is invariant."""
     states, covariances = np.zeros((1, 3, 5)), np.zeros((1, 3, 5, 5))
     states[..., 4], covariances[..., 4, 4] = 0.3, 0.04
-    imm.move(states, covariances, 2.0, 0.0, 0.0, 0.7, 0.04)
+    move(states, covariances, 2.0, keep=0.7, turn_variance=0.04)
     assert states[0, FORWARD, 4] == pytest.approx(0.21)
     assert covariances[0, FORWARD, 4, 4] == pytest.approx(0.04)
 

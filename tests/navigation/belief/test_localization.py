@@ -8,7 +8,7 @@ from navigation.angles import wrap
 from navigation.belief.localization import Localizer
 from navigation.observation import CameraModel, CameraView, Frame
 from navigation.parameters.belief import LocalizationParameters
-from navigation.transform import range_bearing
+from tests.navigation.sightings import range_bearing
 from vision.detection import Detection
 
 BEACONS = {f"b{i}": (3.0 * cos(i * pi / 4), 3.0 * sin(i * pi / 4)) for i in range(8)}

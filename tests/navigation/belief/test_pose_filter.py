@@ -8,7 +8,7 @@ from filterpy.kalman import JulierSigmaPoints, UnscentedKalmanFilter
 
 from navigation.angles import wrap, wrap_array
 from navigation.belief import pose_filter
-from navigation.transform import range_bearing
+from tests.navigation.sightings import range_bearing
 
 LANDMARKS = np.array([(1.5, -2.0), (-2.5, -1.0), (-1.0, 0.5)])
 P = np.array([[4e-3, 1e-3, 0.0], [1e-3, 3e-3, 1e-3], [0.0, 1e-3, 2e-3]])

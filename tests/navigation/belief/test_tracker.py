@@ -7,7 +7,7 @@ import pytest
 from navigation.belief.belief import Motion
 from navigation.belief.detections import in_world
 from navigation.belief.tracker import Tracker
-from navigation.belief.visibility import Viewpoint
+from navigation.belief.visibility import Viewpoint, clear_points
 from navigation.parameters.belief import TrackingParameters
 
 DT = 0.06
@@ -184,7 +184,8 @@ def test_particles_where_the_camera_looks_in_vain_are_given_up(view, observe):
         stage.show()
     viewpoint = Viewpoint.of(view(pan=0.0), np.zeros(3), 2.5, stage.parameters.view_margin)
     for t in stage.tracks:
-        in_view = viewpoint.in_clear_view(t.particles.positions, np.zeros((0, 2)), np.zeros(0))
+        points = np.ascontiguousarray(t.particles.positions)
+        in_view = clear_points(points, *viewpoint, np.zeros((0, 2)), np.zeros(0))
         assert t.particles.weights[in_view].sum() < 0.2
     assert before.particles.weights.sum() == pytest.approx(1.0)
 

@@ -4,7 +4,14 @@ from math import pi, tan
 import numpy as np
 import pytest
 
-from navigation.belief.visibility import FREE, OCCUPIED, UNSEEN, Viewpoint, observed_cells
+from navigation.belief.visibility import (
+    FREE,
+    OCCUPIED,
+    UNSEEN,
+    Viewpoint,
+    clear_points,
+    observed_cells,
+)
 from navigation.observation import shadow_at
 from navigation.transform import yaw_rotation
 
@@ -13,7 +20,7 @@ NOTHING = np.empty((0, 2)), np.empty(0)
 
 
 def contains(viewpoint, points):
-    return viewpoint.in_clear_view(points, *NOTHING)
+    return clear_points(points, *viewpoint, *NOTHING)
 
 
 def test_an_omnidirectional_camera_contains_everything_in_range(view):
@@ -94,7 +101,7 @@ def blocked(points, camera, pose, centres, radii, slack):
 def test_points_agree_with_the_formulas_over_arrays(scene, seed):
     points, view, centres, radii = scene(seed)
     inside, behind = contained(points, *view, 0.05), blocked(points, *view, centres, radii, 0.03)
-    clear = Viewpoint.of(*view, RANGE, 0.05).in_clear_view(points, centres, radii, 0.03)
+    clear = clear_points(points, *Viewpoint.of(*view, RANGE, 0.05), centres, radii, 0.03)
     assert np.array_equal(clear, inside & ~behind)
     assert 0 < clear.sum() < inside.sum()
 

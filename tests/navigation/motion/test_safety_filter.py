@@ -4,13 +4,12 @@ import pytest
 from navigation.motion.hypotheses import DISC
 from navigation.motion.rollout import contact_times
 from navigation.motion.safety_filter import RolloutStart, SafetyFilter
-from navigation.motion.velocity_mapping import Facing
 from navigation.parameters.motion import SafetyFilterParameters, VelocityMappingParameters
 
 HERE = np.zeros(3)
 STANDING = np.zeros(3)
 AHEAD = np.array([0.2, 0.0])
-ON_COURSE = Facing()
+ON_COURSE = None
 
 
 def discs(places, velocities=None, radius=0.25, horizon=6.0, weight=1.0):
@@ -114,7 +113,7 @@ def test_the_rollout_obeys_the_limits(limits):
 def test_a_turned_body_is_rolled_out_along_its_course(limits):
     """The lateral speed limit slows the turned body down."""
     turned, straight = (
-        filter_of(limits).rollout(start((0.0, 0.0, a), body, 0.0, Facing(a)), AHEAD[None])
+        filter_of(limits).rollout(start((0.0, 0.0, a), body, 0.0, a), AHEAD[None])
         for a, body in ((1.0, (0.05, -0.08, 0.0)), (0.0, (0.2, 0.0, 0.0)))
     )
     last = turned[0][-3, 0]

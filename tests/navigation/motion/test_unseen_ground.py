@@ -3,7 +3,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from navigation.belief.visibility import Viewpoint
+from navigation.belief.visibility import Viewpoint, clear_points
 from navigation.motion.unseen_ground import ground_points, ground_seen
 from navigation.parameters.motion import UnseenGroundParameters
 
@@ -26,7 +26,7 @@ def test_a_look_20_deg_down_shows_all_checked_ground(view):
     eye = Viewpoint.of(view(tilt=-np.radians(20.0)), pose, 3.0)
     for near, shown in ((P.near, True), (0.25, False)):
         points = ground_points(pose, pose[2], replace(P, near=near))
-        visible = eye.in_clear_view(points, np.zeros((0, 2)), np.zeros(0))
+        visible = clear_points(points, *eye, np.zeros((0, 2)), np.zeros(0))
         assert visible.all() == shown
 
 

@@ -2,12 +2,13 @@ import numpy as np
 import pytest
 
 from navigation.motion.velocity_mapping import (
-    Facing,
     arriving,
     body_velocity,
     idle_velocity,
+    target_heading,
     towards,
 )
+from navigation.parameters.navigation import NavigationParameters
 
 COURSES = np.linspace(-np.pi, np.pi, 181)
 
@@ -50,9 +51,11 @@ def test_an_idle_robot_stands_and_a_lost_one_turns_within_the_limits(limits):
 
 
 @pytest.mark.parametrize("course", [-2.0, 0.0, 0.7])
-def test_a_heading_overrides_the_course(course):
-    assert Facing(0.5).on(course) == 0.5
-    assert Facing().on(course) == course
+def test_the_body_faces_its_course_unless_it_looks_or_arrives(task, course):
+    p, far, goal = NavigationParameters(), np.array([5.0, 0.0]), task((0.0, 0.0), is_goal=True)
+    assert target_heading(far, goal, None, course, p) is None
+    assert target_heading(far, goal, 0.5, course, p) == towards(0.5, course, p.gaze.max_pan)
+    assert target_heading(np.zeros(2), goal, 0.5, course, p) == goal.heading
 
 
 def test_the_body_turns_to_the_heading_near_the_goal_only(task):
@@ -67,5 +70,5 @@ def test_the_body_turns_to_the_heading_near_the_goal_only(task):
 @pytest.mark.parametrize("course", [-3.0, 0.2, 3.1])
 @pytest.mark.parametrize("offset", [-2.0, -0.3, 0.0, 0.5, 3.0])
 def test_a_body_turns_to_a_direction_but_no_further_from_its_course(course, offset):
-    heading = towards(course + offset, course, 1.0).on(course)
+    heading = towards(course + offset, course, 1.0)
     assert heading - course == pytest.approx(np.clip(offset, -1.0, 1.0))

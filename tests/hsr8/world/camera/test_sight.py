@@ -13,7 +13,7 @@ from hsr8.scenario.loader import load_scenario
 from hsr8.world.body.kinematic import KinematicBody
 from hsr8.world.camera.rendered import RenderedCamera
 from hsr8.world.field.layout import Obstacle
-from navigation.belief.visibility import Viewpoint
+from navigation.belief.visibility import Viewpoint, clear_points
 from navigation.observation import CameraModel, CameraView
 from vision.detector import Detector
 from vision.parameters import PoseParameters
@@ -54,7 +54,7 @@ def test_near_obstacles_are_found_where_they_are_expected(world, silent):
         position = body.data.camera(HEAD_CAMERA).xpos.copy()
         view = CameraView(rotation, position, pan, tilt, camera)
         looked, foot = (
-            Viewpoint.of(v, np.zeros(3), 2.5, 0.07).in_clear_view(point[None], *NOTHING)[0]
+            clear_points(point[None], *Viewpoint.of(v, np.zeros(3), 2.5, 0.07), *NOTHING)[0]
             for v in (view, replace(view, model=CameraModel(*fov)))
         )
         if not foot:
