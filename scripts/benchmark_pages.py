@@ -20,6 +20,8 @@ INCLUDED = ("README.md", "docs/robots.md")
 MARK = "<!-- made by `make benchmarks` -->"
 MADE = b"benchmark"  # key of the metadata of a data file
 MAX_LINES = 80
+PLACE = re.compile(r"\{([\w-]+)(?:@([^./}]+(?:\.\d+[^./}]*)?))?(?:/([\w-]+))?\.(\w+)\}")
+"""Place of a number in a text: arm, level, scenario and column."""
 LEVELS = ("mild: success", "medium: success", "strong: success")  # heads of levels
 
 
@@ -66,7 +68,7 @@ class Page:
         runs, made = stored
         page = self.table
         lines = [MARK, "", f"# {page['title']}", "", f"**{page['question']}**", ""]
-        lines += [filled(page["answer"], runs), "", *self.rows(runs), ""]
+        lines += [self.filled(page["answer"], runs), "", *self.rows(runs), ""]
         lines += ["**Setup.** " + page["setup"], ""]
         lines += ["**Caveats.**", "", *(f"- {text}" for text in page["caveats"]), ""]
         lines += [f"Seeds {_seeds(runs)}. {_made(made)} [Data](data/{self.name}.parquet).", ""]
@@ -81,22 +83,50 @@ class Page:
         groups = _groups(runs, page["rows"], page["arms"])
         if page["rows"] == "levels":
             return _levels(groups)
-        reference = next(iter(groups.values()), [])
-        if "reference" in page:
-            reference = [run for run in runs if run["arm"] == page["reference"]]
-        if "equal" in page["columns"]:
-            reference = [run for run in runs if run["arm"] == "full"]
         scenarios = list(dict.fromkeys(run["scenario"] for run in runs))
         by_scenario = scenarios if page.get("by_scenario") else []
         heads = [*(f"`{s}`" for s in by_scenario), *(COLUMNS[c][0] for c in page["columns"])]
         table = _header(["", *heads])
         for label, group in groups.items():
             cells = [_counted([r for r in group if r["scenario"] == s]) for s in by_scenario]
-            same = len(group) == len(reference) and group[:1] == reference[:1]
-            against = group if same else reference
-            cells += [COLUMNS[column][1](group, against) for column in page["columns"]]
+            arm = group[0]["arm"]
+            reference = self._reference(arm, runs) if self._compared_with(arm) != arm else group
+            cells += [COLUMNS[column][1](group, reference) for column in page["columns"]]
             table.append(f"| {label} | {' | '.join(cells)} |")
         return table
+
+    def filled(self, text: str, runs: Sequence[Run]) -> str:
+        """Return a text with its ``{ARM.COLUMN}``, with ``@LEVEL`` or ``/SCENARIO`` after the arm.
+
+        Args:
+            text: the text.
+            runs: runs of the page.
+        """
+
+        def cell(match: re.Match[str]) -> str:
+            arm, level, scenario, column = match.groups()
+            chosen = [
+                run
+                for run in runs
+                if run["arm"] == arm
+                and (scenario is None or run["scenario"] == scenario)
+                and (level is None or run["level"] == level)
+            ]
+            if not chosen:
+                return "(not measured)"
+            return COLUMNS[column][1](chosen, self._reference(arm, runs))
+
+        return PLACE.sub(cell, text)
+
+    def _compared_with(self, arm: str) -> str:
+        """Return the arm that an arm is compared with in the same worlds."""
+        reference: str = self.table.get("reference", arm)
+        references: dict[str, str] = self.table.get("references", {})
+        return references.get(arm, reference)
+
+    def _reference(self, arm: str, runs: Sequence[Run]) -> list[Run]:
+        """Return the runs that those of an arm are compared with."""
+        return [run for run in runs if run["arm"] == self._compared_with(arm)]
 
 
 def _groups(runs: Sequence[Run], kind: str, arms: Sequence[str]) -> dict[str, list[Run]]:
@@ -137,26 +167,6 @@ def _counted(runs: Sequence[Run]) -> str:
     return f"{sum(run['success'] for run in runs)} of {len(runs)}"
 
 
-def filled(text: str, runs: Sequence[Run]) -> str:
-    """Return a text with its ``{ARM.COLUMN}``, with ``@LEVEL`` or ``/SCENARIO`` after the arm."""
-
-    def cell(match: re.Match[str]) -> str:
-        arm, level, scenario, column = match.groups()
-        chosen = [
-            run
-            for run in runs
-            if run["arm"] == arm
-            and (scenario is None or run["scenario"] == scenario)
-            and (level is None or run["level"] == level)
-        ]
-        if not chosen:
-            return "(not measured)"
-        default = {"difference": "risk", "equal": "full"}.get(column, arm)
-        return COLUMNS[column][1](chosen, [run for run in runs if run["arm"] == default])
-
-    return re.sub(r"\{([\w-]+)(?:@([^./}]+(?:\.\d+[^./}]*)?))?(?:/([\w-]+))?\.(\w+)\}", cell, text)
-
-
 def _seeds(runs: Sequence[Run]) -> str:
     seeds = [run["seed"] for run in runs]
     return f"{min(seeds)} to {max(seeds)}" if seeds else "none"
@@ -178,7 +188,9 @@ def index(definition: Definition, pages: Sequence[Page]) -> str:
     lines += [definition.index["text"].strip(), "", *_header(["page", "question", "answer"])]
     for page in pages:
         data = stored[page.name]
-        answer = filled(page.table["answer"], data[0]) if data else "not measured with this version"
+        answer = (
+            page.filled(page.table["answer"], data[0]) if data else "not measured with this version"
+        )
         link = f"[{page.table['title']}]({page.name}.md)" if data else page.table["title"]
         lines.append(f"| {link} | {page.table['question']} | {answer} |")
     made = [data[1] for data in stored.values() if data]
@@ -197,7 +209,7 @@ def headline(definition: Definition, pages: Sequence[Page]) -> list[str]:
     for label, text, name in definition.headline:
         if stored := by_name[name].read():
             link = f"[{name}](docs/results/{name}.md)"
-            rows.append(f"| {label} | {filled(text, stored[0])} | {link} |")
+            rows.append(f"| {label} | {by_name[name].filled(text, stored[0])} | {link} |")
     return [*_header(["measured", "result", "page"]), *rows] if rows else []
 
 

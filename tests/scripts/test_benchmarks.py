@@ -6,7 +6,7 @@ from dataclasses import replace
 from itertools import pairwise
 
 import pytest
-from benchmark_pages import MARK, MAX_LINES, RESULTS, Page, filled, index, versions, with_included
+from benchmark_pages import MARK, MAX_LINES, RESULTS, Page, index, versions, with_included
 from benchmark_runs import DEFINITION, Definition
 from benchmark_table import COLUMNS, row
 
@@ -75,19 +75,34 @@ def test_a_page_has_an_answer_one_narrow_table_and_its_setup(name, page_of, defi
 
 
 def test_the_headline_is_filled(page_of, definition):
-    for _, text, name in definition.headline:
-        runs, _ = page_of(name).read()
-        assert not PLACEHOLDER.search(filled(text, runs))
-        assert "not measured" not in filled(text, runs)
+    for _, template, name in definition.headline:
+        page = page_of(name)
+        text = page.filled(template, page.read()[0])
+        assert not PLACEHOLDER.search(text)
+        assert "not measured" not in text
 
 
 def test_numbers_of_a_text(definition):
     (cell,) = definition.cells_of("no-fault")
     runs = [row(cell, result(seed, seed % 2 == 0)) for seed in range(10)]
+    filled = Page("faults", definition).filled
     assert filled("{no-fault.success}", runs) == "5 of 10 (24 to 76 %)"
     assert filled("{no-fault/quick.falls}", runs) == "0 of 10"
     assert filled("{no-fault/course.falls}", runs) == "(not measured)"
     assert COLUMNS["spt"][1](runs, runs) == f"{100 * 0.5 * 50 / 60:.0f} %"
+
+
+def test_an_arm_is_compared_with_its_reference_in_the_same_worlds(definition):
+    def runs(arm, successes):
+        (cell, _) = definition.cells_of(arm)
+        return [row(cell, result(seed, seed < successes)) for seed in range(10)]
+
+    page = Page("gaze", definition)
+    all_runs = runs("risk", 9) + runs("ideal-risk", 10) + runs("ideal-steps", 4)
+    assert page.filled("{ideal-steps.difference}", all_runs).startswith("-60.0")
+    assert page.filled("{ideal-risk.difference}", all_runs).startswith("+10.0")
+    *_, risk, ideal, steps = page.rows(all_runs)
+    assert ("+10.0" in ideal, "-60.0" in steps, "p " in risk) == (True, True, False)
 
 
 def test_an_arm_has_the_settings_of_the_arm_that_it_is_like(definition):
