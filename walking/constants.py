@@ -49,10 +49,10 @@ ROBOT = record(
     neck=NECK,
     # Strides of stepping in place.
     still=STRIDES,
-    # Reaction of a swing leg, see `walking.swing_reaction`.
+    # Reaction of a swing leg: B, K and N of `walking.swing_reaction`.
     thrust=float,
-    knee=float,
     lifted_weight=float,
+    knee=float,
     # Gains: of the CoM filter (position [1], velocity [1/s]), of the ankles per DCM error [1].
     position_gain=float,
     velocity_gain=float,
@@ -108,12 +108,12 @@ def robot_record(robot: RobotModel, parameters: WalkingParameters) -> tuple[Reco
         sole.half_length, sole.half_width = rectangle.half_length, rectangle.half_width
     r.com_ahead = float(robot.com(robot.ready)[0])
     r.height = p.pattern.pelvis_height - leg.hip[2]
-    r.chains, r.reach = robot.chains, [leg.reach for leg in robot.legs]
+    r.chains = [side.chain for side in robot.legs]
+    r.reach = [side.reach for side in robot.legs]
     r.ankle, r.stiffening = leg.ankle, robot.stiffening
     r.shoulders, r.shoulder_signs = robot.tree.shoulders or (-1, -1), robot.shoulder_signs()
     robot.neck.describe(r.neck)
-    reaction = leg_reaction(robot, float(r.height), p.gait.swing_height)
-    r.thrust, r.lifted_weight, r.knee = reaction.thrust, reaction.weight, reaction.knee
+    r.thrust, r.lifted_weight, r.knee = leg_reaction(robot, float(r.height), p.gait.swing_height)
     r.position_gain, r.velocity_gain = steady_gains(omega, p.estimator)
     ankles = slice(leg.ankle, 6)
     lag = float((robot.damping[ankles] / robot.stiffness[ankles]).max())
@@ -131,10 +131,9 @@ def joint_records(robot: RobotModel, parameters: WalkingParameters) -> Record:
     """Return the joints of a robot (n,)."""
     p = parameters.stabilizer
     joints = np.zeros(robot.ready.size, JOINT)
-    gain = np.full(robot.ready.size, p.upper_velocity_gain)
+    gain = np.ones(robot.ready.size)
     gain[LEGS] = p.velocity_gain
     joints["lower"], joints["upper"], joints["ready"] = robot.lower, robot.upper, robot.ready
-    joints["load_gain"] = p.load_gain / robot.stiffness
     joints["lag"] = gain * robot.damping / robot.stiffness
     joints["compliance"] = 1.0 / robot.stiffness
     joints["in_q"], joints["in_v"] = robot.indices

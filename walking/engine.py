@@ -15,6 +15,7 @@ from walking.command import (
     limits_of,
 )
 from walking.constants import joint_records, robot_record
+from walking.estimation import sense
 from walking.odometry import LegOdometry
 from walking.parameters import CONTROL_PERIOD, WalkingParameters
 from walking.patterns import PLAN
@@ -22,7 +23,7 @@ from walking.plane import Array
 from walking.published import PUBLISHED, publish, walking_state
 from walking.reference import LIVE
 from walking.state import BodySensors, JointTargets, WalkingState
-from walking.tick import WALK, begin, finish, stand_ready, watch
+from walking.tick import WALK, begin, finish, stand_ready
 from walking.zmp_program import max_knots
 from walking.zmp_solver import KNOT
 
@@ -50,10 +51,7 @@ class WalkingEngine:
     def __init__(
         self, robot: RobotModel, parameters: WalkingParameters, odometry: LegOdometry | None = None
     ) -> None:
-        robot = robot.with_own_buffers()
-        self._dynamics = robot.dynamics
-        self._neck = robot.neck.chain
-        self._feet = robot.feet_chains
+        self._robot = robot = robot.with_own_buffers()
         self._robots, self._sums = robot_record(robot, parameters)
         self._joints = joint_records(robot, parameters)
         self._odometry = odometry or LegOdometry(parameters.odometry)
@@ -110,7 +108,7 @@ class WalkingEngine:
 
         Args:
             sensors: read at the start of the tick.
-            command: velocity or footsteps, new in any tick; limited, see `command_limits`.
+            command: velocity or footsteps, new in any tick; limited, see `CommandLimits`.
             head: gaze direction, limited by rate, acceleration and joint limits.
 
         Returns:
@@ -122,7 +120,7 @@ class WalkingEngine:
         """
         self.observe(sensors)
         self._command = command
-        dynamics, gyro = self._dynamics, sensors.gyro
+        dynamics, gyro = self._robot.dynamics, sensors.gyro
         angles, setpoint = np.empty(self._joints.size), np.empty(self._joints.size)
         distance, self._zmp_depth, self._bound = begin(
             self._walks,
@@ -161,16 +159,7 @@ class WalkingEngine:
     def observe(self, sensors: BodySensors) -> None:
         """Measure the body only, in a tick in which something else moves the joints."""
         self._sensors = sensors
-        self._fallen = watch(
-            self._walks,
-            sensors.joint_position,
-            self._dynamics.com(sensors.joint_position),
-            sensors.orientation,
-            sensors.gyro,
-            sensors.foot_force,
-            *self._feet,
-            self._robots,
-        )
+        self._fallen = sense(self._walks, sensors, self._robot, self._robots)
 
     def state(self) -> WalkingState:
         """Return the state after the last tick.
@@ -190,7 +179,7 @@ class WalkingEngine:
             sensors.joint_position,
             sensors.joint_velocity,
             sensors.gyro,
-            *self._neck,
+            *self._robot.neck.chain,
         )
         return walking_state(self._published, self._command)
 

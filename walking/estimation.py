@@ -11,10 +11,13 @@ import numpy as np
 from scipy.linalg import solve_discrete_are
 
 from compilation import compiled
+from walking.body.kinematics import feet_poses
+from walking.body.robot_model import RobotModel
 from walking.odometry import reckon
 from walking.parameters import CONTROL_PERIOD, EstimatorParameters
-from walking.plane import Array, Point, Vector, from_frame, norm, rotate, rotate_back
+from walking.plane import Array, Indices, Point, Vector, from_frame, norm, rotate, rotate_back
 from walking.records import Record, record
+from walking.state import BodySensors
 
 FOOT = record(x=float, y=float, z=float, yaw=float, load=float, pressure_x=float, pressure_y=float)
 """Measured foot: position [m] and yaw [rad] in the level frame of the heading, load [N], centre of
@@ -60,6 +63,53 @@ def steady_gains(omega: float, parameters: EstimatorParameters) -> tuple[float, 
     P = solve_discrete_are(A.T, C.T, Q, R)
     position, velocity = (P @ C.T / (C @ P @ C.T + R)).ravel().tolist()
     return position, velocity
+
+
+def sense(walks: Record, sensors: BodySensors, robot: RobotModel, robots: Record) -> bool:
+    """Measure the body; return whether the robot is fallen.
+
+    Args:
+        walks: state (1,), changed.
+        sensors: read in this tick.
+        robot: model of the robot.
+        robots: constants (1,).
+    """
+    joints, chains = sensors.joint_position, robot.feet_chains
+    rest = (sensors.orientation, sensors.gyro, sensors.foot_force, *chains, robots)
+    fallen: bool = watch(walks, joints, robot.com(joints), *rest)
+    return fallen
+
+
+@compiled
+def watch(
+    walks: Record,
+    angles: Array,
+    com: Array,
+    orientation: Array,
+    gyro: Array,
+    pads: Array,
+    feet_chains: Array,
+    feet_joints: Indices,
+    robots: Record,
+) -> bool:
+    """Measure the body; return whether the robot is fallen.
+
+    Args:
+        walks: state (1,), changed.
+        angles: measured angles of all joints (n,) [rad].
+        com: centre of mass for these joints in the base frame (3,) [m].
+        orientation: attitude of the IMU, quaternion w-x-y-z (4,).
+        gyro: angular velocity of the trunk (3,) [rad/s].
+        pads: load on the pads of each sole (2, 4) [N].
+        feet_chains: chains to the feet, see `walking.body.kinematics.feet_poses`.
+        feet_joints: joints of these chains.
+        robots: constants (1,).
+    """
+    walk, legs = walks[0], np.empty((2, 4))
+    feet_poses(feet_chains, feet_joints, angles, legs)
+    measure(walk.sensing, legs, com, orientation, gyro, pads, robots[0])
+    walk.ticks += 1
+    return is_fallen(walk.sensing, robots[0])
 
 
 @compiled

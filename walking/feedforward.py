@@ -13,7 +13,6 @@ from walking.records import Record, record
 JOINT = record(
     lower=float,
     upper=float,
-    load_gain=float,
     lag=float,
     compliance=float,
     ready=float,
@@ -24,9 +23,9 @@ JOINT = record(
     rate_ahead=float,
     offset=float,
 )
-"""Joint: limits [rad], feed-forward per load [rad/(N m)], velocity lag [s], compliance [rad/(N m)],
-angle of the ready posture [rad], indices in position and velocity of the dynamic model; planned
-angle [rad] and rate [rad/s], rate for the feed-forward [rad/s], feed-forward offset [rad]."""
+"""Joint: limits [rad], velocity lag [s], compliance [rad/(N m)], angle of the ready posture [rad],
+indices in position and velocity of the dynamic model; planned angle [rad] and rate [rad/s], rate
+for the feed-forward [rad/s], feed-forward offset [rad]."""
 
 LEG_JOINTS = 6
 
@@ -109,7 +108,7 @@ def set_offsets(
                 joints[LEG_JOINTS * side + k].offset += torque
     for k in range(joints.size):
         joint = joints[k]
-        joint.offset = joint.offset * joint.load_gain + joint.rate_ahead * joint.lag
+        joint.offset = joint.offset * joint.compliance + joint.rate_ahead * joint.lag
     shift = rotate_back(limbs.pelvis[2], walk.zmp_shift_x, walk.zmp_shift_y)
     for side in range(2):
         load = right_load if side == 1 else left_load

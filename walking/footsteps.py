@@ -23,10 +23,7 @@ from walking.records import Record, record
 FOOTHOLD = record(left=bool, x=float, y=float, yaw=float)
 """`Foothold`."""
 
-PLACEMENT = record(x=float, y=float, yaw=float)
-"""Landing in the frame of the support foot, x, y [m], yaw [rad]."""
-
-STRIDES = record(right=PLACEMENT, left=PLACEMENT)
+STRIDES = record(right=FOOTHOLD, left=FOOTHOLD)
 """Landing of either foot in the frame of the other."""
 
 POSITION_TOLERANCE = 0.024  # of equal footholds, per half stance [1]
@@ -201,15 +198,18 @@ def velocity_strides(strides: Record, velocity: Vector, time: float, robot: Reco
     Returns:
         whether one is shifted to clear the other foot.
     """
-    gap = robot.gait.foot_clearance
-    x, y, turned = _opened(velocity, time, RIGHT, robot)
-    right = clear_of(y, turned, RIGHT, gap, robot.sole)
-    strides.right.x, strides.right.y, strides.right.yaw = x, right, turned
-    shifted = right != y
-    x, y, turned = _opened(velocity, time, LEFT, robot)
-    left = clear_of(y, turned, LEFT, gap, robot.sole)
-    strides.left.x, strides.left.y, strides.left.yaw = x, left, turned
-    return shifted or left != y
+    shifted = False
+    for side in (RIGHT, LEFT):
+        x, y, turned = _opened(velocity, time, side, robot)
+        clear = clear_of(y, turned, side, robot.gait.foot_clearance, robot.sole)
+        _put_stride(strides, side, x, clear, turned)
+        shifted = shifted or clear != y
+    return shifted
+
+
+@compiled
+def _put_stride(strides: Record, side: float, x: float, y: float, turned: float) -> None:
+    put(strides.right if side == RIGHT else strides.left, Foothold(side == LEFT, x, y, turned))
 
 
 @compiled
@@ -245,9 +245,7 @@ def command_strides(strides: Record, command: Array, turn: float, robot: Record)
         rx, ry = within_reach(x, clear, side, robot)
         if rx != x or ry != clear:
             bound |= REACH
-        placement = strides.right if side == RIGHT else strides.left
-        placement.x, placement.y = rx, clear_of(ry, turned, side, gap, robot.sole)
-        placement.yaw = turned
+        _put_stride(strides, side, rx, clear_of(ry, turned, side, gap, robot.sole), turned)
     return bound
 
 
@@ -307,27 +305,16 @@ def mean_velocity(strides: Record, time: float, robot: Record) -> Vector:
 @compiled
 def towards_strides(strides: Record, one: Record, other: Record, fraction: float) -> None:
     """Set strides between two others, interpolated linearly."""
-    _between(strides.right, one.right, other.right, fraction)
-    _between(strides.left, one.left, other.left, fraction)
-
-
-@compiled
-def _between(placement: Record, one: Record, other: Record, fraction: float) -> None:
-    placement.x = one.x + fraction * (other.x - one.x)
-    placement.y = one.y + fraction * (other.y - one.y)
-    placement.yaw = one.yaw + fraction * (other.yaw - one.yaw)
+    put(strides.right, towards(foothold(one.right), foothold(other.right), fraction))
+    put(strides.left, towards(foothold(one.left), foothold(other.left), fraction))
 
 
 @compiled
 def equal_strides(one: Record, other: Record) -> bool:
     """Whether strides are the same number by number."""
-    return _equal(one.right, other.right) and _equal(one.left, other.left)
-
-
-@compiled
-def _equal(one: Record, other: Record) -> bool:
-    equal: bool = one.x == other.x and one.y == other.y and one.yaw == other.yaw
-    return equal
+    return equal(foothold(one.right), foothold(other.right)) and equal(
+        foothold(one.left), foothold(other.left)
+    )
 
 
 @compiled

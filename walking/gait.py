@@ -10,7 +10,7 @@ from walking.footsteps import FOOTHOLD, Foothold, foothold, is_parallel, landing
 from walking.parameters import CONTROL_PERIOD
 from walking.plane import Point, clamp, from_frame
 from walking.records import Record, record
-from walking.swing import NO_FOOT, min_swing_ticks, move_feet, moved, rest_at
+from walking.swing import lift_profile, min_swing_ticks, move_foot, moved, rest_at
 from walking.timing import (
     CLOCK,
     phase_of,
@@ -206,9 +206,7 @@ def retime(gait: Record, timing: Record, robot: Record) -> bool:
             put_single_support(single, timing.single, robot)
     elif free and timing.single != single.ticks and gait.adjustable:
         retime_single_support(single, gait.elapsed, timing.single, robot)
-    now = gait.clock.timing
-    now.double, now.single = timing.double, timing.single
-    now.swing_height = timing.swing_height
+    gait.clock.timing = timing
     update_phase(gait, robot)
     if not free:
         return not gait.stepping
@@ -294,20 +292,15 @@ def advance(plan: Record, feet: Record, robot: Record) -> None:
     gait = plan.gait
     gait.tick += 1
     update_phase(gait, robot)
-    single, swing = gait.clock.single, NO_FOOT
+    single = gait.clock.single
+    for side in range(2):
+        feet[side].height *= robot.stabilizer.contact_decay
     if gait.stepping and not gait.landed_early and single.first < gait.elapsed <= single.last:
-        swing = swing_of(gait)
         change = gait.clock.timing.swing_height - gait.swing_height
         gait.swing_height += clamp(change, robot.gait.swing_height_rate * CONTROL_PERIOD)
-    move_feet(
-        feet,
-        robot.stabilizer.contact_decay,
-        swing,
-        foothold(gait.landing),
-        single.last - gait.elapsed + 1,
-        gait.swing_height,
-        gait.swing_phase,
-    )
+        height = gait.swing_height * lift_profile(gait.swing_phase)
+        ticks_left = single.last - gait.elapsed + 1
+        move_foot(feet[swing_of(gait)], foothold(gait.landing), ticks_left, height)
     if gait.stepping and gait.ticks_left == 0:
         _land(plan, feet, robot)
 

@@ -9,7 +9,7 @@ from walking.body.kinematics import inclined
 from walking.body.robot_model import RobotModel
 from walking.command import CommandLimits, HeadTarget, VelocityCommand
 from walking.constants import joint_records, robot_record
-from walking.estimation import filter_error, pressure
+from walking.estimation import filter_error, pressure, sense
 from walking.footsteps import Foothold
 from walking.odometry import LegOdometry, reckon
 from walking.parameters import (
@@ -19,11 +19,11 @@ from walking.parameters import (
     GaitParameters,
     WalkingParameters,
 )
-from walking.plane import Array, Frame, Point, Vector, from_frame, norm, rotate, rotate_back
+from walking.plane import Array, Frame, Point, from_frame, norm, rotate, rotate_back
 from walking.posture import LIMBS, advance_head, head_joints
 from walking.state import Balance, BodySensors, HeadCameraPose, Phase, WalkingState
 from walking.support import depth, polygon
-from walking.tick import WALK, watch
+from walking.tick import WALK
 
 CONTACT_LOAD = 2.0 * LIGHT_LOAD  # of the weight; a lifted foot with more of it has landed [1]
 VELOCITY_TIME = 0.05  # time constant of the legs in the velocity filter [s]
@@ -163,7 +163,6 @@ class BodyObserver:
     ) -> None:
         self._robot = robot = robot.with_own_buffers()
         self._odometry = odometry
-        self._dynamics = robot.dynamics
         self._robots, _ = robot_record(robot, parameters)
         self._walks = np.zeros(1, WALK)
         self._sensing = self._walks[0].sensing
@@ -185,16 +184,7 @@ class BodyObserver:
     def observe(self, sensors: BodySensors) -> None:
         """Update only the attitude, in a tick in which the robot is off its feet."""
         self._sensors = sensors
-        self._fallen = watch(
-            self._walks,
-            sensors.joint_position,
-            self._dynamics.com(sensors.joint_position),
-            sensors.orientation,
-            sensors.gyro,
-            sensors.foot_force,
-            *self._robot.feet_chains,
-            self._robots,
-        )
+        self._fallen = sense(self._walks, sensors, self._robot, self._robots)
 
     def update(self, sensors: BodySensors) -> BodyEstimate:
         """Run one tick; return the estimate."""
@@ -338,17 +328,12 @@ class BodyObserver:
         """Filter the centre of mass as an inverted pendulum over the centre of pressure."""
         sensing = self._sensing
         com = from_frame(pose, sensing.com[0], sensing.com[1])
-        left, right = (self._frame_of(side) for side in range(2))
+        left, right = map(tuple, self._feet[:, [0, 1, 3]].tolist())
         zmp_x, zmp_y, load = pressure(sensing, left, right)
         if not sensing.weighted:
             sensing.x, sensing.y, sensing.weighted = *com, True
         self._zmp = (zmp_x, zmp_y) if load > 0.0 else com
         filter_error(sensing, com, self._zmp, (0.0, 0.0), self._robots[0])
-
-    def _frame_of(self, side: int) -> Vector:
-        """Return the frame of a foot in the odometry frame."""
-        x, y, _, yaw = self._feet[side].tolist()
-        return x, y, yaw
 
 
 class Head:
@@ -367,20 +352,8 @@ class Head:
     def advance(self, target: HeadTarget) -> Array:
         """Run one tick; return the setpoints of pan and tilt joint [rad], none if it is fixed."""
         advance_head(self._limbs, (target.pan, target.tilt), self._robot)
-        return self.joints(*self._limbs.head.tolist())
-
-    @property
-    def angles(self) -> Array:
-        """Pan and tilt (2,) [rad]."""
-        return np.array(self._limbs.head)
-
-    @property
-    def rates(self) -> Array:
-        """Rates of pan and tilt (2,) [rad/s]."""
-        return np.array(self._limbs.head_rate)
-
-    def joints(self, pan: float, tilt: float) -> Array:
-        """Return the angles of pan and tilt joint for pan and tilt [rad], none if it is fixed."""
         if not self._robot.neck.movable:
             return np.zeros(0)
-        return np.array(head_joints(pan, tilt, self._joints, self._robot))
+        pan, tilt = self._limbs.head.tolist()
+        joints: Array = np.array(head_joints(pan, tilt, self._joints, self._robot))
+        return joints

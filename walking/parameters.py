@@ -156,12 +156,10 @@ class StabilizerParameters:
     dcm_rate: Annotated[float, RATE] = 4.24
     sole_margin: Annotated[float, SOLE] = 0.010  # ZMP shifted by the ankles to the sole's edge [m]
     gyro_gain: Annotated[float, ANKLE_TIME] = 0.02  # ankle setpoint per angular velocity [s]
-    load_gain: Annotated[float, NUMBER] = 1.0  # feed-forward of the planned joint torques [1]
-    inertia_gain: Annotated[float, NUMBER] = 1.0  # of the joint accelerations in these torques [1]
+    inertia_gain: Annotated[float, NUMBER] = 1.0  # accelerations in the feed-forward torques [1]
     max_inertia_acceleration: Annotated[float, RATE_CHANGE] = 300.0  # in these torques [rad/s²]
     velocity_gain: Annotated[float, NUMBER] = 0.6  # feed-forward of the servo lag, legs [1]
     velocity_ahead: Annotated[float, TIME] = 0.0  # time by which these rates are extrapolated [s]
-    upper_velocity_gain: Annotated[float, NUMBER] = 1.0  # the same of head and arms [1]
     capture_dead_zone: Annotated[float, NUMBER] = 0.3  # DCM error per ZMP margin of the sole [1]
     capture_forward: Annotated[float, LENGTH] = 0.19  # maximum shift of a landing, forward [m]
     capture_side: Annotated[float, LENGTH] = 0.13  # maximum shift of a landing, lateral [m]

@@ -7,12 +7,12 @@ leg would be stretched. The arms swing against the legs.
 from math import asin, atan2, cos, sin, sqrt
 
 from compilation import compiled
-from walking.body.kinematics import Pose, solve_leg
+from walking.body.kinematics import FootPose, solve_leg
 from walking.gait import is_airborne, swing_of
 from walking.parameters import CONTROL_PERIOD
-from walking.plane import Array, Point, Vector, clamp, rotate_back
+from walking.plane import Array, Point, Vector, clamp, dead_zone, rotate_back
 from walking.records import Record, record
-from walking.swing import NO_FOOT, REFERENCE
+from walking.swing import REFERENCE
 
 LIMBS = record(
     moved=bool,
@@ -43,6 +43,7 @@ their rates [rad/s]; load fraction of the right foot in this tick [1]."""
 
 MIN_TILT = 1e-6  # smaller tilts of a foot are set to zero [rad]
 LEG_JOINTS = 6
+NO_FOOT = -1
 
 
 @compiled
@@ -91,7 +92,7 @@ def set_posture(
     limbs.leg_error = 0.0
     for side in range(2):
         x, y, z, roll, pitch, yaw = right if side == 1 else left
-        target = (x, y, z + sunk, roll, pitch, yaw)
+        target = FootPose(x, y, z + sunk, roll, pitch, yaw)
         first = LEG_JOINTS * side
         own = limbs.leg_angles[first : first + LEG_JOINTS]
         axes, origins = limbs.axes[side], limbs.origins[side]
@@ -178,15 +179,17 @@ def level_feet(limbs: Record, airborne: int, tilt: Point, robot: Record) -> None
 def _levelled(own: float, in_air: bool, tilt: float, robot: Record) -> float:
     p = robot.stabilizer
     if in_air:
-        excess = max(0.0, tilt - p.tilt_dead_zone) + min(0.0, tilt + p.tilt_dead_zone)
-        levelled: float = own + p.tilt_pull * (p.tilt_gain * excess - own)
+        wanted = p.tilt_gain * dead_zone(tilt, p.tilt_dead_zone)
+        levelled: float = own + p.tilt_pull * (wanted - own)
         return levelled
     decayed: float = own * p.tilt_decay
     return decayed if abs(decayed) >= MIN_TILT else 0.0
 
 
 @compiled
-def _foot_pose(limbs: Record, side: int, support: Record, pelvis: Vector, height: float) -> Pose:
+def _foot_pose(
+    limbs: Record, side: int, support: Record, pelvis: Vector, height: float
+) -> FootPose:
     """Return the pose of a foot in the base frame, `height` above the floor [m]."""
     foot, roll, pitch = limbs.feet[side], limbs.foot_roll[side], limbs.foot_pitch[side]
     c, s = cos(pelvis[2]), sin(pelvis[2])
@@ -196,7 +199,7 @@ def _foot_pose(limbs: Record, side: int, support: Record, pelvis: Vector, height
         lift += pitch * (c * ax + s * ay) - roll * (c * ay - s * ax)
     dx, dy, turned = foot.x - pelvis[0], foot.y - pelvis[1], foot.yaw - pelvis[2]
     cf, sf = cos(turned), sin(turned)
-    return (
+    return FootPose(
         c * dx + s * dy,
         c * dy - s * dx,
         lift - height,
@@ -207,7 +210,7 @@ def _foot_pose(limbs: Record, side: int, support: Record, pelvis: Vector, height
 
 
 @compiled
-def sink(foot: Pose, reach: Array) -> float:
+def sink(foot: FootPose, reach: Array) -> float:
     """Return how far the base must sink for a leg to reach a foot [m].
 
     Args:
@@ -215,9 +218,9 @@ def sink(foot: Pose, reach: Array) -> float:
         reach: hip in the base frame (3) [m], ankle in the frame of the foot (3) [m], maximum
             distance between them [m] (7,).
     """
-    c, s = cos(foot[5]), sin(foot[5])
-    dx = foot[0] + c * reach[3] - s * reach[4] - reach[0]
-    dy = foot[1] + s * reach[3] + c * reach[4] - reach[1]
-    down = reach[2] - foot[2] - reach[5]
+    c, s = cos(foot.yaw), sin(foot.yaw)
+    dx = foot.x + c * reach[3] - s * reach[4] - reach[0]
+    dy = foot.y + s * reach[3] + c * reach[4] - reach[1]
+    down = reach[2] - foot.z - reach[5]
     sunk: float = max(0.0, down - sqrt(max(0.0, reach[6] * reach[6] - dx * dx - dy * dy)))
     return sunk

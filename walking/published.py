@@ -254,7 +254,8 @@ def publish_camera(
     own = np.empty(moving.size)
     for k in range(moving.size):
         own[k] = angles[moving[k]]
-    mounted, origin = chain_pose(chain, own)
+    axes, origins = np.empty((moving.size, 3)), np.empty((moving.size, 3))
+    mounted, origin = chain_pose(chain, own, axes, origins)
     camera.pan = atan2(mounted[5], mounted[2])
     camera.tilt = asin(min(1.0, max(-1.0, mounted[8])))
     neck, load = robot.neck, sensing.right_load

@@ -20,7 +20,6 @@ and accelerations of x, y and yaw."""
 
 PEAK = 1.875  # peak speed over mean speed of a minimum-jerk motion from rest to rest [1]
 ROUNDING = 1e-7  # rounding error, relative to the maximum change [1]
-NO_FOOT = -1
 
 
 @compiled
@@ -46,35 +45,19 @@ def lift_profile(phase: float) -> float:
 
 
 @compiled
-def move_feet(
-    feet: Record,
-    decay: float,
-    swing: int,
-    landing: Foothold,
-    ticks_left: int,
-    lift: float,
-    phase: float,
-) -> None:
-    """Move the feet by one tick.
+def move_foot(foot: Record, landing: Foothold, ticks_left: int, height: float) -> None:
+    """Move the swing foot by one tick.
 
     Args:
-        feet: references of the left and the right foot (2,), changed.
-        decay: decay per tick of the height of a foot on the floor [1].
-        swing: index of the swing foot, -1 for none.
-        landing: foothold of the swing foot.
+        foot: reference of the foot, changed.
+        landing: foothold of the foot.
         ticks_left: control ticks until touchdown [1].
-        lift: height at mid-swing [m].
-        phase: phase of the swing after this tick [1].
+        height: height of the foot after this tick [m].
     """
-    feet[0].height *= decay
-    feet[1].height *= decay
-    if swing == NO_FOOT:
-        return
-    foot = feet[swing]
     foot.x = _towards(foot, 0, foot.x, landing.x, ticks_left)
     foot.y = _towards(foot, 1, foot.y, landing.y, ticks_left)
     foot.yaw = _towards(foot, 2, foot.yaw, landing.yaw, ticks_left)
-    foot.height = lift * lift_profile(phase)
+    foot.height = height
 
 
 @compiled

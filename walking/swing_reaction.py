@@ -17,7 +17,6 @@ compute this correction by a second preview controller on the multibody ZMP, Tak
 (IROS 2009) by a pendulum with three masses.
 """
 
-from dataclasses import dataclass
 from math import cos, exp, sin
 from typing import NamedTuple
 
@@ -31,35 +30,24 @@ from walking.footsteps import Foothold, foothold
 from walking.gait import support_foot, swing_foot, zmp_under
 from walking.parameters import CONTROL_PERIOD, GRAVITY
 from walking.pendulum import ramp_weights
-from walking.plane import Point
+from walking.plane import Point, Vector
 from walking.records import Record
 
 SMALL = 1e-4  # step of finite differences [m]
 
 
-@dataclass(frozen=True, slots=True)
-class LegReaction:
-    """Shift of the ZMP by accelerations of the swing foot.
-
-    Attributes:
-        thrust: B, backward shift of the ZMP per forward acceleration of the foot [s²].
-        weight: K, shift towards the foot per upward acceleration and distance of the foot from the
-            ZMP [s²/m].
-        knee: N, backward shift per upward acceleration of the foot [s²].
-    """
-
-    thrust: float
-    weight: float
-    knee: float
-
-
-def leg_reaction(robot: RobotModel, height: float, lift: float) -> LegReaction:
+def leg_reaction(robot: RobotModel, height: float, lift: float) -> Vector:
     """Return the reaction of a leg at mid-swing.
 
     Args:
         robot: masses and dimensions.
         height: height of the base above the floor [m].
         lift: swing height; the reaction is that at half of it [m].
+
+    Returns:
+        B, backward shift of the ZMP per forward acceleration of the foot [s²]; K, shift towards the
+        foot per upward acceleration and distance of the foot from the ZMP [s²/m]; N, backward shift
+        per upward acceleration of the foot [s²].
     """
     ahead = float(robot.com(robot.ready)[0])
     leg = robot.legs[0]
@@ -85,11 +73,8 @@ def leg_reaction(robot: RobotModel, height: float, lift: float) -> LegReaction:
         fx, fy, fz, nx, ny, _ = (moved - still).tolist()
         return nx - height * fy, ny + height * fx + ahead * fz
 
-    return LegReaction(
-        thrust=moment(thrust)[1] / load,
-        weight=moment(raised)[0] / (leg.foot[1] * load),
-        knee=moment(raised)[1] / load,
-    )
+    sideways, forward = moment(raised)
+    return moment(thrust)[1] / load, sideways / (leg.foot[1] * load), forward / load
 
 
 class Moments(NamedTuple):

@@ -4,12 +4,9 @@
 feed-forward.
 """
 
-import numpy as np
-
 from compilation import compiled
 from walking.admission import ADMISSION, remember
 from walking.balance import PLACING, advance_pendulum, end_capture, exceeds, place_foot, zmp_shift
-from walking.body.kinematics import feet_poses
 from walking.command import BALANCE, FALLEN, SWING_HEIGHT, TIMING
 from walking.corrections import (
     CORRECTIONS,
@@ -23,7 +20,7 @@ from walking.corrections import (
     speed_correction,
     speed_ratio,
 )
-from walking.estimation import SENSING, estimate, is_fallen, measure
+from walking.estimation import SENSING, estimate, is_fallen
 from walking.feedforward import set_motion, set_offsets, set_setpoints
 from walking.footsteps import FOOTHOLD, STILL, Command, Foothold, foothold, put, tendency
 from walking.gait import (
@@ -39,7 +36,7 @@ from walking.gait import (
 )
 from walking.parameters import CONTROL_PERIOD
 from walking.pendulum import PENDULUM
-from walking.plane import Array, Indices, Point, norm, rotate, rotate_back
+from walking.plane import Array, Point, norm, rotate, rotate_back
 from walking.posture import LIMBS, advance_head, head_joints, pelvis_over, set_posture
 from walking.records import Record, record
 from walking.reference import LIVE, plan_walk
@@ -118,41 +115,6 @@ def stand_ready(
     limbs.pelvis[0], limbs.pelvis[1], limbs.pelvis[2] = pelvis_over(
         limbs.feet, (end.bx, end.by), robot.com_ahead
     )
-
-
-@compiled
-def watch(
-    walks: Record,
-    angles: Array,
-    com: Array,
-    orientation: Array,
-    gyro: Array,
-    pads: Array,
-    feet_chains: Array,
-    feet_joints: Indices,
-    robots: Record,
-) -> bool:
-    """Measure the body; return whether the robot is fallen.
-
-    Args:
-        walks: state (1,), changed.
-        angles: measured angles of all joints (n,) [rad].
-        com: centre of mass for these joints in the base frame (3,) [m].
-        orientation: attitude of the IMU, quaternion w-x-y-z (4,).
-        gyro: angular velocity of the trunk (3,) [rad/s].
-        pads: load on the pads of each sole, see `walking.state.BodySensors` (2, 4) [N].
-        feet_chains: see `walking.body.kinematics.feet_poses`.
-        feet_joints: joints of these chains.
-        robots: constants (1,).
-
-    Returns:
-        whether the tilt of the trunk is that of a fallen robot.
-    """
-    walk, legs = walks[0], np.empty((2, 4))
-    feet_poses(feet_chains, feet_joints, angles, legs)
-    measure(walk.sensing, legs, com, orientation, gyro, pads, robots[0])
-    walk.ticks += 1
-    return is_fallen(walk.sensing, robots[0])
 
 
 @compiled

@@ -293,3 +293,11 @@ def test_two_footsteps_stop_the_fastest_walk_from_any_phase(
     for stop_at in range(400, 536, 45):
         # The footstep under way when the command comes is finished first.
         assert stop(Walk(model, strides_of, make_walk), velocity, stop_at) <= 3
+
+
+def test_a_foot_on_the_floor_comes_down_to_it_and_stays(walk):
+    decay = float(walk.model.robot.stabilizer.contact_decay)
+    walk.feet["height"], before = 0.1, walk.feet["x"].copy()
+    walk.tick()
+    assert walk.feet["height"].tolist() == pytest.approx([0.1 * decay, 0.1 * decay])
+    assert walk.feet["x"].tolist() == before.tolist()

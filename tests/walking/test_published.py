@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
 
-from walking.body.kinematics import chain_end
+from walking.body.kinematics import chain_pose
 from walking.body.tree import HEAD
 from walking.command import VelocityCommand
 from walking.estimation import SENSING
@@ -39,9 +39,8 @@ def look(robot, model):
         chain, moving = robot.neck.chain
         gyro = np.array([0.1, 0.2, 0.3])
         publish_camera(camera, sensing, joints, rates, gyro, chain, moving, model.robot)
-        R_BC, p_BC = np.empty((3, 3)), np.empty(3)
-        chain_end(chain, joints[moving], R_BC, p_BC)
-        return camera, R_BC, p_BC
+        R_BC, p_BC = chain_pose(chain, joints[moving], np.empty((2, 3)), np.empty((2, 3)))
+        return camera, np.reshape(R_BC, (3, 3)), np.array(p_BC)
 
     return published
 

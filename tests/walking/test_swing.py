@@ -8,13 +8,12 @@ from hypothesis import strategies as st
 from walking.footsteps import Foothold
 from walking.parameters import CONTROL_PERIOD
 from walking.swing import (
-    NO_FOOT,
     PEAK,
     REFERENCE,
     lift_profile,
     min_swing_ticks,
     minimum_jerk,
-    move_feet,
+    move_foot,
     moved,
     rest_at,
 )
@@ -40,7 +39,7 @@ def run(start, targets):
     feet[1].x = start
     rows = []
     for k, target in enumerate(targets):
-        move_feet(feet, 0.9, 1, Foothold(False, target, 0.0, 0.0), len(targets) - k, 0.02, 0.5)
+        move_foot(feet[1], Foothold(False, target, 0.0, 0.0), len(targets) - k, 0.02)
         rows.append((feet[1].x, feet[1].rate[0], feet[1].acceleration[0]))
     return np.array(rows)
 
@@ -68,14 +67,6 @@ def test_the_lift_starts_and_ends_at_rest_and_peaks_in_the_middle():
     assert heights[0] == heights[-1] == 0.0
     assert heights.max() == heights[100] == 1.0
     assert abs(heights[[1, -2]] / 0.005).max() < 0.01
-
-
-def test_a_foot_on_the_floor_comes_down_to_it_and_stays():
-    feet = np.zeros(2, REFERENCE)
-    feet["x"] = feet["height"] = 0.1
-    move_feet(feet, 0.5, NO_FOOT, Foothold(True, 9.0, 9.0, 9.0), 4, 0.03, 0.5)
-    assert feet["height"].tolist() == [0.05, 0.05]
-    assert feet["x"].tolist() == [0.1, 0.1]
 
 
 def test_a_foot_that_stands_rests_on_its_foothold_at_the_height_it_has():

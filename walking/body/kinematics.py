@@ -7,18 +7,15 @@ frame at the end of the chain, with no axis. The first row is relative to the ba
 
 from dataclasses import dataclass
 from math import asin, atan2, cos, sin, sqrt
+from typing import NamedTuple
 
 import numpy as np
 
 from compilation import compiled
-from compilation.value import value
 from walking.plane import Array, Indices, Vector
 
 Matrix = tuple[float, float, float, float, float, float, float, float, float]
 """Rotation, row by row."""
-
-Pose = tuple[float, float, float, float, float, float]
-"""Pose of a foot in the base frame: x, y, z [m], roll, pitch, yaw [rad]."""
 
 MOVE, AXIS = 9, 12  # first columns of translation and axis, after those of the rotation
 CONVERGED = 1e-11  # error of a solved pose [rad], positions relative to the length of the leg
@@ -82,8 +79,8 @@ def inclined(roll: float, pitch: float) -> Matrix:
 
 
 @compiled
-def _end(chain: Array, angles: Array, axes: Array, origins: Array) -> tuple[Matrix, Vector]:
-    """Return rotation and position [m] of the end of a chain.
+def chain_pose(chain: Array, angles: Array, axes: Array, origins: Array) -> tuple[Matrix, Vector]:
+    """Return rotation and position [m] of the end of a chain (forward kinematics).
 
     Args:
         chain: chain of k joints (k + 1, 15).
@@ -108,28 +105,6 @@ def _end(chain: Array, angles: Array, axes: Array, origins: Array) -> tuple[Matr
 
 
 @compiled
-def chain_pose(chain: Array, angles: Array) -> tuple[Matrix, Vector]:
-    """Return rotation and position [m] of the end of a chain (forward kinematics)."""
-    k = angles.shape[0]
-    return _end(chain, angles, np.empty((k, 3)), np.empty((k, 3)))
-
-
-@compiled
-def chain_end(chain: Array, angles: Array, rotation: Array, position: Array) -> None:
-    """Set rotation (3, 3) and position (3,) [m] of the end of a chain."""
-    R, p = chain_pose(chain, angles)
-    for i in range(3):
-        rotation[i, 0], rotation[i, 1], rotation[i, 2] = R[3 * i], R[3 * i + 1], R[3 * i + 2]
-        position[i] = p[i]
-
-
-@compiled
-def chain_joints(chain: Array, angles: Array, axes: Array, origins: Array) -> None:
-    """Set axes (k, 3) and origins (k, 3) [m] of the joints of a chain."""
-    _end(chain, angles, axes, origins)
-
-
-@compiled
 def feet_poses(chains: Array, moving: Indices, joints: Array, feet: Array) -> None:
     """Set x, y, z [m] and yaw [rad] of both feet in the base frame.
 
@@ -144,13 +119,31 @@ def feet_poses(chains: Array, moving: Indices, joints: Array, feet: Array) -> No
     for side in range(2):
         for joint in range(k):
             angles[joint] = joints[moving[side, joint]]
-        R, p = _end(chains[side], angles, axes, origins)
+        R, p = chain_pose(chains[side], angles, axes, origins)
         feet[side, 0], feet[side, 1], feet[side, 2] = p
         feet[side, 3] = np.arctan2(R[3], R[0])
 
 
+class FootPose(NamedTuple):
+    """Pose of a foot frame in the base frame, R = Rz(yaw) Ry(pitch) Rx(roll).
+
+    Attributes:
+        x, y, z: position of the sole below the ankle [m].
+        roll, pitch, yaw: orientation [rad].
+    """
+
+    x: float
+    y: float
+    z: float
+    roll: float = 0.0
+    pitch: float = 0.0
+    yaw: float = 0.0
+
+
 @compiled
-def solve(leg: Array, foot: Pose, angles: Array, length: float) -> tuple[int, float]:
+def solve_leg(
+    leg: Array, foot: FootPose, angles: Array, length: float, axes: Array, origins: Array
+) -> tuple[int, float]:
     """Find the joint angles of a leg for a foot pose (inverse kinematics) by Newton's method.
 
     Far from the solution, and for a foot out of reach, the steps are damped (Levenberg-Marquardt).
@@ -160,18 +153,12 @@ def solve(leg: Array, foot: Pose, angles: Array, length: float) -> tuple[int, fl
         foot: pose of its end.
         angles: first guess, set to the solution (6,) [rad].
         length: length of the leg, relative to which errors of position count [m].
+        axes: axes of the joints, set (6, 3).
+        origins: origins of the joints, set (6, 3) [m].
 
     Returns:
         iterations, and remaining error [rad].
     """
-    return solve_leg(leg, foot, angles, length, np.empty((6, 3)), np.empty((6, 3)))
-
-
-@compiled
-def solve_leg(
-    leg: Array, foot: Pose, angles: Array, length: float, axes: Array, origins: Array
-) -> tuple[int, float]:
-    """Solve a leg, and set axes and origins of its joints."""
     x, y, z, roll, pitch, yaw = foot
     T = times(
         times(about(0.0, 0.0, 1.0, yaw), about(0.0, 1.0, 0.0, pitch)),
@@ -180,7 +167,7 @@ def solve_leg(
     J, A, e, step = np.empty((6, 6)), np.empty((6, 6)), np.empty(6), np.empty(6)
     error = 0.0
     for iteration in range(MAX_ITERATIONS):
-        R, p = _end(leg, angles, axes, origins)
+        R, p = chain_pose(leg, angles, axes, origins)
         e[0], e[1], e[2] = (x - p[0]) / length, (y - p[1]) / length, (z - p[2]) / length
         # Half the sum of the cross products of the axes of R and T: the sine of the error.
         e[3] = e[4] = e[5] = 0.0
@@ -231,28 +218,6 @@ def _least_squares(J: Array, e: Array, damping: float, A: Array, step: Array) ->
         step[i] /= A[i, i]
 
 
-@value
-class FootPose:
-    """Pose of a foot frame in the base frame, R = Rz(yaw) Ry(pitch) Rx(roll).
-
-    Attributes:
-        x, y, z: position of the sole below the ankle [m].
-        roll, pitch, yaw: orientation [rad].
-    """
-
-    x: float
-    y: float
-    z: float
-    roll: float = 0.0
-    pitch: float = 0.0
-    yaw: float = 0.0
-
-    @property
-    def row(self) -> Pose:
-        """Row for kernels."""
-        return self.x, self.y, self.z, self.roll, self.pitch, self.yaw
-
-
 @dataclass(frozen=True, slots=True, eq=False)
 class Leg:
     """Kinematics of a leg.
@@ -279,19 +244,16 @@ class Leg:
     def of(chain: Array, straight: Array) -> "Leg":
         """Return the leg of a chain (7, 15) that is straight at some joint angles (6,) [rad]."""
         axes, origins = np.empty((6, 3)), np.empty((6, 3))
-        chain_joints(chain, straight, axes, origins)
+        rotation, foot = chain_pose(chain, straight, axes, origins)
         first, second, third = sorted(np.argsort(-np.abs(axes[:, 1]), kind="stable")[:3].tolist())
         pitching = (first, second, third)
         bent = straight.copy()
         bent[list(pitching)] += np.array(BEND) * np.sign(axes[list(pitching), 1])
-        rotation, foot = np.empty((3, 3)), np.empty(3)
-        chain_end(chain, straight, rotation, foot)
         hip, knee, ankle = origins[list(pitching)]
         stretched = STRETCH * (np.linalg.norm(knee - hip) + np.linalg.norm(ankle - knee))
-        reach = np.array([*hip, *(rotation.T @ (ankle - foot)), stretched])
+        reach = np.array([*hip, *(np.reshape(rotation, (3, 3)).T @ (ankle - foot)), stretched])
         hx, hy, hz = hip.tolist()
-        fx, fy, fz = foot.tolist()
-        return Leg(chain, straight, bent, pitching, (hx, hy, hz), (fx, fy, fz), reach)
+        return Leg(chain, straight, bent, pitching, (hx, hy, hz), foot, reach)
 
     @property
     def length(self) -> float:
@@ -309,19 +271,19 @@ class Leg:
         Out of reach the error is that of the nearest pose, positions relative to the length.
         """
         angles = self.bent.copy()
-        _, error = solve(self.chain, foot.row, angles, self.length)
+        axes, origins = np.empty((6, 3)), np.empty((6, 3))
+        _, error = solve_leg(self.chain, foot, angles, self.length, axes, origins)
         return angles, error
 
     def pose(self, angles: Array) -> FootPose:
         """Return the pose of the foot for joint angles (6,) [rad] (forward kinematics)."""
-        R, p = np.empty((3, 3)), np.empty(3)
-        chain_end(self.chain, np.asarray(angles, float), R, p)
-        x, y, z = p.tolist()
-        roll, pitch = atan2(R[2, 1], R[2, 2]), -asin(min(1.0, max(-1.0, R[2, 0])))
-        return FootPose(x, y, z, roll, pitch, atan2(R[1, 0], R[0, 0]))
+        axes, origins = np.empty((6, 3)), np.empty((6, 3))
+        R, p = chain_pose(self.chain, np.asarray(angles, float), axes, origins)
+        roll, pitch = atan2(R[7], R[8]), -asin(min(1.0, max(-1.0, R[6])))
+        return FootPose(*p, roll, pitch, atan2(R[3], R[0]))
 
     def joints(self, angles: Array) -> tuple[Array, Array]:
         """Return axes (6, 3) and origins (6, 3) [m] of the joints in the base frame."""
         axes, origins = np.empty((6, 3)), np.empty((6, 3))
-        chain_joints(self.chain, np.asarray(angles, float), axes, origins)
+        chain_pose(self.chain, np.asarray(angles, float), axes, origins)
         return axes, origins

@@ -58,17 +58,17 @@ class Neck:
         rest = tree.posture.copy()
         rest[moving] = 0.0
         axes, origins = np.zeros((2, 3)), np.zeros((2, 3))
-        kinematics.chain_joints(self.chain[0], rest[moving], axes, origins)
+        kinematics.chain_pose(self.chain[0], rest[moving], axes, origins)
         pan, tilt = axes[::-1] if self._tilt_first else axes
         self._signs = float(np.sign(pan[2])), -float(np.sign(tilt[1]))
         self._rest = self.angles(rest)  # of the optical axis with the head joints at zero
 
     def angles(self, joint_position: Array) -> Point:
         """Return pan and tilt for joint angles (n,) [rad]."""
-        (chain, moving), rotation = self.chain, np.empty((3, 3))
-        kinematics.chain_end(chain, joint_position[moving], rotation, np.empty(3))
-        x, y, z = rotation[:, 2].tolist()
-        return atan2(y, x), asin(min(1.0, max(-1.0, z)))
+        chain, moving = self.chain
+        axes, origins = np.empty((moving.size, 3)), np.empty((moving.size, 3))
+        R, _ = kinematics.chain_pose(chain, joint_position[moving], axes, origins)
+        return atan2(R[5], R[2]), asin(min(1.0, max(-1.0, R[8])))
 
     def rates(self, joint_velocity: Array) -> Point:
         """Return the rates of pan and tilt for joint rates (n,) [rad/s]."""
@@ -152,7 +152,6 @@ class RobotModel:
         names: names of the joints (n,).
         mass: total mass [kg].
         legs: left and right leg.
-        chains: chains of the legs (2, 7, 15).
         feet_chains: chains from the base to the feet, with a waist above the legs, and their
             joints, see `kinematics.feet_poses`.
         neck: pan and tilt of the camera.
@@ -179,18 +178,12 @@ class RobotModel:
         )
         self.dynamics = Dynamics(self._model, self.indices[0])
         self.mass = float(tree.masses.sum())
-        self.chains = np.array(
-            [
-                tree.chain(list(range(part.start, part.stop)), foot)
-                for part, foot in zip((LEFT_LEG, RIGHT_LEG), tree.feet, strict=True)
-            ]
-        )
         paths = [tree.path(foot.joint) for foot in tree.feet]
         ends = zip(paths, tree.feet, strict=True)
         self.feet_chains = np.array([tree.chain(p, foot) for p, foot in ends]), np.array(paths)
         self.legs = (
-            Leg.of(self.chains[0], tree.posture[LEFT_LEG]),
-            Leg.of(self.chains[1], tree.posture[RIGHT_LEG]),
+            Leg.of(tree.chain(list(range(6)), tree.feet[0]), tree.posture[LEFT_LEG]),
+            Leg.of(tree.chain(list(range(6, 12)), tree.feet[1]), tree.posture[RIGHT_LEG]),
         )
         self.neck = Neck(tree)
         self.sole = tree.sole

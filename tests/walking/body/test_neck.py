@@ -8,7 +8,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from walking.body.kinematics import chain_end
+from walking.body.kinematics import chain_pose
 from walking.body.robot_model import Neck
 from walking.body.tree import turn
 from walking.constants import ROBOT
@@ -33,9 +33,9 @@ def with_camera_turned(tree, axis, angle):
 
 def camera_pose(robot, angles):
     """Rotation (3, 3) and position (3,) of the camera in the base frame."""
-    (chain, moving), rotation, position = robot.neck.chain, np.empty((3, 3)), np.empty(3)
-    chain_end(chain, angles[moving], rotation, position)
-    return rotation, position
+    chain, moving = robot.neck.chain
+    rotation, position = chain_pose(chain, angles[moving], np.empty((2, 3)), np.empty((2, 3)))
+    return np.reshape(rotation, (3, 3)), np.array(position)
 
 
 def joints_of(neck, tree, pan, tilt):
