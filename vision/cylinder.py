@@ -19,7 +19,6 @@ from compilation import compiled
 from vision.tables import LEFT, RIGHT
 
 Array = NDArray[np.float64]
-Bools = NDArray[np.bool_]
 Rows = NDArray[np.record]
 
 # Bounds in units of length.

@@ -11,7 +11,6 @@ from numpy.typing import NDArray
 
 from compilation import compiled
 from compilation.record import record_type
-from vision.outline import edge_points
 from vision.tables import LEFT, OUTSIDE, RIGHT, Points
 from vision.view import level, project, resolution
 
@@ -61,15 +60,14 @@ def _label(padded: Labels, view: np.record, X: float, Y: float, slope: float) ->
 
 @compiled
 def envelopes(
-    blob: np.record, extents: Table, runs: Table, padded: Labels, view: np.record
+    blob: np.record, runs: Table, padded: Labels, view: np.record
 ) -> tuple[Grid, Array, Bools]:
     """Return lower and upper envelope of a blob on a grid of azimuth and slope.
 
     Cylinders are upright on this grid for every head pose.
 
     Args:
-        blob: record of type `BLOB`.
-        extents: extents of all blobs.
+        blob: record of type `BLOB`, traced.
         runs: runs of all blobs.
         padded: labels of the image with a border of `OUTSIDE` one pixel wide (h + 2, w + 2).
         view: record of type `VIEW`.
@@ -83,18 +81,8 @@ def envelopes(
     for i in range(blob.first_run, blob.last_run):
         for column in range(runs[i, 1], runs[i, 2]):
             mask[runs[i, 0] - top, column - left] = True
-    a, length = 0, 2 * (bottom - top + right - left)
-    own = extents[blob.first_extent : blob.first_extent + length]
-    points, outer = np.empty((length, 3)), np.empty(length, np.uint8)
-    for e in range(4):
-        b = a + (bottom - top if e < 2 else right - left)
-        edge_points(points[a:b], outer[a:b], blob, own[a:b], padded, view, e)
-        a = b
-    start, end, low, high = inf, -inf, inf, -inf
-    for i in range(len(points)):
-        start, end = min(start, points[i, 0]), max(end, points[i, 0])
-        low, high = min(low, points[i, 1]), max(high, points[i, 1])
-    width, height = end - start, high - low
+    start, low = blob.azimuth[0], blob.slope[0]
+    width, height = blob.azimuth[1] - start, blob.slope[1] - low
     au, av, su, sv = resolution(view, 0.5 * (left + right), 0.5 * (top + bottom))
     size = max(su, sv)
     step = max(0.5 * size, height / MAX_CELLS)

@@ -59,9 +59,8 @@ def locate(
         if obstacle and not candidate.reported:
             rejected[count] = k
             count += 1
-    parts, part_points, counts = split(
-        candidates, rejected[:count], blobs, extents, runs, padded, view, p
-    )
+    rejected = rejected[:count]
+    parts, part_points, counts = split(candidates, rejected, blobs, runs, padded, view, p)
     fit(parts, part_points, view, p)
     _select(parts, p)
     for i in range(count):

@@ -33,7 +33,7 @@ OUTLIERS = 8  # one in so many points of a side may be an outlier
 
 
 @compiled
-def edge_points(
+def _edge(
     points: Array,
     outer: Labels,
     blob: np.record,
@@ -175,9 +175,12 @@ def trace(
             a = starts[e]
             b = starts[e + 1] = a + (bottom - top if e < 2 else right - left)
             middle[e] = (a + b) // 2
-            size[e, 0], size[e, 1] = edge_points(
+            size[e, 0], size[e, 1] = _edge(
                 points[a:b], outer[a:b], blob, extents[a:b], padded, view, e
             )
+        edges = points[starts[0] : starts[4]]
+        blob.azimuth[0], blob.azimuth[1] = edges[:, 0].min(), edges[:, 0].max()
+        blob.slope[0], blob.slope[1] = edges[:, 1].min(), edges[:, 1].max()
         side, rim = (0, 2) if upright(view, 0.5 * (left + right), 0.5 * (top + bottom)) else (2, 0)
         swapped = 0 if points[middle[side], 0] >= points[middle[side + 1], 0] else 1
         for j in range(2):

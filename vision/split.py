@@ -38,7 +38,6 @@ def split(
     candidates: Rows,
     merged: Ints,
     blobs: Rows,
-    extents: Table,
     runs: Table,
     padded: Labels,
     view: np.record,
@@ -49,8 +48,7 @@ def split(
     Args:
         candidates: records of type `CANDIDATE`.
         merged: indices of those that are merged blobs (n,).
-        blobs: records of type `BLOB`.
-        extents: extents of all blobs.
+        blobs: records of type `BLOB`, traced.
         runs: runs of all blobs.
         padded: labels of the image with a border of `OUTSIDE` one pixel wide (h + 2, w + 2).
         view: record of type `VIEW`.
@@ -71,7 +69,7 @@ def split(
     for k in range(n):
         index = candidates[merged[k]].lower
         blob = blobs[index]
-        grid, ends, usable = envelopes(blob, extents, runs, padded, view)
+        grid, ends, usable = envelopes(blob, runs, padded, view)
         step, (left, right) = p.outline_step * grid[2], (blob.sides[LEFT], blob.sides[RIGHT])
         outer = left.trusted and not left.occluded, right.trusted and not right.occluded
         lower, used = add_pieces(

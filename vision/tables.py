@@ -8,7 +8,6 @@ from compilation.record import record_type
 
 Array = NDArray[np.float64]
 Labels = NDArray[np.uint8]
-Rows = NDArray[np.record]
 Points = tuple[Array, Array, Labels]
 """Points of rims: azimuth from the heading of the camera (n,) [rad], slope (n,) [1] and label of
 the outer neighbour, 0 for the background (n,)."""
@@ -55,6 +54,8 @@ BLOB = record_type(
     ("last_run", np.int64),
     ("first_extent", np.int64),
     ("cut", np.bool_),
+    ("azimuth", np.float64, 2),
+    ("slope", np.float64, 2),
     ("sides", SIDE, 2),
     ("rims", RIM, 2),
 )
@@ -63,7 +64,8 @@ BLOB = record_type(
 Box: left, top, right, bottom pixel, right and bottom exclusive. Label of the colour class.
 First and last (exclusive) of its runs. First of its extents: first and last (exclusive)
 column of each row, then first and last (exclusive) row of each column [pixel]. Whether it touches
-the border of the image or the self mask. Left and right side; lower and upper rim."""
+the border of the image or the self mask. Minimum and maximum azimuth from the heading of the camera
+[rad] and slope [1] of its edges. Left and right side; lower and upper rim."""
 
 CANDIDATE = record_type(
     ("upper", np.int64),

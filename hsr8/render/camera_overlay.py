@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from hsr8.recorder import palette
 from hsr8.render.image import Color, Image, draw_text, font_size, text_width
+from vision.camera import PinholeCamera
 
 Array = NDArray[np.float64]
 Rectangle = tuple[float, float, float, float]  # left, top, right, bottom [pixel]
@@ -26,18 +27,15 @@ class CameraOverlay:
     """Overlay of the images of one camera.
 
     Args:
-        camera: width and height of the image of vision [pixel].
+        camera: intrinsics of the camera of vision.
         size: width and height of the drawn images, which show the same height [pixel].
-        vertical_fov: [rad].
     """
 
-    def __init__(self, camera: tuple[int, int], size: tuple[int, int], vertical_fov: float) -> None:
+    def __init__(self, camera: PinholeCamera, size: tuple[int, int]) -> None:
         self._camera, self._size = camera, size
-        self._scale = size[1] / camera[1]
-        self._focal = 0.5 * size[1] / np.tan(0.5 * vertical_fov)
-        self._half_fov = np.array(
-            [np.arctan(0.5 * camera[0] * self._scale / self._focal), 0.5 * vertical_fov]
-        )
+        self._scale = size[1] / camera.height
+        self._focal = self._scale * camera.focal
+        self._half_fov = 0.5 * np.array([camera.horizontal_fov, camera.vertical_fov])
         self._letters = font_size(size[1] / 26)
 
     def draw(self, image: Image, frame: SimpleNamespace) -> None:
@@ -53,7 +51,7 @@ class CameraOverlay:
     def _box(self, blob: SimpleNamespace) -> Rectangle:
         """Return the box of a detection in the drawn image [pixel]."""
         left, top, right, bottom = blob.box
-        edge = 0.5 * (self._size[0] - self._scale * self._camera[0])
+        edge = 0.5 * (self._size[0] - self._scale * self._camera.width)
         u, v = self._scale * left + edge, self._scale * right + edge
         return u, self._scale * top, v, self._scale * bottom
 

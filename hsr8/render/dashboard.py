@@ -194,9 +194,7 @@ class Dashboard:
         self.scene_size: Size = (width - side - gap, height - self._bar)
         self.camera_size: Size = (side, camera_height)
         self._left, self._below = width - side, camera_height + gap
-        self._overlay = CameraOverlay(
-            (camera.width, camera.height), self.camera_size, camera.vertical_fov
-        )
+        self._overlay = CameraOverlay(camera.pinhole, self.camera_size)
         self._named = self._bar >= MIN_NAMED
         self._legend = Legend(side, LEGEND * unit)
         room = self._legend.height if self._named else 0

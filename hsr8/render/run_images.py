@@ -142,10 +142,7 @@ class RunImages:
         renderer = self._renderer("vision", self._size)
         if not self._frames:
             return lambda i: self._place(renderer, int(self._rows[i])).draw(HEAD_CAMERA)
-        camera = self._scenario.camera
-        overlay = CameraOverlay(
-            (camera.width, camera.height), self._size, self._optics.vertical_fov
-        )
+        overlay = CameraOverlay(self._scenario.camera.pinhole, self._size)
 
         def draw(index: int) -> Image:
             frame = self._frames[index]

@@ -11,6 +11,7 @@ from hsr8.recorder import palette
 from hsr8.recorder.table import Table
 from hsr8.rerun_log.stream import LogStream
 from navigation.parameters.gaze import GazeParameters
+from vision.camera import PinholeCamera
 
 Array = NDArray[np.float64]
 
@@ -21,19 +22,18 @@ OUTLINE = np.concatenate(  # of the square from -1 to 1 (28, 2)
 )
 
 
-def style_camera(log: LogStream, focal: float, size: tuple[int, int], scale: float) -> None:
+def style_camera(log: LogStream, camera: PinholeCamera, scale: float) -> None:
     """Set the styles of the head camera.
 
     Args:
         log: recording.
-        focal: focal length [pixel].
-        size: width and height of the image [pixel].
+        camera: intrinsics.
         scale: scale of the robot, for the size of the image in the scene [1].
     """
     pinhole = rr.Pinhole(
-        focal_length=focal,
-        width=size[0],
-        height=size[1],
+        focal_length=camera.focal,
+        width=camera.width,
+        height=camera.height,
         camera_xyz=rr.ViewCoordinates.RDF,
         image_plane_distance=0.25 * scale,
     )
@@ -71,20 +71,17 @@ def log_camera(log: LogStream, shown: Table, images: Table | None) -> None:
         log.rows(f"{CAMERA}/image", rr.EncodedImage, images["time"], blob=blobs)
 
 
-def log_gaze_window(
-    log: LogStream, shown: Table, box: float, focal: float, size: tuple[int, int]
-) -> None:
+def log_gaze_window(log: LogStream, shown: Table, box: float, camera: PinholeCamera) -> None:
     """Log the gaze window in the image.
 
     Args:
         log: recording.
         shown: camera frames at the rate of the log.
         box: side of the window as a fraction of the field of view [1].
-        focal: focal length [pixel].
-        size: width and height of the image [pixel].
+        camera: intrinsics.
     """
     outlines = [
-        image_points((pan, tilt), window, focal, size)
+        image_points((pan, tilt), window, camera)
         for (pan, tilt), window in zip(shown["head"].tolist(), _windows(shown, box), strict=True)
     ]
     log.rows(
@@ -148,16 +145,13 @@ def map_points(angles: Array, shape: tuple[int, ...], gaze: GazeParameters) -> A
     return np.column_stack([np.clip(u, 0.0, columns), np.clip(v, 0.0, rows)])
 
 
-def image_points(
-    head: tuple[float, float], angles: Array, focal: float, size: tuple[int, int]
-) -> Array | None:
+def image_points(head: tuple[float, float], angles: Array, camera: PinholeCamera) -> Array | None:
     """Return the pixels of directions in the image of the head camera, clipped to its border.
 
     Args:
         head: pan and tilt, left and up positive [rad].
         angles: pan and tilt of n directions (n, 2) [rad].
-        focal: length [pixel].
-        size: width and height of the image [pixel].
+        camera: intrinsics.
 
     Returns:
         Pixels (n, 2); None if all directions are behind the camera.
@@ -170,8 +164,5 @@ def image_points(
     down = ahead * sin(tilt) - high * cos(tilt)
     if (depth <= 0.0).all():
         return None
-    depth = np.maximum(depth, 1e-3)
-    pixels = np.column_stack(
-        [0.5 * size[0] - focal * left / depth, 0.5 * size[1] + focal * down / depth]
-    )
-    return np.clip(pixels, 0.0, size)
+    pixels = camera.project(np.column_stack([-left, down, np.maximum(depth, 1e-3)]))
+    return np.clip(pixels, 0.0, (camera.width, camera.height))

@@ -2,7 +2,6 @@
 
 from collections import deque
 from collections.abc import Iterator
-from math import radians, tan
 from pathlib import Path
 
 import mujoco
@@ -29,7 +28,6 @@ from hsr8.rerun_log.walking import log_every_record, log_walking, style_walking
 from hsr8.rerun_log.world import PATH_HEIGHT, WorldShapes, log_footsteps, log_waypoints
 from hsr8.robot_builder import build_model
 from hsr8.robots.loaded import LoadedRobot, load_robot
-from hsr8.robots.normal_form import HEAD_CAMERA
 from hsr8.robots.scale import DEFAULT_ROBOT, DEFAULT_STATURE
 from hsr8.robots.shown import stature, visual_model
 from hsr8.scenario.schema import Scenario
@@ -86,13 +84,11 @@ class RunLog:
         log.send_recording_name(f"{scenario.name} {scenario.seed}")
         log.log("/", rr.ViewCoordinates.RIGHT_HAND_Z_UP, static=True)
         self._gaze = scenario.navigation.gaze
-        self._size = width, height = scenario.camera.width, scenario.camera.height
-        fov = radians(float(model.camera(HEAD_CAMERA).fovy[0]))
-        self._focal = 0.5 * height / tan(0.5 * fov)
+        self._camera = scenario.camera.pinhole
         self._model, self._sole = robot.model, sole_outline(robot.model.sole)
         self._scale, self._robot_scale = layout.scale, view.size
         self._world, self._robot = WorldShapes(log, model, layout), RobotShapes(log, robot)
-        style_camera(log, self._focal, (width, height), view.size)
+        style_camera(log, self._camera, view.size)
         style_belief(log, layout.scale)
         style_plots(log, PLOTS, LANES)
         style_walking(log, robot.model, view.size)
@@ -156,7 +152,7 @@ class RunLog:
         log = self.stream
         shown = frames.take(log.due("frames", frames["time"], self._frame_period))
         log_camera(log, shown, images)
-        log_gaze_window(log, shown, self._gaze.box_fraction, self._focal, self._size)
+        log_gaze_window(log, shown, self._gaze.box_fraction, self._camera)
         log_gaze(log, frames, self._gaze)
         log_belief(log, frames, shown, self._scale)
         if not len(shown):

@@ -7,7 +7,6 @@ from collections.abc import Mapping
 from dataclasses import replace
 
 import numpy as np
-from numpy.typing import NDArray
 
 from navigation.angles import wrap
 from navigation.belief.belief import Belief
@@ -19,8 +18,6 @@ from navigation.gaze.scene import gaze_scene
 from navigation.parameters.gaze import GazeParameters
 from navigation.parameters.navigation import NavigationParameters
 from navigation.partial_evaluation import SamplePoints
-
-Array = NDArray[np.float64]
 
 
 class GazePlanner:

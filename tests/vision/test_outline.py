@@ -105,9 +105,7 @@ def test_envelopes_bound_the_directions_of_all_pixels():
     image = traced(OBSTACLES, pose(pan=0.1, tilt=-0.3, roll=0.05))
     view = image.view[0]
     for blob in image.blobs:
-        (start, width, size), (low, high), _ = envelopes(
-            blob, image.extents, image.runs, image.padded, view
-        )
+        (start, width, size), (low, high), _ = envelopes(blob, image.runs, image.padded, view)
         middles = [
             (column + 0.5, row + 0.5)
             for row, first, last, _ in image.runs[blob.first_run : blob.last_run].tolist()

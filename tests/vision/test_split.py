@@ -15,7 +15,7 @@ def parts_of(obstacles: list[Cylinder]):
     """Parts of the only blob of an image."""
     image, p = traced(obstacles, GAZE), parameter_record(VisionParameters())[0]
     assert len(image.blobs) == 1
-    tables = image.blobs, image.extents, image.runs, image.padded
+    tables = image.blobs, image.runs, image.padded
     parts, _, counts = split(
         np.zeros(1, CANDIDATE), np.zeros(1, np.int64), *tables, image.view[0], p
     )

@@ -6,9 +6,10 @@ import pytest
 from hsr8.recorder import palette
 from hsr8.render import camera_overlay
 from hsr8.render.camera_overlay import CameraOverlay
+from vision.camera import PinholeCamera
 
-FOV = np.radians(60.0)
-FOCAL = 120.0 / np.tan(FOV / 2)  # of a image 240 pixels high
+CAMERA = PinholeCamera.from_vertical_fov(320, 240, np.radians(60.0))
+FOCAL = CAMERA.focal
 AWAY = {"head": (1.5, 0.0), "gaze": (-1.5, 0.0)}  # chosen behind the camera: no window is drawn
 
 
@@ -24,7 +25,7 @@ def summary(shown):
 
 def _drawn(frame, size=(320, 240)):
     image = np.zeros((size[1], size[0], 3), np.uint8)
-    CameraOverlay((320, 240), size, FOV).draw(image, frame)
+    CameraOverlay(CAMERA, size).draw(image, frame)
     return image
 
 

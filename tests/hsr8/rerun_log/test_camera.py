@@ -6,30 +6,31 @@ import pytest
 from hsr8.rerun_log.camera import image_points, map_points
 from navigation.gaze.gaze_map import GazeGrid
 from navigation.parameters.gaze import GazeParameters
+from vision.camera import PinholeCamera
 
-FOCAL, SIZE = 160.0, (320, 240)
+CAMERA = PinholeCamera(320, 240, 160.0)
 
 
 @pytest.mark.parametrize("head", [(0.0, 0.0), (0.9, -0.6), (-1.2, 0.3)])
 def test_the_direction_of_the_head_is_the_centre_of_the_image(head):
-    assert image_points(head, np.array([head]), FOCAL, SIZE)[0] == pytest.approx([160.0, 120.0])
+    assert image_points(head, np.array([head]), CAMERA)[0] == pytest.approx([160.0, 120.0])
 
 
 def test_left_and_up_are_left_and_up_in_the_image():
     angles = np.array([[atan(0.5), 0.0], [0.0, atan(0.5)]])
-    left, up = image_points((0.0, 0.0), angles, FOCAL, SIZE)
+    left, up = image_points((0.0, 0.0), angles, CAMERA)
     assert left == pytest.approx([80.0, 120.0])
     assert up == pytest.approx([160.0, 40.0])
 
 
 def test_directions_beyond_the_image_are_on_its_border():
-    aside, above = image_points((0.0, -0.3), np.radians([[-85.0, 0.0], [0.0, 60.0]]), FOCAL, SIZE)
+    aside, above = image_points((0.0, -0.3), np.radians([[-85.0, 0.0], [0.0, 60.0]]), CAMERA)
     assert aside[0] == 320.0
     assert above[1] == 0.0
 
 
 def test_directions_behind_the_camera_are_not_drawn():
-    assert image_points((0.0, 0.0), np.array([[radians(170.0), 0.0]]), FOCAL, SIZE) is None
+    assert image_points((0.0, 0.0), np.array([[radians(170.0), 0.0]]), CAMERA) is None
 
 
 @pytest.mark.parametrize(
