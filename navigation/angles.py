@@ -10,20 +10,17 @@ from compilation import compiled
 TWO_PI = 2.0 * math.pi
 
 
+@compiled
 def wrap(a: float) -> float:
-    """Wrap an angle into (-pi, pi].
+    """Wrap an angle into (-pi, pi], without a rounding error.
 
     Args:
         a: angle [rad].
     """
-    wrapped = math.remainder(a, TWO_PI)
-    return math.pi if wrapped == -math.pi else wrapped
-
-
-@compiled
-def wrapped(a: float) -> float:
-    """Wrap an angle into (-pi, pi], for compiled functions [rad]."""
-    return a - TWO_PI * math.ceil((a - math.pi) / TWO_PI)
+    turn = float(np.fmod(a, TWO_PI))
+    if turn > math.pi:
+        return turn - TWO_PI
+    return turn + TWO_PI if turn <= -math.pi else turn
 
 
 def wrap_array(a: ArrayLike) -> NDArray[np.float64]:

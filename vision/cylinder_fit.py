@@ -297,7 +297,8 @@ def fit(candidates: Rows, points: Points, view: np.record, p: np.record) -> None
             _linearise(
                 H, residual, point_residual, shape, candidate, keep, points, h, span, point_variance
             )
-            means[:] = residual[SIDES:PRIOR]
+            for j in range(MAX_RIMS):
+                means[j] = residual[SIDES + j]
             # A side visible beyond foot or head is not an edge of the cylinder.
             reach = sqrt(x[1] * x[1] - x[2] * x[2])
             for j in range(SIDES):
@@ -314,7 +315,9 @@ def fit(candidates: Rows, points: Points, view: np.record, p: np.record) -> None
             _step(x, covariance, H, residual, shape)
         if not _positive(covariance):
             # The iteration diverges if the edges are not those of one cylinder.
-            covariance[:] = NO_INFORMATION * NO_INFORMATION * np.eye(3)
+            covariance[:] = 0.0
+            for i in range(3):
+                covariance[i, i] = NO_INFORMATION * NO_INFORMATION
         misfit = 0.0
         for i in range(ROWS):
             misfit += residual[i] * residual[i]

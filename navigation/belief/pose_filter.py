@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from compilation import compiled
-from navigation.angles import wrapped
+from navigation.angles import wrap
 
 Array = NDArray[np.float64]
 
@@ -80,7 +80,7 @@ def center(points: Array, first_angle: int) -> Array:
         for i in range(POINTS):
             points[i, a] -= mean[a]
             if angle:
-                points[i, a] = wrapped(points[i, a])
+                points[i, a] = wrap(points[i, a])
     return mean
 
 
@@ -151,7 +151,7 @@ def innovation(
     measured = expected(points, landmarks)
     y = z - center(measured, 1)
     for k in range(len(landmarks)):
-        y[2 * k + 1] = wrapped(y[2 * k + 1])
+        y[2 * k + 1] = wrap(y[2 * k + 1])
     center(points, 2)
     return y, covariance(measured, measured) + R, covariance(points, measured), positive
 
@@ -189,7 +189,7 @@ def correct(pose: Array, P: Array, z: Array, R: Array, landmarks: Array) -> bool
             for k in range(len(y)):
                 P[a, b] -= 0.5 * (K[a, k] * cross[b, k] + K[b, k] * cross[a, k])
             P[b, a] = P[a, b]
-    pose[2] = wrapped(pose[2])
+    pose[2] = wrap(pose[2])
     return True
 
 

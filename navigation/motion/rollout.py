@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from compilation import compiled
-from navigation.angles import wrapped
+from navigation.angles import wrap
 
 Array = NDArray[np.float64]
 Rows = NDArray[np.record]
@@ -35,7 +35,7 @@ def body_velocity(error: float, speed: float, turn: float, envelope: Envelope) -
     v_max = envelope[0] if vx >= 0.0 else envelope[1]
     excess = max(abs(vx) / v_max, abs(vy) / envelope[2])
     scale = 1.0 / max(1.0, excess)
-    rate = envelope[4] * wrapped(turn)
+    rate = envelope[4] * wrap(turn)
     return scale * vx, scale * vy, min(max(rate, -envelope[3]), envelope[3])
 
 
@@ -90,7 +90,7 @@ def rollout(
             velocity[step, i, 1] = s * vx + c * vy
             duration[step, i] = footstep
             now += wz * footstep
-        wait = max(0.0, abs(wrapped(direction - now)) - turn_first_angle) / envelope[3]
+        wait = max(0.0, abs(wrap(direction - now)) - turn_first_angle) / envelope[3]
         duration[steps, i] = wait if speed > fast else 0.0
         velocity[steps + 1, i, 0], velocity[steps + 1, i, 1] = u, w
         duration[steps + 1, i] = inf

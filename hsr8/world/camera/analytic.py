@@ -19,7 +19,7 @@ from hsr8.world.body.body import Body
 from hsr8.world.camera.feed import CameraFaults
 from hsr8.world.field.layout import Beacon, Layout, Obstacle
 from hsr8.world.rotation import heading
-from navigation.angles import wrap, wrapped
+from navigation.angles import wrap
 from navigation.observation import CameraModel, shadow_at
 from vision.color import COLOR_CLASSES
 from vision.detection import Detection
@@ -255,7 +255,7 @@ def _panorama_box(x: float, y: float, radius: float, height: float, view: np.rec
     columns, rows = 2.0 * view.middle[0], 2.0 * view.middle[1]
     distance = sqrt(x * x + y * y)
     half = asin(min(1.0, radius / distance))
-    left = wrapped(atan2(y, x) - atan2(R[1, 2], R[0, 2]))
+    left = wrap(atan2(y, x) - atan2(R[1, 2], R[0, 2]))
     column = columns * (0.5 - left / (2.0 * pi))
     reach = columns * half / (2.0 * pi)
     top = rows * (0.5 - atan2(height - z, distance) / pi)
@@ -358,7 +358,7 @@ def project_all(
         for j in range(i):
             if half[j] == 0.0:
                 continue
-            offset = wrapped(azimuth[j] - azimuth[i])
+            offset = wrap(azimuth[j] - azimuth[i])
             low, high = max(-half[i], offset - half[j]), min(half[i], offset + half[j])
             views[i, HIDDEN] = max(views[i, HIDDEN], (high - low) / (2.0 * half[i]))
         left, top, right, bottom, cut = project(
