@@ -17,10 +17,15 @@ def record_type(*fields: Field) -> np.dtype[np.record]:
     """Return the type of records with fields of a name, a type and a shape.
 
     Every field begins at a multiple of `WORD`, which compiled code requires of nested records.
+
+    Raises:
+        TypeError: a name is that of an attribute of arrays, which would hide the field.
     """
     formats: list[Any] = []
     offsets, offset = [], 0
-    for _, kind, *shape in fields:
+    for name, kind, *shape in fields:
+        if hasattr(np.recarray, name):
+            raise TypeError(f"{name}: name of a field; expected no attribute of arrays")
         of_field: Any = (kind, *shape) if shape else kind
         formats.append(of_field)
         offsets.append(offset)

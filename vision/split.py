@@ -59,7 +59,7 @@ def split(
         blob (n,), 0 where the outline has no steps.
     """
     n = len(merged)
-    parts = np.zeros(2 * MAX_PIECES * n, CANDIDATE)
+    parts = np.empty(2 * MAX_PIECES * n, CANDIDATE)
     size = 2 * MAX_CELLS * n
     points = np.empty(size), np.empty(size), np.empty(size, np.uint8)
     counts = np.zeros(n, np.int64)
@@ -87,6 +87,7 @@ def split(
             _trim(pairs[:matches], i, pieces, points[0])
             part = parts[count + counts[k]]
             part.upper = part.lower = index
+            part.reported = False
             counts[k] += _set_part(part, pairs[i], pieces, points, grid, view, p)
         count += counts[k]
     return parts[:count], points, counts

@@ -8,10 +8,9 @@ from hypothesis import strategies as st
 from tests.vision.scene import CAMERA, at, paint, pose, traced, traced_in
 from vision.blob import find_blobs
 from vision.color import COLOR_CLASSES, ColorTable
-from vision.envelope import envelopes
 from vision.outline import independent, trace
 from vision.tables import OUTSIDE, count_next_to
-from vision.view import angles, view_of
+from vision.view import view_of
 
 NAMES = ("", *COLOR_CLASSES)
 PIXEL = 1.0 / CAMERA.focal
@@ -90,32 +89,6 @@ def test_noise_at_the_border_of_the_image_makes_no_edge() -> None:
     spoiled = traced_in(image, view).named("green").sides
     assert not spoiled[1].trusted
     assert spoiled[0] == clean[0]
-
-
-OBSTACLES = [
-    at(0.9, 4.0, "red", 0.09),
-    at(1.6, 0.0, "green", 0.10),
-    at(1.1, -30.0, "blue", 0.12),
-    at(2.4, 18.0, "red", 0.05),
-]
-
-
-def test_envelopes_bound_the_directions_of_all_pixels():
-    """Lowest and highest slope of a blob near each azimuth, from the middles of its pixels."""
-    image = traced(OBSTACLES, pose(pan=0.1, tilt=-0.3, roll=0.05))
-    view = image.view[0]
-    for blob in image.blobs:
-        (start, width, size), (low, high), _ = envelopes(blob, image.runs, image.padded, view)
-        middles = [
-            (column + 0.5, row + 0.5)
-            for row, first, last, _ in image.runs[blob.first_run : blob.last_run].tolist()
-            for column in range(first, last)
-        ]
-        for u, v in middles:
-            azimuth, slope = angles(view, u, v)
-            column = int((azimuth - start) / width)
-            near = slice(max(column - 1, 0), column + 2)
-            assert low[near].min() - size < slope < high[near].max() + size
 
 
 def test_no_pixel_of_a_rim_is_without_size():

@@ -3,7 +3,6 @@ import pytest
 
 from tests.vision.scene import CAMERA, Cylinder, at, paint, pose, traced
 from vision.detector import Detector, parameter_record
-from vision.envelope import PIECE, add_pieces, borders
 from vision.parameters import VisionParameters
 from vision.split import split
 from vision.tables import CANDIDATE
@@ -64,29 +63,3 @@ def test_a_blob_wider_than_any_obstacle_has_an_inflated_covariance() -> None:
     sigma = np.sqrt(blob.covariance[1, 1])
     assert abs(blob.bearing - np.radians(2.7)) < 1.5 * sigma
     assert abs(blob.bearing + np.radians(2.7)) < 1.5 * sigma
-
-
-def test_a_piece_has_the_ends_and_the_distance_of_its_object():
-    """Two objects: the nearer one, on the left, occludes an end of the farther one."""
-    envelope, usable = np.repeat([-0.3, -0.6], [6, 8]), np.ones(14, bool)
-    pieces, points = np.zeros(9, PIECE), (np.empty(20), np.empty(20), np.ones(20, np.uint8))
-    count, used = add_pieces(
-        pieces, points, 3, envelope, usable, (0.1, 0.01, 0.0), 0.1, -0.6, True, (True, True)
-    )
-    assert (count, used) == (2, 15)
-    far, near = pieces[:2]
-    ends = [(p.right, p.left, p.right_true, p.left_true, p.run) for p in (far, near)]
-    assert ends[0] == pytest.approx((0.1, 0.16, True, False, 2.0))
-    assert ends[1] == pytest.approx((0.16, 0.24, True, True, 1.0))
-    assert [(p.first, p.last) for p in (far, near)] == [(3, 8), (8, 15)]
-    inner = np.r_[0:5, 7:14]
-    azimuth, slope, outer = (values[3:15] for values in points)
-    assert azimuth == pytest.approx(0.1 + 0.01 * (inner + 0.5))
-    assert np.array_equal(slope, envelope[inner])
-    assert not outer.any()
-
-
-def test_an_envelope_is_cut_at_its_steps_and_nowhere_else():
-    envelope = np.repeat([-0.5, -0.3, -0.6], [5, 1, 6])
-    assert borders(envelope, 0.1).tolist() == [0, 6, 12]  # one column is too narrow
-    assert borders(envelope, 1.0).tolist() == [0, 12]

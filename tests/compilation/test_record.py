@@ -1,0 +1,56 @@
+from dataclasses import dataclass, field
+
+import numpy as np
+import pytest
+
+from compilation import compiled
+from compilation.record import WORD, record, record_type
+
+PART = record_type(("weight", np.float64), ("used", np.bool_))
+WHOLE = record_type(("flag", np.bool_), ("parts", PART, 2), ("matrix", np.float64, (2, 3)))
+
+
+@compiled
+def total(wholes):
+    """Return the sum of the weights in use; set the flags."""
+    weight = 0.0
+    for i in range(len(wholes)):
+        whole = wholes[i]
+        whole.flag = True
+        for j in range(2):
+            if whole.parts[j].used:
+                weight += whole.parts[j].weight
+    return weight
+
+
+def test_compiled_code_reads_and_changes_nested_records():
+    wholes = np.zeros(3, WHOLE)
+    wholes["parts"]["weight"] = np.arange(6.0).reshape(3, 2)
+    wholes["parts"]["used"][:, 1] = True
+    assert total(wholes) == total.py_func(wholes) == 1.0 + 3.0 + 5.0
+    assert wholes["flag"].all()
+    assert wholes[1].parts[1].weight == 3.0
+
+
+def test_every_field_begins_at_a_word():
+    assert all(offset % WORD == 0 for _, offset in WHOLE.fields.values())
+    assert WHOLE.itemsize == WORD * (1 + 2 * 2 + 6)
+
+
+def test_attributes_of_arrays_are_refused_as_names():
+    with pytest.raises(TypeError, match="size"):
+        record_type(("size", np.float64))
+
+
+@dataclass(frozen=True)
+class Parameters:
+    name: str = "name"
+    count: int = 3
+    rate: float = 0.5
+    more: dict = field(default_factory=dict)
+
+
+def test_a_record_of_parameters_has_their_numbers():
+    (row,) = record(Parameters(), extra=2.0)
+    assert row.dtype.names == ("count", "rate", "extra")
+    assert (row.count, row.rate, row.extra) == (3.0, 0.5, 2.0)
