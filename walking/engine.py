@@ -6,14 +6,7 @@ import numpy as np
 
 from walking.body.robot_model import RobotModel
 from walking.body.tree import LEFT_LEG, RIGHT_LEG
-from walking.command import (
-    Command,
-    CommandState,
-    HeadTarget,
-    Limit,
-    VelocityCommand,
-    limits_of,
-)
+from walking.command import Command, CommandState, HeadTarget, Limit, VelocityCommand, limits_of
 from walking.constants import joint_records, robot_record
 from walking.estimation import sense
 from walking.odometry import LegOdometry

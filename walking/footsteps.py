@@ -9,15 +9,9 @@ from math import cos, sin, sqrt
 from typing import NamedTuple
 
 from compilation import compiled
-from walking.command import (
-    CLEARANCE,
-    REACH,
-    STEP_LENGTH,
-    STEP_SIDE,
-    STEP_TURN,
-)
+from walking.command import CLEARANCE, REACH, STEP_LENGTH, STEP_SIDE, STEP_TURN
 from walking.parameters import CONTROL_PERIOD
-from walking.plane import Array, Frame, Point, Vector, clamp, from_frame, rotate_back
+from walking.plane import Array, Point, Vector, clamp, from_frame, rotate_back
 from walking.records import Record, record
 
 FOOTHOLD = record(left=bool, x=float, y=float, yaw=float)
@@ -32,7 +26,6 @@ STANCE_TOLERANCE = 0.6  # of a parallel stance, per half stance [1]
 STANCE_YAW_TOLERANCE = 0.05  # of a parallel stance [rad]
 STILL = (0.0, 0.0, 0.0)
 RIGHT, LEFT = -1.0, 1.0  # side of a foot
-
 
 Command = tuple[float, float, float, float, float, float]
 """Fields of a `walking.command.CommandState` in order."""
@@ -51,11 +44,6 @@ class Foothold(NamedTuple):
     x: float
     y: float
     yaw: float
-
-    @property
-    def frame(self) -> Frame:
-        """Foot frame in the plan frame."""
-        return self.x, self.y, self.yaw
 
 
 @compiled

@@ -10,7 +10,7 @@ from compilation import compiled
 from walking.body.kinematics import FootPose, solve_leg
 from walking.gait import is_airborne, swing_of
 from walking.parameters import CONTROL_PERIOD
-from walking.plane import Array, Point, Vector, clamp, dead_zone, rotate_back
+from walking.plane import Array, Point, Vector, clamp, dead_zone, from_frame, rotate_back
 from walking.records import Record, record
 from walking.swing import REFERENCE
 
@@ -192,21 +192,14 @@ def _foot_pose(
 ) -> FootPose:
     """Return the pose of a foot in the base frame, `height` above the floor [m]."""
     foot, roll, pitch = limbs.feet[side], limbs.foot_roll[side], limbs.foot_pitch[side]
-    c, s = cos(pelvis[2]), sin(pelvis[2])
-    lift = foot.height
+    yaw, lift = pelvis[2], foot.height
     if roll != 0.0 or pitch != 0.0:
-        ax, ay = foot.x - support.x, foot.y - support.y
-        lift += pitch * (c * ax + s * ay) - roll * (c * ay - s * ax)
-    dx, dy, turned = foot.x - pelvis[0], foot.y - pelvis[1], foot.yaw - pelvis[2]
-    cf, sf = cos(turned), sin(turned)
-    return FootPose(
-        c * dx + s * dy,
-        c * dy - s * dx,
-        lift - height,
-        -(cf * roll + sf * pitch),
-        -(cf * pitch - sf * roll),
-        turned,
-    )
+        ahead, left = rotate_back(yaw, foot.x - support.x, foot.y - support.y)
+        lift += pitch * ahead - roll * left
+    x, y = rotate_back(yaw, foot.x - pelvis[0], foot.y - pelvis[1])
+    turned = foot.yaw - yaw
+    own_roll, own_pitch = rotate_back(turned, roll, pitch)
+    return FootPose(x, y, lift - height, -own_roll, -own_pitch, turned)
 
 
 @compiled
@@ -218,9 +211,7 @@ def sink(foot: FootPose, reach: Array) -> float:
         reach: hip in the base frame (3) [m], ankle in the frame of the foot (3) [m], maximum
             distance between them [m] (7,).
     """
-    c, s = cos(foot.yaw), sin(foot.yaw)
-    dx = foot.x + c * reach[3] - s * reach[4] - reach[0]
-    dy = foot.y + s * reach[3] + c * reach[4] - reach[1]
-    down = reach[2] - foot.z - reach[5]
+    x, y = from_frame((foot.x, foot.y, foot.yaw), reach[3], reach[4])
+    dx, dy, down = x - reach[0], y - reach[1], reach[2] - foot.z - reach[5]
     sunk: float = max(0.0, down - sqrt(max(0.0, reach[6] * reach[6] - dx * dx - dy * dy)))
     return sunk

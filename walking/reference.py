@@ -2,14 +2,7 @@
 
 from compilation import compiled
 from walking.footsteps import FOOTHOLD, Foothold, foothold, is_parallel, landing_of, put
-from walking.gait import (
-    scheduled_zmp,
-    stop_ticks,
-    support_foot,
-    swing_foot,
-    zmp_between,
-    zmp_under,
-)
+from walking.gait import scheduled_zmp, stop_ticks, support_foot, swing_foot, zmp_between, zmp_under
 from walking.plane import Point
 from walking.records import Record, record
 

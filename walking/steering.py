@@ -6,13 +6,7 @@ Velocity commands and command states may follow in any order.
 from math import sqrt
 
 from compilation import compiled
-from walking.command import (
-    ACCELERATION,
-    BALANCE,
-    COMBINED_SPEED,
-    SETTLING,
-    SPEED,
-)
+from walking.command import ACCELERATION, BALANCE, COMBINED_SPEED, SETTLING, SPEED
 from walking.footsteps import (
     STILL,
     STRIDES,

@@ -19,11 +19,7 @@ solved in `walking.zmp_solver`. Knots in the same parallelogram are a cell, see 
 from compilation import compiled
 from walking.footsteps import FOOTHOLD, equal
 from walking.parameters import CONTROL_PERIOD
-from walking.pendulum import (
-    ramp_weights,
-    slide_tick,
-    track_reference,
-)
+from walking.pendulum import ramp_weights, slide_tick, track_reference
 from walking.records import Record, record
 from walking.reference import BEST, LIVE
 from walking.support import Region

@@ -9,7 +9,7 @@ from compilation import compiled
 from walking.footsteps import equal
 from walking.parameters import CONTROL_PERIOD
 from walking.pendulum import dcm_reference, ramp_weights
-from walking.plane import Array, Point
+from walking.plane import Array, Point, from_frame
 from walking.records import Record
 from walking.reference import RAMP, is_single
 from walking.zmp_solver import CELL, KNOT
@@ -244,9 +244,7 @@ def put_between(ramp: Record, elapsed: float, sole: Sole, cell: Record) -> None:
 @compiled
 def _edge(foot: Record, centre: float, outward: float) -> Point:
     """Return a point on the outer side of a sole [m]."""
-    c, s = cos(foot.yaw), sin(foot.yaw)
-    across = outward if foot.left else -outward
-    return foot.x + centre * c - s * across, foot.y + centre * s + c * across
+    return from_frame((foot.x, foot.y, foot.yaw), centre, outward if foot.left else -outward)
 
 
 @compiled
