@@ -25,11 +25,8 @@ from hsr8.robot_builder import (
 )
 from hsr8.robots.loaded import load_robot
 from hsr8.scenario.schema import Scenario
-from hsr8.seeds import named_rng
 from hsr8.world.body.faults import SensorFaults, ServoFaults
-from hsr8.world.camera.analytic import AnalyticCamera
-from hsr8.world.camera.feed import CameraFaults, CameraFeed, CapturedFrame
-from hsr8.world.camera.rendered import RenderedCamera
+from hsr8.world.camera.head_camera import HeadCamera
 from hsr8.world.field.generator import draw_world
 from hsr8.world.model.index import ModelIndex
 from hsr8.world.truth.truth import Truth
@@ -128,18 +125,11 @@ class Simulation:
         names = self.humanoid.model.names
         self._sensor_faults = SensorFaults(scenario.fault, names)
         self._servo_faults = ServoFaults(scenario.fault, names)
-        self._camera_faults = CameraFaults(scenario.fault)
+        self._camera = HeadCamera(
+            scenario, self.model, self.layout, camera_model(scenario), self.seed
+        )
         self._interrupted = False
         self._open = False
-        self._rendered: RenderedCamera | None = None
-        self._analytic: AnalyticCamera | None = None
-        self._camera_rng = named_rng(self.seed, "camera")
-        camera = scenario.camera
-        if camera.source != "rendered":
-            self._analytic = AnalyticCamera(
-                self.layout, camera, camera_model(scenario), self._camera_rng, self._camera_faults
-            )
-        self._feed = CameraFeed(camera, named_rng(self.seed, "camera_feed"), self._camera_faults)
         self._record_ticks = round(scenario.recorder.period_ms / 1000 / CONTROL_PERIOD)
         self._ticks = round(scenario.duration / CONTROL_PERIOD) + 1
         self._end: tuple[int, str] | None = None
@@ -182,10 +172,7 @@ class Simulation:
     def __enter__(self) -> Self:
         cv2.setNumThreads(1)  # threads slow down work on small images
         try:
-            if self._analytic is None:
-                self._rendered = RenderedCamera(
-                    self.model, self.scenario.camera, self._camera_rng, self._camera_faults
-                )
+            self._camera.open()
         except BaseException as error:  # sets the exit reason
             self.__exit__(type(error), error, None)
             raise
@@ -198,8 +185,7 @@ class Simulation:
         if self.exit_reason is None:
             stopped = kind is None or issubclass(kind, KeyboardInterrupt)
             self.exit_reason = "interrupted" if stopped else "error"
-        if self._rendered is not None:
-            self._rendered.close()
+        self._camera.close()
 
     def run(self) -> RunOutcome:
         """Run to the end."""
@@ -402,17 +388,10 @@ class Simulation:
 
     def _sense(self, tick: int) -> SensorFrame:
         body, time = self._sensor_faults.apply_fault(self._body.sense(), tick), self._body.time
-        shutter, frame = self._feed.shutter(tick), self._feed.arrived(tick, self._capture)
+        shutter, frame = self._camera.shutter(tick), self._camera.arrived(tick, self._body)
         if frame is None:
             return SensorFrame(time, body, shutter)
         return SensorFrame(time, body, shutter, frame.captured, frame.image, frame.detections)
-
-    def _capture(self) -> CapturedFrame:
-        body = self._body
-        if self._rendered is not None:
-            return CapturedFrame(body.time, self._rendered.capture(body))
-        assert self._analytic is not None
-        return CapturedFrame(body.time, detections=self._analytic.capture(body))
 
     def _scheduled_end(self, tick: int, truth: Truth) -> tuple[int, str] | None:
         """Return tick and reason of the end once it is certain."""

@@ -114,7 +114,7 @@ class WalkingEngine:
         self.observe(sensors)
         self._command = command
         dynamics, gyro = self._robot.dynamics, sensors.gyro
-        angles, setpoint = np.empty(self._joints.size), np.empty(self._joints.size)
+        angles, setpoint = np.empty((2, len(self._joints)))
         distance, self._zmp_depth, self._bound = begin(
             self._walks,
             self._odometry.records,

@@ -58,7 +58,7 @@ def test_a_run_left_early_has_an_exit_reason(monkeypatch):
     def none(*_):
         raise RenderingUnavailable("no OpenGL")
 
-    monkeypatch.setattr("hsr8.loop.RenderedCamera", none)
+    monkeypatch.setattr("hsr8.loop.HeadCamera.open", none)
     simulation = Simulation(load_scenario("quick"), 4)
     with pytest.raises(RenderingUnavailable):
         simulation.run()

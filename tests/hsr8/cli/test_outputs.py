@@ -189,7 +189,7 @@ def test_a_camera_that_fails_leaves_no_open_file(tmp_path, monkeypatch):
     def failing(*_):
         raise RenderingUnavailable("no OpenGL")
 
-    monkeypatch.setattr("hsr8.loop.RenderedCamera", failing)
+    monkeypatch.setattr("hsr8.loop.HeadCamera.open", failing)
     monkeypatch.setattr("hsr8.api.renderer_of", lambda scenario: "none")
     with pytest.raises(RenderingUnavailable) as error:  # whose frames hold the recorder
         api_run("quick", out=tmp_path)
