@@ -10,8 +10,6 @@ from hsr8.recorder.derived import walk_of
 from hsr8.recorder.run.run import Run
 from hsr8.recorder.run.run_reader import open_run
 from hsr8.recorder.table import Table
-from hsr8.render.motion import Motion as TrueMotion
-from hsr8.render.motion import motion_of, rows_at
 from hsr8.render.run_images import shown_frames
 from hsr8.render.walk_panels import INK, LEFT, RIGHT, contacts, outline
 from hsr8.robots.loaded import load_robot
@@ -64,7 +62,6 @@ class Tour:
         scenario: scenario of the run.
         layout: its world.
         frames: belief and decisions.
-        motion: motion of robot and movers.
         walked: records of the run.
         model: model of the robot.
         height: height of the camera [m].
@@ -75,7 +72,6 @@ class Tour:
     scenario: Scenario
     layout: Layout
     frames: tuple[SimpleNamespace, ...]
-    motion: TrueMotion
     walked: Table
     model: RobotModel
     height: float
@@ -92,7 +88,6 @@ def tour(path: Path) -> Tour:
         scenario,
         layout,
         shown_frames(run, run.frames["time"]),
-        motion_of(run, len(layout.movers)),
         run.records,
         load_robot(scenario.robot.model).model,
         float(run.frames["capture_position"][0, 2]),
@@ -167,17 +162,18 @@ def draw(tours: list[Tour]) -> Figure:
 
 
 def _snapshot(axes: Axes, shown: Tour, frame: SimpleNamespace) -> None:
-    row = int(rows_at(shown.motion.time, [frame.time])[0])
+    records = shown.walked
+    first, row = records.at([frame.time - TRAIL, frame.time]).tolist()
+    earlier = records.at(np.linspace(frame.time - 8.0, frame.time, 20))
+    movers = records["obstacle_positions"][:, len(shown.layout.static) :]
     fov = frame.fov[0], shown.scenario.camera.vertical_fov
     visible = placed(window(*frame.head, fov, shown.height), frame.truth)
     axes.add_patch(Polygon(visible, closed=True, facecolor=VIEW, alpha=0.35, edgecolor="none"))
     for obstacle in shown.layout.static:
         disc(axes, obstacle.position, obstacle.radius, facecolor=STILL, edgecolor="none")
-    for obstacle, at in zip(shown.layout.movers, shown.motion.movers[row], strict=True):
-        disc(axes, at, obstacle.radius, facecolor=MOVER, edgecolor="none")
-        earlier = rows_at(shown.motion.time, np.linspace(frame.time - 8.0, frame.time, 20))
-        k = shown.layout.movers.index(obstacle)
-        axes.plot(*shown.motion.movers[earlier, k].T, color=MOVER, linewidth=0.8)
+    for k, obstacle in enumerate(shown.layout.movers):
+        disc(axes, movers[row, k], obstacle.radius, facecolor=MOVER, edgecolor="none")
+        axes.plot(*movers[earlier, k].T, color=MOVER, linewidth=0.8)
     for at, radius in shapes(shown, frame):
         disc(axes, at, radius, fill=False, edgecolor=INK, linewidth=0.6)
     for virtual in frame.virtual_obstacles:
@@ -190,8 +186,7 @@ def _snapshot(axes: Axes, shown: Tour, frame: SimpleNamespace) -> None:
             linewidth=1.6,
             linestyle=(0, (3, 1.5)),
         )
-    first = int(rows_at(shown.motion.time, [frame.time - TRAIL])[0])
-    axes.plot(*shown.motion.qpos[first : row + 1 : 10, :2].T, color=ROBOT, linewidth=0.8, alpha=0.6)
+    axes.plot(*records["qpos"][first : row + 1 : 10, :2].T, color=ROBOT, linewidth=0.8, alpha=0.6)
     _footprints(axes, shown, frame.time)
     _way_points(axes, shown, frame)
     robot(axes, frame.truth, facecolor=ROBOT)

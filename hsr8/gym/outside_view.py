@@ -27,7 +27,6 @@ class OutsideView:
 
     def __init__(self, simulation: Simulation, fps: float) -> None:
         robot, world = simulation.humanoid, simulation.scenario.world
-        self._movers = len(simulation.layout.movers)
         self._fps, self._size = fps, stature(robot) / DEFAULT_STATURE
         self._qpos: list[np.ndarray] = []
         self._drawn: Truth | None = None
@@ -46,8 +45,7 @@ class OutsideView:
         if truth is not self._drawn:
             self._qpos = [*self._qpos[1 - HISTORY :], truth.qpos]
             self._drawn = truth
-        obstacles = truth.obstacle_positions
-        self._renderer.set_state(truth.qpos, obstacles[len(obstacles) - self._movers :])
+        self._renderer.set_state(truth.qpos, truth.obstacle_positions)
         follow = FollowCamera(np.array(self._qpos), self._fps, 1.0, self._size)
         return self._renderer.draw(follow.at(-1))
 

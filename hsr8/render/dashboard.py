@@ -1,7 +1,6 @@
 """Dashboard of a video: scene, camera image, belief and gaze."""
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
 from math import hypot
 from types import SimpleNamespace
 
@@ -43,36 +42,32 @@ MARKS: dict[str, Color] = {  # colour by kind of event; later kinds cover earlie
 }
 
 
-class Timeline:
-    """Timeline of one video.
+def draw_timeline(
+    image: Image, span: tuple[float, float], time: float, events: Sequence[tuple[float, str]]
+) -> None:
+    """Draw a timeline over the lowest rows of `image` (height, width, 3).
 
     Args:
-        start, stop: simulated time of the first and the last image [s].
+        image: image to draw into.
+        span: simulated time of the first and the last image of the video [s].
+        time: simulated time of this image [s].
+        events: time [s] and kind of each event so far.
     """
+    height, width, _ = image.shape
+    length = max(span[1] - span[0], 1e-9)
 
-    def __init__(self, start: float, stop: float) -> None:
-        self._start, self._length = start, max(stop - start, 1e-9)
+    def column(when: float) -> int:
+        position: int = round((when - span[0]) / length * width)
+        return position
 
-    def draw(self, image: Image, time: float, events: Sequence[tuple[float, str]]) -> None:
-        """Draw over the lowest rows of `image` (height, width, 3).
-
-        Args:
-            image: image to draw into.
-            time: simulated time [s].
-            events: time [s] and kind of each event so far.
-        """
-        height, width, _ = image.shape
-        strip = image[-max(2, round(HEIGHT * height)) :]
-        strip[:] = AHEAD
-        strip[:, : self._column(time, width)] = DONE
-        for kind, color in MARKS.items():
-            for when, of_kind in events:
-                if of_kind == kind and when >= self._start:
-                    column = self._column(when, width)
-                    strip[:, max(0, column - MARK // 2) : column + MARK // 2 + 1] = color
-
-    def _column(self, time: float, width: int) -> int:
-        return round((time - self._start) / self._length * width)
+    strip = image[-max(2, round(HEIGHT * height)) :]
+    strip[:] = AHEAD
+    strip[:, : column(time)] = DONE
+    for kind, color in MARKS.items():
+        for when, of_kind in events:
+            if of_kind == kind and when >= span[0]:
+                middle = column(when)
+                strip[:, max(0, middle - MARK // 2) : middle + MARK // 2 + 1] = color
 
 
 STRONG = palette.LABELS["red"]
@@ -116,54 +111,20 @@ COLUMNS = 3
 LINE = 1.7  # height of a row relative to the letters [1]
 
 
-class Legend:
-    """Legend in rows of three entries.
-
-    Args:
-        width: width of the image to draw into [pixel].
-        letters: font size [pixel].
-
-    Attributes:
-        height: height of the rows [pixel].
-    """
-
-    def __init__(self, width: int, letters: float) -> None:
-        self._letters = font_size(letters)
-        self._step = width // COLUMNS
-        self._line = round(LINE * self._letters)
-        self.height = -(-len(ENTRIES) // COLUMNS) * self._line + self._letters // 2
-
-    def draw(self, image: Image) -> None:
-        """Draw into the lowest rows of `image` (height, width, 3)."""
-        top = image.shape[0] - self.height
-        radius = max(2, round(0.36 * self._letters))
-        for k, (text, mark) in enumerate(ENTRIES):
-            row, column = divmod(k, COLUMNS)
-            base = top + row * self._line + self._letters
-            left = column * self._step + self._letters
-            mark(image, (left, base - round(0.38 * self._letters)), radius)
-            draw_text(image, (left + self._letters, base), text, DARK, self._letters)
+def legend_height(letters: int) -> int:
+    """Return the height of the legend in letters of a font size [pixel]."""
+    return -(-len(ENTRIES) // COLUMNS) * round(LINE * letters) + letters // 2
 
 
-@dataclass(frozen=True, slots=True)
-class DashboardFrame:
-    """Content of the dashboard at one instant.
-
-    Attributes:
-        time: simulated time [s].
-        frame: latest camera frame, see `hsr8.render.run_images.shown_frames`.
-        movers: true positions (n, 2) [m].
-        trail: true path of the robot so far (m, 2) [m].
-        events: time [s] and kind of each event so far.
-        state: current situation of the robot.
-    """
-
-    time: float
-    frame: SimpleNamespace
-    movers: Array
-    trail: Array
-    events: Sequence[tuple[float, str]]
-    state: str
+def draw_legend(image: Image, letters: int) -> None:
+    """Draw the legend, in letters of a font size [pixel], into `image` (height, width, 3)."""
+    radius = max(2, round(0.36 * letters))
+    for k, (text, mark) in enumerate(ENTRIES):
+        row, column = divmod(k, COLUMNS)
+        base = row * round(LINE * letters) + letters
+        left = column * (image.shape[1] // COLUMNS) + letters
+        mark(image, (left, base - round(0.38 * letters)), radius)
+        draw_text(image, (left + letters, base), text, DARK, letters)
 
 
 class Dashboard:
@@ -172,7 +133,7 @@ class Dashboard:
     Args:
         layout: layout of the run's world.
         scenario: scenario of the run.
-        timeline: drawn under the scene.
+        span: simulated time of the first and the last image [s].
         size: width and height, both even [pixel].
         speed: simulated seconds per second of video.
 
@@ -181,7 +142,12 @@ class Dashboard:
     """
 
     def __init__(
-        self, layout: Layout, scenario: Scenario, timeline: Timeline, size: Size, speed: float
+        self,
+        layout: Layout,
+        scenario: Scenario,
+        span: tuple[float, float],
+        size: Size,
+        speed: float,
     ) -> None:
         width, height = size
         self._unit = unit = height / REFERENCE
@@ -196,35 +162,51 @@ class Dashboard:
         self._left, self._below = width - side, camera_height + gap
         self._overlay = CameraOverlay(camera.pinhole, self.camera_size)
         self._named = self._bar >= MIN_NAMED
-        self._legend = Legend(side, LEGEND * unit)
-        room = self._legend.height if self._named else 0
+        letters = font_size(LEGEND * unit)
+        room = legend_height(letters) if self._named else 0
         self._above = TopDown(layout, (side, height - self._below - room))
-        self._timeline = timeline
+        self._span = span
         gaze = scenario.navigation.gaze
         panel = round(PANEL * unit)
         self._panel = GazePanel(max(panel, 64), gaze.max_pan, (gaze.min_tilt, gaze.max_tilt))
         self._with_panel = panel >= MIN_PANEL and panel < self.scene_size[0]
         self._background: Image = np.full((height, width, 3), FRAME, np.uint8)
         if self._named:
-            below = self._background[height - self._legend.height :, self._left :]
+            below = self._background[height - room :, self._left :]
             below[:] = PAPER
-            self._legend.draw(below)
+            draw_legend(below, letters)
 
-    def draw(self, scene: Image, camera: Image, shown: DashboardFrame) -> Image:
+    def draw(
+        self,
+        scene: Image,
+        camera: Image,
+        frame: SimpleNamespace,
+        *,
+        time: float,
+        movers: Array,
+        trail: Array,
+        events: Sequence[tuple[float, str]],
+        state: str,
+    ) -> Image:
         """Return a new image (height, width, 3).
 
         Args:
             scene: the robot from outside, of `scene_size`.
             camera: image of the head camera at the capture of the frame, of `camera_size`.
-            shown: content.
+            frame: latest camera frame, see `hsr8.render.run_images.shown_frames`.
+            time: simulated time [s].
+            movers: true positions (n, 2) [m].
+            trail: true path of the robot so far (m, 2) [m].
+            events: time [s] and kind of each event so far.
+            state: current situation of the robot.
         """
-        image, frame = self._background.copy(), shown.frame
+        image = self._background.copy()
         width, height = self.scene_size
         image[:height, :width] = scene
         part = image[: self.camera_size[1], self._left :]
         part[:] = camera
         self._overlay.draw(part, frame)
-        above = self._above.draw(frame, shown.movers, shown.trail)
+        above = self._above.draw(frame, movers, trail)
         image[self._below : self._below + len(above), self._left :] = above
         if self._with_panel:
             margin = round(MARGIN * self._unit)
@@ -233,8 +215,9 @@ class Dashboard:
         self._draw_titles(image)
         band = image[height:, :width]
         band[:] = BAND
-        self._draw_values(band, shown)
-        self._timeline.draw(band, shown.time, shown.events)
+        collisions = sum(kind == "collision" for _, kind in events)
+        self._draw_values(band, frame, time, collisions, state)
+        draw_timeline(band, self._span, time, events)
         return image
 
     def _draw_titles(self, image: Image) -> None:
@@ -249,20 +232,20 @@ class Dashboard:
         row = self._below + pad + letters
         draw_text(image, (column, row), "belief", BAND, letters, strong=True)
 
-    def _draw_values(self, band: Image, shown: DashboardFrame) -> None:
+    def _draw_values(
+        self, band: Image, frame: SimpleNamespace, time: float, collisions: int, state: str
+    ) -> None:
         """Draw a line of values, each under its name."""
-        frame = shown.frame
-        collisions = sum(kind == "collision" for _, kind in shown.events)
         error = hypot(frame.pose[0] - frame.truth[0], frame.pose[1] - frame.truth[1])
         vias = f"{frame.via_points}" + ("" if self._vias is None else f" / {self._vias}")
         speed = "time" if self._speed == 1.0 else f"time, {self._speed:g}x"
         numbers = [
-            (speed, f"{shown.time:.1f} s"),
+            (speed, f"{time:.1f} s"),
             ("waypoints", vias),
             ("speed", f"{hypot(*frame.velocity[:2]):.2f} m/s"),
             ("pose error", f"{100.0 * error:.1f} cm"),
             ("collisions", f"{collisions}"),
-            ("state", shown.state),
+            ("state", state),
         ]
         named = self._named
         letters, names = font_size(VALUE * self._unit), font_size(NAME * self._unit)

@@ -5,7 +5,7 @@ from contextlib import closing
 import mujoco
 import numpy as np
 
-from hsr8.render.motion import Arrow
+from hsr8.render.push_arrows import Arrow
 from hsr8.render.scene_renderer import Image, SceneRenderer
 from hsr8.robots.loaded import LoadedRobot
 from hsr8.robots.normal_form import SOLES

@@ -10,12 +10,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from hsr8.errors import UsageError
-from hsr8.recorder.derived import pushes_of
 from hsr8.recorder.run.run import Run
 from hsr8.render.camera_overlay import CameraOverlay
-from hsr8.render.dashboard import Dashboard, DashboardFrame, Timeline
+from hsr8.render.dashboard import Dashboard
 from hsr8.render.follow import FollowCamera
-from hsr8.render.motion import SHOWN, Arrow, PushArrow, arrows_at, motion_of, push_arrows, rows_at
+from hsr8.render.push_arrows import Arrow, PushArrow, push_arrows
 from hsr8.render.scene_renderer import Image, SceneRenderer
 from hsr8.render.top_down import TRAIL
 from hsr8.robots.loaded import load_robot
@@ -66,9 +65,8 @@ class RunImages:
             camera.width, camera.height, camera.vertical_fov, self._scenario.world.brightness
         )
         self._stack = ExitStack()
-        self._motion = motion_of(run, len(self._layout.movers))
-        self._obstacles = run.records["obstacle_positions"].shape[1]
-        self._rows = rows_at(self._motion.time, self._times)
+        self._records = run.records
+        self._rows = run.records.at(times).tolist()
         self._frames = shown_frames(run, self._times)
         self._events = [*zip(run.events["time"].tolist(), run.events["kind"], strict=True)]
         self._event_times = [time for time, _ in self._events]
@@ -76,8 +74,8 @@ class RunImages:
         size_ratio = stature(self._robot) / DEFAULT_STATURE
         if any(kind == "push" for _, kind in self._events):
             weight = self._robot.model.measures().weight / HSR_VIII.weight
-            self._pushes = push_arrows(pushes_of(run.records), self._motion, size_ratio, weight)
-        qpos = self._motion.qpos[self._rows]
+            self._pushes = push_arrows(run.records, size_ratio, weight)
+        qpos = run.records["qpos"][self._rows]
         self._follow = FollowCamera(qpos, self._fps, self._speed, size_ratio)
 
     def __enter__(self) -> Self:
@@ -103,7 +101,7 @@ class RunImages:
         if name in ("dashboard", "follow"):
             return lambda i: self._draw_scene(renderer, i)
         renderer.require_camera(name)
-        return lambda i: self._place(renderer, int(self._rows[i])).draw(name, self._arrows(i))
+        return lambda i: self._place(renderer, self._rows[i]).draw(name, self._arrows(i))
 
     def _renderer(
         self, quality: Quality, size: tuple[int, int], oversampling: float | None = None
@@ -118,30 +116,31 @@ class RunImages:
             fine=self._fine,
         )
         self._stack.enter_context(closing(renderer))
-        recorded = (self._motion.qpos.shape[1], self._obstacles)
+        recorded = tuple(self._records[name].shape[1] for name in ("qpos", "obstacle_positions"))
         if recorded != (renderer.model.nq, len(self._layout.obstacles)):
             raise UsageError("the recorded motion does not match the scenario file of this run")
         return renderer
 
     def _place(self, renderer: SceneRenderer, row: int) -> SceneRenderer:
         """Put robot and movers where they are in a row of the motion."""
-        renderer.set_state(self._motion.qpos[row], self._motion.movers[row])
+        columns = self._records["qpos"], self._records["obstacle_positions"]
+        renderer.set_state(*(column[row] for column in columns))
         return renderer
 
     def _draw_scene(self, renderer: SceneRenderer, index: int) -> Image:
-        placed = self._place(renderer, int(self._rows[index]))
+        placed = self._place(renderer, self._rows[index])
         return placed.draw(self._follow.at(index), self._arrows(index))
 
     def _draw_camera(self, renderer: SceneRenderer, frame: SimpleNamespace) -> Image:
         """Draw the image of the head camera at the capture of a frame."""
-        (row,) = rows_at(self._motion.time, [frame.captured]).tolist()
+        (row,) = self._records.at([frame.captured]).tolist()
         return self._place(renderer, row).draw(HEAD_CAMERA)
 
     def _head(self) -> Draw:
         """Draw the image of the head camera, with the detections if the run has frames."""
         renderer = self._renderer("vision", self._size)
         if not self._frames:
-            return lambda i: self._place(renderer, int(self._rows[i])).draw(HEAD_CAMERA)
+            return lambda i: self._place(renderer, self._rows[i]).draw(HEAD_CAMERA)
         overlay = CameraOverlay(self._scenario.camera.pinhole, self._size)
 
         def draw(index: int) -> Image:
@@ -153,9 +152,9 @@ class RunImages:
         return draw
 
     def _dashboard(self) -> Draw:
-        first, last = float(self._times[0]), float(self._times[-1])
-        timeline = Timeline(first, last)
-        board = Dashboard(self._layout, self._scenario, timeline, self._size, self._speed)
+        span = float(self._times[0]), float(self._times[-1])
+        board = Dashboard(self._layout, self._scenario, span, self._size, self._speed)
+        movers = self._records["obstacle_positions"][:, len(self._layout.static) :]
         scene = self._renderer("show", board.scene_size)
         camera = self._renderer("vision", board.camera_size, CAMERA_OVERSAMPLING)
         latest: tuple[float, Image] | None = None  # one camera image per frame
@@ -167,35 +166,40 @@ class RunImages:
             return latest[1]
 
         def draw(index: int) -> Image:
-            frame = self._frames[index]
-            outside = self._draw_scene(scene, index)
-            return board.draw(outside, camera_image(frame), self._dashboard_frame(index, frame))
+            frame, row, time = self._frames[index], self._rows[index], float(self._times[index])
+            return board.draw(
+                self._draw_scene(scene, index),
+                camera_image(frame),
+                frame,
+                time=time,
+                movers=movers[row],
+                trail=self._trail(row),
+                events=self._events[: bisect_right(self._event_times, time)],
+                state=self._state(index),
+            )
 
         return draw
 
-    def _dashboard_frame(self, index: int, frame: SimpleNamespace) -> DashboardFrame:
-        time, row = float(self._times[index]), int(self._rows[index])
-        pushed = [p for p in self._pushes if 0.0 <= time - p.begin < SHOWN * self._speed]
-        state = "lost" if frame.lost else frame.situation.replace("_", " ")
+    def _state(self, index: int) -> str:
+        """Return the situation of the robot in words."""
+        frame, pushed = self._frames[index], self._pushed(index)
         if pushed:
-            state = f"push {pushed[-1].impulse:.2f} N s"
-        return DashboardFrame(
-            time=time,
-            frame=frame,
-            movers=self._motion.movers[row],
-            trail=self._trail(row),
-            events=self._events[: bisect_right(self._event_times, time)],
-            state=state,
-        )
+            return f"push {pushed[-1].impulse:.2f} N s"
+        return "lost" if frame.lost else str(frame.situation).replace("_", " ")
+
+    def _pushed(self, index: int) -> list[PushArrow]:
+        time = float(self._times[index])
+        return [push for push in self._pushes if push.shown(time, self._speed)]
 
     def _arrows(self, index: int) -> list[Arrow]:
-        base = self._motion.qpos[int(self._rows[index]), :3]
-        return arrows_at(self._pushes, float(self._times[index]), base, self._speed)
+        base = self._records["qpos"][self._rows[index], :3]
+        return [push.at(base) for push in self._pushed(index)]
 
     def _trail(self, row: int) -> Array:
         """Return the path up to a row, averaged over gait cycles to remove the sway (n, 2) [m]."""
-        first = int(np.searchsorted(self._motion.time, self._motion.time[row] - TRAIL))
-        path = self._motion.qpos[first : row + 1, :2]
+        times = self._records["time"]
+        first = int(np.searchsorted(times, times[row] - TRAIL))
+        path = self._records["qpos"][first : row + 1, :2]
         whole = len(path) // CYCLE * CYCLE
         trail: Array = path[:whole].reshape(-1, CYCLE, 2).mean(axis=1)
         return trail

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from hsr8.errors import UsageError
 from hsr8.gl import require_gl
-from hsr8.render.motion import Arrow
+from hsr8.render.push_arrows import Arrow
 from hsr8.robots.loaded import LoadedRobot
 from hsr8.suggestion import suggestion
 from hsr8.world.camera.offscreen import camera_option
@@ -79,10 +79,10 @@ class SceneRenderer:
             self.model.mat_reflectance[:] = 0.0  # a reflection draws the scene twice
         self._renderer = mujoco.Renderer(self.model, height=height, width=width)
 
-    def set_state(self, qpos: Array, movers: Array) -> None:
-        """Set the configuration of the robot and the positions of the movers (n, 2) [m]."""
+    def set_state(self, qpos: Array, obstacles: Array) -> None:
+        """Set the configuration of the robot and the positions of all obstacles (n, 2) [m]."""
         self.data.qpos[:] = qpos
-        self.data.mocap_pos[self._movers, :2] = movers
+        self.data.mocap_pos[self._movers, :2] = obstacles[len(obstacles) - len(self._movers) :]
         mujoco.mj_kinematics(self.model, self.data)
         mujoco.mj_comPos(self.model, self.data)
         mujoco.mj_camlight(self.model, self.data)

@@ -8,6 +8,8 @@ from typing import Any
 import numpy as np
 import pyarrow as pa
 import pytest
+from hypothesis import given
+from hypothesis import strategies as st
 from numpy.typing import NDArray
 
 from hsr8.errors import RecordingFailed, UsageError
@@ -27,6 +29,7 @@ from hsr8.recorder.stream import CHECKSUMS, ArrowFiles, read_table
 from hsr8.recorder.table import Table
 
 Array = NDArray[np.float64]
+TICKS = st.lists(st.integers(0, 200), min_size=1, max_size=20, unique=True).map(sorted)
 
 
 @dataclass
@@ -245,6 +248,14 @@ def test_an_unknown_column_is_an_error_with_a_suggestion(tmp_path):
     table = read_table(written(tmp_path, rows(3)), THING, whole=True)
     with pytest.raises(UsageError, match=r"unknown column 'angel'.*angle"):
         table["angel"]
+
+
+@given(TICKS, st.integers(-5, 205))
+def test_the_row_at_a_time_is_the_last_one_not_after_it(ticks, wanted):
+    table = Table("ticks", pa.table({"time": 0.02 * np.array(ticks)}))
+    (row,) = table.at([0.02 * wanted]).tolist()
+    earlier = [k for k, tick in enumerate(ticks) if tick <= wanted]
+    assert row == (earlier[-1] if earlier else 0)
 
 
 @pytest.mark.parametrize("name", TABLES)

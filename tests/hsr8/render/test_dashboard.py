@@ -1,7 +1,7 @@
 import numpy as np
 import pytest
 
-from hsr8.render.dashboard import AHEAD, DONE, HEIGHT, MARKS, Dashboard, DashboardFrame, Timeline
+from hsr8.render.dashboard import AHEAD, DONE, HEIGHT, MARKS, Dashboard, draw_timeline
 from hsr8.render.run_video import VideoOptions
 from hsr8.scenario.loader import load_scenario
 
@@ -11,18 +11,20 @@ def drawn(shown, layout):
     frame = shown()
 
     def draw(size, collisions=0, state="free"):
-        board = Dashboard(layout, load_scenario("quick"), Timeline(0.0, 1.0), size, 1.0)
+        board = Dashboard(layout, load_scenario("quick"), (0.0, 1.0), size, 1.0)
         scene = np.full((*board.scene_size[::-1], 3), (200, 0, 0), np.uint8)
         camera = np.full((*board.camera_size[::-1], 3), (0, 200, 0), np.uint8)
-        content = DashboardFrame(
+        image = board.draw(
+            scene,
+            camera,
+            frame,
             time=0.6,
-            frame=frame,
             movers=np.array([[1.0, 1.0]]),
             trail=np.zeros((0, 2)),
             events=[(0.1, "collision")] * collisions,
             state=state,
         )
-        return board.draw(scene, camera, content), board
+        return image, board
 
     return draw
 
@@ -62,7 +64,7 @@ def test_values_have_names_from_the_default_size_on(drawn, size):
 
 def strip_at(time, events=()):
     image = np.zeros((40, 101, 3), np.uint8)
-    Timeline(10.0, 20.0).draw(image, time, events)
+    draw_timeline(image, (10.0, 20.0), time, events)
     assert not image[: -round(HEIGHT * 40)].any()
     return [tuple(pixel) for pixel in image[-1].tolist()]
 

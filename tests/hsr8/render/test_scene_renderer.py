@@ -1,6 +1,29 @@
-import numpy as np
+from contextlib import closing
 
-from hsr8.render.scene_renderer import soften
+import numpy as np
+import pytest
+
+from hsr8.render.scene_renderer import SceneRenderer, soften
+from hsr8.robots.loaded import load_robot
+from hsr8.world.model.assembly import FIELD, Optics
+
+
+@pytest.mark.gl
+def test_movers_are_the_last_obstacles(layout):
+    renderer = SceneRenderer(
+        load_robot("hsr8"),
+        layout,
+        "show",
+        (64, 64),
+        optics=Optics(),
+        oversampling=1.0,
+        fine=False,
+    )
+    with closing(renderer):
+        obstacles = 0.1 * np.arange(2.0 * len(layout.obstacles)).reshape(-1, 2)
+        renderer.set_state(renderer.data.qpos.copy(), obstacles)
+        for k, position in enumerate(obstacles[len(layout.static) :]):
+            assert renderer.data.body(f"{FIELD}mover_{k:02d}").xpos[:2] == pytest.approx(position)
 
 
 def test_only_edges_are_softened():
