@@ -92,7 +92,8 @@ class Page:
             arm = group[0]["arm"]
             reference = self._reference(arm, runs) if self._compared_with(arm) != arm else group
             cells += [COLUMNS[column][1](group, reference) for column in page["columns"]]
-            table.append(f"| {label} | {' | '.join(cells)} |")
+            shown = page.get("labels", {}).get(label, label)
+            table.append(f"| {shown} | {' | '.join(cells)} |")
         return table
 
     def filled(self, text: str, runs: Sequence[Run]) -> str:
