@@ -6,6 +6,7 @@ import re
 import shlex
 import sys
 from collections.abc import Iterable, Sequence
+from dataclasses import asdict
 from pathlib import Path
 
 from rich.console import Console
@@ -85,7 +86,7 @@ def _scenario(options: Sweep, varied: tuple[str, ...]) -> Scenario:
 
 def _print(options: Sweep, out: Path, summaries: dict[str, Summary], *, interrupted: bool) -> None:
     if options.json:
-        values = {name: summary.to_json() for name, summary in summaries.items()}
+        values = {name: asdict(summary) for name, summary in summaries.items()}
         results = {"values": values} if options.vary else next(iter(values.values()))
         print(atomic.dumps({"folder": str(out), "interrupted": interrupted, **results}))
     elif not options.quiet:

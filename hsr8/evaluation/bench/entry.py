@@ -1,7 +1,7 @@
 """Entry of a benchmark: versions, settings and all runs, in one JSON file."""
 
 import json
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import Annotated, Any, Literal, Self
 
@@ -86,20 +86,10 @@ class Entry:
 
     def to_json(self) -> dict[str, Any]:
         """Return plain values by name, with the scores."""
-        return {
-            "format": FORMAT,
-            "name": self.name,
-            "suite": self.suite,
-            "suite_version": self.suite_version,
-            "suite_hash": self.suite_hash,
-            "seeds": self.seeds,
-            "command": self.command,
-            "settings": {key: list(pair) for key, pair in self.settings.items()},
-            "versions": self.versions,
-            "scenarios": self.scenarios,
-            "scores": {name: part.to_json() for name, part in self.scores().items()},
-            "runs": self.runs,
-        }
+        scores = {name: asdict(part) for name, part in self.scores().items()}
+        value = asdict(self)
+        runs = value.pop("runs")
+        return {"format": FORMAT, **value, "scores": scores, "runs": runs}
 
     def text(self) -> str:
         """Return the JSON file, with a line per run."""

@@ -2,9 +2,8 @@
 
 from collections import Counter
 from collections.abc import Callable, Sequence
-from dataclasses import asdict, dataclass
+from dataclasses import dataclass
 from math import fsum, inf
-from typing import Any
 
 import numpy as np
 
@@ -76,10 +75,6 @@ class Summary:
     optimal_time_ratio: float | None
     exit_reasons: dict[str, int]
     quantities: dict[str, Distribution]
-
-    def to_json(self) -> dict[str, Any]:
-        """Return plain values by name."""
-        return asdict(self)
 
 
 def summarize(results: Sequence[RunResult]) -> Summary:

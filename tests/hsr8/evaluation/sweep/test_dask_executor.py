@@ -8,8 +8,8 @@ import pytest
 from hsr8.errors import UsageError
 from hsr8.evaluation.sweep import dask_executor as module
 from hsr8.evaluation.sweep.dask_executor import DaskExecutor
-from hsr8.evaluation.sweep.executor import run_jobs
 from hsr8.evaluation.sweep.job import Job
+from hsr8.evaluation.sweep.runs import run_jobs
 from hsr8.scenario.loader import load_scenario
 
 distributed = pytest.importorskip("distributed")

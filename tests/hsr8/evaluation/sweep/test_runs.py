@@ -7,8 +7,8 @@ from hypothesis import strategies as st
 
 from hsr8.errors import UsageError
 from hsr8.evaluation.sweep.dask_executor import DaskExecutor
-from hsr8.evaluation.sweep.executor import parse_executor, pending, run_jobs
 from hsr8.evaluation.sweep.job import Job
+from hsr8.evaluation.sweep.runs import parse_executor, pending, run_jobs
 from hsr8.scenario.loader import load_scenario
 
 JOB = Job(load_scenario("quick"), "/sweep", "", 10.0)
