@@ -1,4 +1,4 @@
-"""Columns of a table: one line states the name, source, text, unit and shape of each.
+"""Columns of a table: one line states the source, text, unit and shape of each.
 
 Columns are filled from the recorded objects directly, without rows. A source that is a path of
 attributes works in both directions: `arrays_of` reads the attributes of recorded objects,
@@ -30,7 +30,6 @@ class Column:
     """Column of a table.
 
     Attributes:
-        name: name of the column.
         source: path of attributes to the value in a recorded object, paths to its elements, or a
             function that returns the value.
         text: description, without unit and shape.
@@ -41,10 +40,10 @@ class Column:
         items: columns of the objects of a column of lists of objects, whose shape is (n,).
         arrays: function that returns all objects of several rows as arrays by column, which is
             faster than their attributes one by one.
+        name: name of the column; by default the last attribute of its path.
         get: returns the value of a recorded object.
     """
 
-    name: str
     source: Source
     text: str
     unit: str = ""
@@ -53,10 +52,13 @@ class Column:
     optional: bool = False
     items: "Row | None" = None
     arrays: Callable[[Sequence[Any]], Mapping[str, Any]] | None = None
+    name: str = ""
     get: Callable[[Any], Any] = field(init=False, repr=False, compare=False)
 
     def __post_init__(self) -> None:
-        """Compile the source; complete shape and type of a column of objects."""
+        """Compile the source; complete name, and shape and type of a column of objects."""
+        if isinstance(self.source, str) and not self.name:
+            object.__setattr__(self, "name", self.source.rpartition(".")[2])
         object.__setattr__(self, "get", _getter(self.source, optional=self.optional))
         if self.items is not None:
             object.__setattr__(self, "shape", (VARYING,))

@@ -54,23 +54,23 @@ class Thing:
 
 PART = Row(
     "Part of a thing.",
-    Column("name", "name", "name of the part", type=TEXT),
-    Column("place", "place", "place of the part", "m", (2,)),
+    Column("name", "name of the part", type=TEXT),
+    Column("place", "place of the part", "m", (2,)),
 )
 THING = Row(
     "Thing.",
-    Column("time", "time", "simulated time", "s"),
-    Column("count", "count", "number of things", type=INT),
-    Column("angle", "angle", "angles of the joints", "rad", ("joints",)),
-    Column("outline", "outline", "outline of something", "m", ("n", 2)),
-    Column("parts", "parts", "parts of something", items=PART),
-    Column("labels", "labels", "labels of something", shape=("n",), type=TEXT),
-    Column("guess", "guess", "guess, which may be missing", "m", optional=True),
-    Column("image", "image", "shades", "1", ("rows", "columns"), SHADE, optional=True),
-    Column("state", "state", "content", type=BYTES),
-    Column("sides", ("pair.left", "pair.right"), "left and right side", "m", (2,)),
-    Column("middle", "pair.middle.value", "middle, which may be missing", "m", optional=True),
-    Column("sum", lambda thing: thing.pair.left + thing.pair.right, "sum of the sides", "m"),
+    Column("time", "simulated time", "s"),
+    Column("count", "number of things", type=INT),
+    Column("angle", "angles of the joints", "rad", ("joints",)),
+    Column("outline", "outline of something", "m", ("n", 2)),
+    Column("parts", "parts of something", items=PART),
+    Column("labels", "labels of something", shape=("n",), type=TEXT),
+    Column("guess", "guess, which may be missing", "m", optional=True),
+    Column("image", "shades", "1", ("rows", "columns"), SHADE, optional=True),
+    Column("state", "content", type=BYTES),
+    Column(("pair.left", "pair.right"), "left and right side", "m", (2,), name="sides"),
+    Column("pair.middle.value", "middle, which may be missing", "m", optional=True, name="middle"),
+    Column(lambda thing: thing.pair.left + thing.pair.right, "sum of the sides", "m", name="sum"),
 )
 
 
