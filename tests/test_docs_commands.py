@@ -245,7 +245,7 @@ def stand_ins(monkeypatch, tmp_path, finished):
     monkeypatch.setattr("hsr8.api.run", run_in_short)
     monkeypatch.setattr("hsr8.evaluation.sweep.runs.require_gl", lambda: "none")
     monkeypatch.setattr("hsr8.evaluation.sweep.runs.open_executor", lambda name, workers: Instant())
-    monkeypatch.setattr("hsr8.cli.recorded_run.Outputs._video", lambda outputs: None)
+    monkeypatch.setattr("hsr8.cli.recorded_run._write_video", lambda path, options: None)
     monkeypatch.setattr("hsr8.render.viewer.has_display", lambda: True)
     monkeypatch.setattr("hsr8.render.viewer.show", lambda logs: 0)
     monkeypatch.setattr("hsr8.render.viewer.screenshot", lambda logs, time, size: b"PNG")

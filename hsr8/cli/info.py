@@ -19,12 +19,7 @@ def main(options: Info) -> int:
     """Show results, events, versions and files of a run."""
     run = open_run(options.run)
     manifest, results, criteria = run.manifest, run.metrics(), _criteria(run)
-    table = run.events
-    columns = (table["time"].tolist(), table["kind"], table["text"])
-    events = [
-        {"time": time, "kind": kind, "text": text}
-        for time, kind, text in zip(*columns, strict=True)
-    ]
+    events = [vars(event) for event in run.events.objects("time", "kind", "text")]
     files = {f.name: f.stat().st_size for f in sorted(run.path.iterdir()) if f.is_file()}
     if options.json:
         met = exit_code(str(manifest.get("exit_reason")), criteria) == 0

@@ -71,76 +71,57 @@ def _start(options: Run, scenario: Scenario, command: Sequence[str]) -> int:
 
         with crash_report(path), on_signals(SIGNALS, interrupt):
             folder = started_folder(path, scenario, command, renderer)
-            outputs = Outputs(options, path)
             with ExitStack() as shown:
                 on_tick = None
                 if not options.quiet:
                     on_tick = shown.enter_context(Progress(scenario.duration)).show
                 address = view.address if view else ""
                 result = record(simulation, folder, live=address, on_tick=on_tick)
-        if options.json:
-            outputs.complete()
-        _report(options, result, outputs.failures)
-        outputs.complete()
+        failures = _write_outputs(options, path) if options.json else []
+        _report(options, result, failures)
+        failures = failures if options.json else _write_outputs(options, path)
         if view is not None and result.exit_reason != "interrupted":
             end = "Ctrl-C" if view.page else "closing the window"
             print(f"{end} ends the viewer", file=sys.stderr)
             view.wait()
-    for failure in outputs.failures:
+    for failure in failures:
         print(f"hsr8: {failure}", file=sys.stderr)
-    return max(exit_code(result.exit_reason, result.criteria), outputs.exit_code)
+    codes = [failure.exit_code for failure in failures]
+    return max([exit_code(result.exit_reason, result.criteria), *codes])
 
 
-class Outputs:
-    """Log, bag and video of a run; their failures are reported after its results.
+def _write_outputs(options: Run, path: Path) -> list[Hsr8Error]:
+    """Write log, bag and video into a run folder; return the errors of those that are missing."""
+    writers = (options.log, _write_log), (options.bag, _write_bag), (options.video, _write_video)
+    failures = []
+    for write in [write for wanted, write in writers if wanted]:
+        try:
+            with crash_report(path):
+                write(path, options)
+        except Hsr8Error as error:
+            failures.append(error)
+    return failures
 
-    Args:
-        options: options of the command.
-        path: run folder, which has a manifest.
 
-    Attributes:
-        failures: message of every output that is missing.
-        exit_code: exit code of the command; 0 without a failure.
-    """
+def _write_log(path: Path, _: Run) -> None:
+    write_log(open_run(path))
 
-    def __init__(self, options: Run, path: Path) -> None:
-        self._path = path
-        self._silent = options.quiet or options.json
-        writers = ((options.log, self._log), (options.bag, self._bag), (options.video, self._video))
-        self._missing = [write for wanted, write in writers if wanted]
-        self.failures: list[str] = []
-        self.exit_code = 0
 
-    def complete(self) -> None:
-        """Write the outputs, once."""
-        missing, self._missing = self._missing, []
-        for write in missing:
-            try:
-                with crash_report(self._path):
-                    write()
-            except Hsr8Error as error:
-                self.failures.append(str(error))
-                self.exit_code = max(self.exit_code, error.exit_code)
+def _write_bag(path: Path, _: Run) -> None:
+    with writing("--bag", path / BAG), draft(path / BAG) as folder:
+        write_bag(open_run(path), folder)
 
-    def _log(self) -> None:
-        write_log(open_run(self._path))
 
-    def _bag(self) -> None:
-        target = self._path / BAG
-        with writing("--bag", target), draft(target) as folder:
-            write_bag(open_run(self._path), folder)
+def _write_video(path: Path, options: Run) -> None:
+    # Imported late: runs without a video start earlier.
+    from hsr8.cli.render import drawing  # noqa: PLC0415
+    from hsr8.render.run_video import VideoOptions, render_run  # noqa: PLC0415
 
-    def _video(self) -> None:
-        # Imported late: runs without a video start earlier.
-        from hsr8.cli.render import drawing  # noqa: PLC0415
-        from hsr8.render.run_video import VideoOptions, render_run  # noqa: PLC0415
-
-        file = self._path / VIDEO
-        console = Console(stderr=True, quiet=self._silent)
-        with writing("--video", file), drawing(console) as show:
-            render_run(open_run(self._path), VideoOptions(), file, show)
-        if not self._silent:
-            print(f"video       {file}")
+    file, silent = path / VIDEO, options.quiet or options.json
+    with writing("--video", file), drawing(Console(stderr=True, quiet=silent)) as show:
+        render_run(open_run(path), VideoOptions(), file, show)
+    if not silent:
+        print(f"video       {file}")
 
 
 @contextmanager
@@ -155,7 +136,7 @@ def _view(options: Run) -> Iterator[LiveView | None]:
         yield view
 
 
-def _report(options: Run, result: Result, failures: Sequence[str]) -> None:
+def _report(options: Run, result: Result, failures: Sequence[Hsr8Error]) -> None:
     """Print the results; with --json, also the failed outputs."""
     assert result.folder is not None
     manifest = result.run.manifest
@@ -163,7 +144,8 @@ def _report(options: Run, result: Result, failures: Sequence[str]) -> None:
         print(f"hsr8: {result.diverged}", file=sys.stderr)
     if options.json:
         verdicts = {"criteria_met": result.criteria_met, "definitions": report.VERDICTS}
-        print(atomic.dumps(result.metrics | verdicts | {"failed_outputs": list(failures)}))
+        failed = {"failed_outputs": [*map(str, failures)]}
+        print(atomic.dumps(result.metrics | verdicts | failed))
     elif not options.quiet:
         report.show(
             f"{manifest['scenario']}, seed {manifest['seed']}",

@@ -106,10 +106,8 @@ class RunLog:
             if frames is not None:
                 self._add_frames(records, frames, tables.get("images"))
         if "events" in tables:
-            events = tables["events"]
-            columns = (events["time"].tolist(), events["kind"], events["text"])
-            for time, kind, text in zip(*columns, strict=True):
-                self._log_event(time, kind, text)
+            for event in tables["events"].objects():
+                self._log_event(event.time, event.kind, event.text)
 
     def close(self, exit_reason: str) -> None:
         """Log the end."""
