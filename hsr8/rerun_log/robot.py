@@ -29,8 +29,8 @@ class RobotShapes:
         self._data = mujoco.MjData(model)
         visible = np.isin(model.geom_group, VISUAL_GROUPS) & (model.geom_bodyid > 0)
         self._batches = batches_of(model, visible)
-        for batch in self._batches:
-            log.log(f"{ROOT}/{batch.kind}", shapes(model, batch), static=True)
+        for kind, geoms in self._batches.items():
+            log.log(f"{ROOT}/{kind}", shapes(model, kind, geoms), static=True)
         parts = model.body_weldid[model.geom_bodyid]
         meshes = visible & (model.geom_type == _MESH)
         self._parts = np.unique(parts[meshes])
@@ -50,10 +50,10 @@ class RobotShapes:
             mujoco.mj_kinematics(self._model, data)
             positions[row], rotations[row] = data.geom_xpos, data.xquat
             part_positions[row] = data.xpos[self._parts]
-        for batch in self._batches:
-            counts = np.full(n, len(batch.geoms))
-            columns = poses(self._model, batch, positions, rotations)
-            log.rows(f"{ROOT}/{batch.kind}", ARCHETYPES[batch.kind], times, counts, **columns)
+        for kind, geoms in self._batches.items():
+            counts = np.full(n, len(geoms))
+            columns = poses(self._model, kind, geoms, positions, rotations)
+            log.rows(f"{ROOT}/{kind}", ARCHETYPES[kind], times, counts, **columns)
         part_rotations = rotations[:, self._parts][..., [1, 2, 3, 0]]
         for k, part in enumerate(self._parts.tolist()):
             log.rows(
@@ -72,7 +72,7 @@ def followed_entity(model: mujoco.MjModel, base: str) -> str:
     if len(parts):
         part = int(model.body_weldid[model.body(base).id])
         return part_path(model, part if part in parts else int(parts[0]))
-    kinds = [b.kind for b in batches_of(model, np.isin(model.geom_group, VISUAL_GROUPS))]
+    kinds = [*batches_of(model, np.isin(model.geom_group, VISUAL_GROUPS))]
     return f"{ROOT}/{'ellipsoids' if 'ellipsoids' in kinds or not kinds else kinds[0]}"
 
 

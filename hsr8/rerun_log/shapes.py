@@ -4,7 +4,6 @@ All geoms of one kind share an entity, and one row has all their poses, which co
 transform per body.
 """
 
-from dataclasses import dataclass
 from typing import Any
 
 import mujoco
@@ -15,6 +14,7 @@ from numpy.typing import NDArray
 from walking.body.tree import Sole
 
 Array = NDArray[np.float64]
+Geoms = NDArray[np.intp]
 
 _BOX, _CAPSULE, _CYLINDER, _ELLIPSOID = (
     int(mujoco.mjtGeom.mjGEOM_BOX),
@@ -34,44 +34,30 @@ ARCHETYPES: dict[str, Any] = {
 }
 
 
-@dataclass(frozen=True, slots=True)
-class Batch:
-    """Geoms of one kind.
-
-    Attributes:
-        kind: boxes, capsules, cylinders or ellipsoids.
-        geoms: ids (n,).
-    """
-
-    kind: str
-    geoms: NDArray[np.intp]
+def batches_of(model: mujoco.MjModel, chosen: NDArray[np.bool_]) -> dict[str, Geoms]:
+    """Return the geoms in the mask `chosen` (ngeom,) by kind, without kinds that have none."""
+    batches = {
+        kind: np.flatnonzero(chosen & np.isin(model.geom_type, types))
+        for kind, types in KINDS.items()
+    }
+    return {kind: geoms for kind, geoms in batches.items() if len(geoms)}
 
 
-def batches_of(model: mujoco.MjModel, chosen: NDArray[np.bool_]) -> list[Batch]:
-    """Return the geoms in the mask `chosen` (ngeom,), one batch per kind."""
-    batches = []
-    for kind, types in KINDS.items():
-        geoms = np.flatnonzero(chosen & np.isin(model.geom_type, types))
-        if len(geoms):
-            batches.append(Batch(kind, geoms))
-    return batches
-
-
-def shapes(model: mujoco.MjModel, batch: Batch, **pose: Array) -> Any:
-    """Return the Rerun archetype with sizes, colours and, if given, poses."""
-    size = model.geom_size[batch.geoms]
+def shapes(model: mujoco.MjModel, kind: str, geoms: Geoms, **pose: Array) -> Any:
+    """Return the Rerun archetype of geoms of a kind with sizes, colours and, if given, poses."""
+    size = model.geom_size[geoms]
     style: dict[str, Any] = {
-        "colors": colors(model, batch.geoms),
+        "colors": colors(model, geoms),
         "fill_mode": rr.components.FillMode.Solid,
         **pose,
     }
     sizes: dict[str, Array] = {"lengths": 2.0 * size[:, 1], "radii": size[:, 0]}
-    if batch.kind == "boxes":
+    if kind == "boxes":
         sizes = {"half_sizes": size}
-    if batch.kind == "ellipsoids":
-        spheres = model.geom_type[batch.geoms] == _SPHERE
+    if kind == "ellipsoids":
+        spheres = model.geom_type[geoms] == _SPHERE
         sizes = {"half_sizes": np.where(spheres[:, None], size[:, :1], size)}
-    return ARCHETYPES[batch.kind](**sizes, **style)
+    return ARCHETYPES[kind](**sizes, **style)
 
 
 def colors(model: mujoco.MjModel, geoms: NDArray[np.intp]) -> NDArray[np.uint8]:
@@ -97,19 +83,20 @@ def raised(points: Array, height: float) -> Array:
 
 
 def poses(
-    model: mujoco.MjModel, batch: Batch, positions: Array, rotations: Array
+    model: mujoco.MjModel, kind: str, geoms: Geoms, positions: Array, rotations: Array
 ) -> dict[str, Array]:
-    """Return Rerun's components for n poses of a batch of m geoms.
+    """Return Rerun's components for n poses of m geoms of a kind.
 
     Args:
         model: compiled world.
-        batch: geoms of one kind.
+        kind: boxes, capsules, cylinders or ellipsoids.
+        geoms: ids (m,).
         positions: positions of all geoms (n, ngeom, 3) [m].
         rotations: quaternions w-x-y-z of all bodies (n, nbody, 4) [1].
     """
-    position = positions[:, batch.geoms]
-    w, x, y, z = np.moveaxis(rotations[:, model.geom_bodyid[batch.geoms]], 2, 0)
-    a, b, c, d = model.geom_quat[batch.geoms].T
+    position = positions[:, geoms]
+    w, x, y, z = np.moveaxis(rotations[:, model.geom_bodyid[geoms]], 2, 0)
+    a, b, c, d = model.geom_quat[geoms].T
     quaternion = np.stack(
         [
             w * b + x * a + y * d - z * c,
@@ -120,10 +107,10 @@ def poses(
         axis=-1,
     )
     name = "centers"
-    if batch.kind == "capsules":
+    if kind == "capsules":
         # Rerun's capsule starts at its origin, MuJoCo's is centred there.
         x, y, z, w = np.moveaxis(quaternion, 2, 0)
         axis = np.stack([2 * (x * z + w * y), 2 * (y * z - w * x), 1 - 2 * (x * x + y * y)], -1)
-        position = position - model.geom_size[batch.geoms, 1, None] * axis
+        position = position - model.geom_size[geoms, 1, None] * axis
         name = "translations"
     return {name: position.reshape(-1, 3), "quaternions": quaternion.reshape(-1, 4)}

@@ -51,14 +51,15 @@ class WorldShapes:
         visible = np.isin(model.geom_group, VISUAL_GROUPS) & (model.geom_type != PLANE)
         mobile = model.body_mocapid[model.geom_bodyid] >= 0
         self._movers = batches_of(model, mobile & visible)
-        for batch in self._movers:
-            log.log("/world/movers", shapes(model, batch), static=True)
+        for kind, geoms in self._movers.items():
+            log.log("/world/movers", shapes(model, kind, geoms), static=True)
         names = [model.geom(k).name for k in range(model.ngeom)]
         for path, prefix in STATIC.items():
             chosen = np.array([name.startswith(prefix) for name in names])
-            for batch in batches_of(model, visible & ~mobile & chosen):
-                pose = poses(model, batch, self._data.geom_xpos[None], self._data.xquat[None])
-                log.log(f"{path}/{batch.kind}", shapes(model, batch, **pose), static=True)
+            for kind, geoms in batches_of(model, visible & ~mobile & chosen).items():
+                world = self._data.geom_xpos[None], self._data.xquat[None]
+                pose = poses(model, kind, geoms, *world)
+                log.log(f"{path}/{kind}", shapes(model, kind, geoms, **pose), static=True)
         width, depth = (side + APRON * layout.scale for side in layout.field_size)
         floor = rr.Boxes3D(
             half_sizes=[[width / 2, depth / 2, 0.005]],
@@ -85,8 +86,8 @@ class WorldShapes:
         log.rows(CAMERA, rr.Transform3D, records["time"], translation=positions, quaternion=turned)
         obstacles = records["obstacle_positions"]
         movers = obstacles[:, obstacles.shape[1] - self._n_movers :].reshape(-1, 2)
-        for batch in self._movers:
-            height = float(self._model.geom_size[batch.geoms[0], 1])
+        for geoms in self._movers.values():
+            height = float(self._model.geom_size[geoms[0], 1])
             log.rows(
                 "/world/movers",
                 rr.Cylinders3D,

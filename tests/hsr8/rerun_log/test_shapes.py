@@ -18,7 +18,7 @@ def robot(model):
 
 def test_every_visible_geom_of_the_robot_is_in_one_batch(model, robot):
     visible = robot & (model.geom_group == 2)
-    geoms = np.concatenate([batch.geoms for batch in batches_of(model, visible)])
+    geoms = np.concatenate([*batches_of(model, visible).values()])
     assert sorted(geoms.tolist()) == np.flatnonzero(visible).tolist()
 
 
@@ -50,21 +50,21 @@ def test_logged_shapes_are_where_the_geoms_are(model, layout, tmp_path):
         mujoco.mj_kinematics(model, data)
         mujoco.mj_camlight(model, data)
         assert cameras[k][0] == pytest.approx(data.camera(HEAD_CAMERA).xpos)
-        for batch in batches_of(model, visible):
-            kind = f"{batch.kind.capitalize()}3D"
-            name = "translations" if batch.kind == "capsules" else "centers"
-            entity = f"/world/robot/{batch.kind}"
-            positions = log.table(entity, f"{kind}:{name}").rows[k]
+        for kind, geoms in batches_of(model, visible).items():
+            archetype = f"{kind.capitalize()}3D"
+            name = "translations" if kind == "capsules" else "centers"
+            entity = f"/world/robot/{kind}"
+            positions = log.table(entity, f"{archetype}:{name}").rows[k]
             for geom, position, quaternion in zip(
-                batch.geoms,
+                geoms,
                 positions,
-                log.table(entity, f"{kind}:quaternions").rows[k],
+                log.table(entity, f"{archetype}:quaternions").rows[k],
                 strict=True,
             ):
                 matrix = np.empty(9)
                 mujoco.mju_quat2Mat(matrix, np.roll(quaternion, 1).astype(float))
                 assert matrix == pytest.approx(data.geom_xmat[geom], abs=1e-5)
-                half = model.geom_size[geom, 1] if batch.kind == "capsules" else 0.0
+                half = model.geom_size[geom, 1] if kind == "capsules" else 0.0
                 centre = position + half * matrix[2::3]
                 assert centre == pytest.approx(data.geom_xpos[geom], abs=1e-5)
 
@@ -78,10 +78,8 @@ def test_colors_come_from_the_material(model):
 
 
 def test_a_missing_kind_has_no_batch(model):
-    assert [b.kind for b in batches_of(model, model.geom_type == mujoco.mjtGeom.mjGEOM_BOX)] == [
-        "boxes"
-    ]
-    assert batches_of(model, np.zeros(model.ngeom, bool)) == []
+    assert [*batches_of(model, model.geom_type == mujoco.mjtGeom.mjGEOM_BOX)] == ["boxes"]
+    assert batches_of(model, np.zeros(model.ngeom, bool)) == {}
 
 
 @pytest.mark.parametrize("side", [0, 1])
