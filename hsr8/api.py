@@ -8,12 +8,12 @@ from typing import Any, SupportsIndex
 
 from hsr8.decisions import GazeController, MotionPlanner
 from hsr8.errors import UsageError
-from hsr8.evaluation.recording import Result, record, renderer_of, started_folder
+from hsr8.evaluation.recording import Result, record, renderer_of
 from hsr8.files.writing import require_temporary
 from hsr8.loop import Simulation
 from hsr8.plugin_walker import CustomWalker
 from hsr8.recorder.run.manifest import CALL
-from hsr8.recorder.run.run_folder import SCENARIO, new_run_folder
+from hsr8.recorder.run.run_folder import SCENARIO, RunFolder, new_run_folder
 from hsr8.recorder.run.run_reader import open_run
 from hsr8.scenario.layers import as_words
 from hsr8.scenario.loader import load_scenario
@@ -73,7 +73,7 @@ def run(
             words += ["--set", *as_words(settings)] if settings else []
             plugins = {"planner": planner, "gaze": gaze, "walker": walker}
             command = _call(plugins) or tuple(map(shlex.quote, words))
-            folder = started_folder(path, loaded, command, renderer)
+            folder = RunFolder(path, loaded, command, renderer)
         result = record(simulation, folder)
         if log:
             from hsr8.rerun_log.run_log import write_log  # noqa: PLC0415  takes a third of a second

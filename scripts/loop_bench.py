@@ -14,7 +14,7 @@ import tempfile
 from contextlib import closing
 from pathlib import Path
 
-from hsr8.evaluation.recording import record, started_folder
+from hsr8.evaluation.recording import record
 from hsr8.gl import require_gl
 from hsr8.loop import Simulation
 from hsr8.record import Tick
@@ -93,7 +93,7 @@ class Bench:
         floor = Floor(simulation)
         with tempfile.TemporaryDirectory() as out, Stopwatch() as watch:
             path = RunFolder.create(Path(out), scenario.name, seed)
-            folder = started_folder(path, simulation.scenario, ("bench",), require_gl())
+            folder = RunFolder(path, simulation.scenario, ("bench",), require_gl())
             self.watch = watch
             self._watch(simulation)
             with closing(floor):

@@ -17,7 +17,7 @@ from hsr8.cli.progress import Progress
 from hsr8.cli.termination import like_ctrl_c, on_signals
 from hsr8.errors import Hsr8Error
 from hsr8.evaluation.crash import crash_report
-from hsr8.evaluation.recording import Result, record, renderer_of, started_folder
+from hsr8.evaluation.recording import Result, record, renderer_of
 from hsr8.evaluation.verdict import exit_code
 from hsr8.export.bag import require_rosbags, write_bag
 from hsr8.files import atomic
@@ -25,7 +25,7 @@ from hsr8.files.atomic import draft
 from hsr8.files.writing import require_temporary
 from hsr8.gl import require_gl
 from hsr8.loop import Simulation
-from hsr8.recorder.run.run_folder import VIDEO, new_run_folder
+from hsr8.recorder.run.run_folder import VIDEO, RunFolder, new_run_folder
 from hsr8.recorder.run.run_reader import open_run
 from hsr8.render.viewer import LiveView, live_view
 from hsr8.rerun_log.run_log import write_log
@@ -70,7 +70,7 @@ def _start(options: Run, scenario: Scenario, command: Sequence[str]) -> int:
             simulation.interrupt()
 
         with crash_report(path), on_signals(SIGNALS, interrupt):
-            folder = started_folder(path, scenario, command, renderer)
+            folder = RunFolder(path, scenario, command, renderer)
             with ExitStack() as shown:
                 on_tick = None
                 if not options.quiet:

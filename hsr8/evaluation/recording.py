@@ -1,8 +1,8 @@
 """Simulations that are recorded and measured, in memory or in a run folder."""
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from contextlib import ExitStack, suppress
-from dataclasses import asdict, dataclass, replace
+from dataclasses import asdict, dataclass
 from pathlib import Path
 from time import perf_counter
 from types import TracebackType
@@ -18,11 +18,10 @@ from hsr8.gl import require_gl
 from hsr8.loop import Simulation
 from hsr8.record import Tick
 from hsr8.recorder.recorder import IMAGES, PERIOD, Memory, Recorder, Sink
-from hsr8.recorder.run.manifest import CALL, Manifest, versions_of
+from hsr8.recorder.run.manifest import CALL, Manifest
 from hsr8.recorder.run.run import MemoryRun, Run
 from hsr8.recorder.run.run_folder import RunFolder
 from hsr8.recorder.run.run_reader import open_run
-from hsr8.scenario.loader import dump
 from hsr8.scenario.schema import Scenario
 
 LIVE_PERIOD = PERIOD // 2  # ticks of a batch while a viewer is connected
@@ -70,29 +69,6 @@ def renderer_of(scenario: Scenario) -> str:
         RenderingUnavailable: the camera needs OpenGL and there is none.
     """
     return require_gl() if scenario.camera.source == "rendered" else scenario.camera.source
-
-
-def started_folder(
-    path: Path, scenario: Scenario, command: Sequence[str], renderer: str
-) -> RunFolder:
-    """Write manifest and scenario of a run into its folder.
-
-    Args:
-        path: new folder.
-        scenario: scenario with the seed of the run.
-        command: words of the command line that repeats the run.
-        renderer: name of the renderer of the head camera.
-
-    Raises:
-        RecordingFailed: the folder cannot be written.
-    """
-    manifest = _manifest(scenario, command, renderer)
-    return RunFolder(path, manifest, dump(scenario))
-
-
-def _manifest(scenario: Scenario, command: Sequence[str], renderer: str) -> Manifest:
-    manifest = Manifest.now(scenario.name, scenario.seed, command, renderer)
-    return replace(manifest, libraries=versions_of(scenario))
 
 
 class Recording:
@@ -174,7 +150,7 @@ class Recording:
             run = open_run(self._folder.path)
         else:
             rows = {name: len(table) for name, table in tables.items()}
-            manifest = _manifest(scenario, (f"{CALL}...)",), scenario.camera.source)
+            manifest = Manifest.now(scenario, (f"{CALL}...)",), scenario.camera.source)
             ended = manifest.ended(reason, rows)
             run = MemoryRun(None, asdict(ended), scenario, tables, results)
         criteria = evaluate_criteria(scenario.criteria, results)

@@ -11,10 +11,10 @@ from typing import Any, Literal
 
 from hsr8.errors import Hsr8Error
 from hsr8.evaluation.crash import FILE, crash_report
-from hsr8.evaluation.recording import Result, record, renderer_of, started_folder
+from hsr8.evaluation.recording import Result, record, renderer_of
 from hsr8.evaluation.verdict import exit_code
 from hsr8.loop import Simulation
-from hsr8.recorder.run.run_folder import new_run_folder
+from hsr8.recorder.run.run_folder import RunFolder, new_run_folder
 from hsr8.scenario.schema import Scenario
 
 RunResult = dict[str, Any]
@@ -84,7 +84,7 @@ def _record(job: Job, path: Path) -> Result:
     simulation = Simulation(job.scenario, job.seed)
     signal.signal(signal.SIGTERM, lambda *_: simulation.interrupt())
     with crash_report(path):
-        folder = started_folder(path, job.scenario, (job.command,), renderer)
+        folder = RunFolder(path, job.scenario, (job.command,), renderer)
         return record(simulation, folder)
 
 

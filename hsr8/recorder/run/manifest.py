@@ -66,11 +66,15 @@ class Manifest:
     rows: dict[str, int] = field(default_factory=dict)
 
     @classmethod
-    def now(cls, scenario: str, seed: int, command: Sequence[str], renderer: str) -> "Manifest":
-        """Return the manifest of a run that starts now on this machine."""
+    def now(cls, scenario: Scenario, command: Sequence[str], renderer: str) -> "Manifest":
+        """Return the manifest of a run that starts now on this machine.
+
+        Raises:
+            UsageError: a plugin cannot be read.
+        """
         return cls(
-            scenario=scenario,
-            seed=seed,
+            scenario=scenario.name,
+            seed=scenario.seed,
             command=" ".join(command),
             exit_reason=RUNNING,
             started=datetime.now(UTC).isoformat(timespec="seconds"),
@@ -78,7 +82,7 @@ class Manifest:
             hsr8=VERSION,
             python=platform.python_version(),
             machine=f"{platform.system()} {platform.release()} {platform.machine()}",
-            libraries=versions(),
+            libraries=versions_of(scenario),
         )
 
     def ended(self, exit_reason: str, rows: Mapping[str, int]) -> "Manifest":

@@ -13,7 +13,7 @@ Tables are written once a second, so the folder of a killed run is complete up t
 """
 
 import secrets
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from contextlib import ExitStack, contextmanager, suppress
 from pathlib import Path
 from typing import Any
@@ -24,6 +24,8 @@ from hsr8.files.writing import NO_ROOM, failure, writing
 from hsr8.recorder.run.manifest import Manifest
 from hsr8.recorder.stream import ArrowFiles
 from hsr8.recorder.table import Table
+from hsr8.scenario.loader import dump
+from hsr8.scenario.schema import Scenario
 
 SCENARIO = "scenario.toml"
 MANIFEST = "manifest.json"
@@ -37,21 +39,25 @@ class RunFolder:
     """Folder of one run, a sink of its recorder.
 
     Args:
-        path: new folder, see `create`.
-        manifest: manifest of the run; written immediately.
-        scenario: the resolved scenario as TOML.
+        path: new folder, see `create`; manifest and scenario are written immediately.
+        scenario: scenario with the seed of the run.
+        command: words of the command line that repeats the run.
+        renderer: name of the renderer of the head camera.
 
     Raises:
         RecordingFailed: here and in every method, the folder cannot be written.
+        UsageError: a plugin cannot be read.
     """
 
-    def __init__(self, path: Path, manifest: Manifest, scenario: str) -> None:
+    def __init__(
+        self, path: Path, scenario: Scenario, command: Sequence[str], renderer: str
+    ) -> None:
         self.path = path
-        self._manifest = manifest
+        self._manifest = Manifest.now(scenario, command, renderer)
         self._files = ArrowFiles(path)
         with writing(path):
-            manifest.write(path / MANIFEST)
-            atomic.write_text(path / SCENARIO, scenario)
+            self._manifest.write(path / MANIFEST)
+            atomic.write_text(path / SCENARIO, dump(scenario))
 
     @staticmethod
     def create(out: Path, scenario: str, seed: int) -> Path:

@@ -10,8 +10,8 @@ import pytest
 
 from hsr8.cli.first_compilation import TEXT
 from hsr8.cli.main import entry
-from hsr8.recorder.run.manifest import Manifest
 from hsr8.recorder.run.run_folder import RunFolder
+from hsr8.scenario.loader import load_scenario
 
 LINES = [
     # commands
@@ -171,7 +171,8 @@ def folder(tmp_path_factory):
         (path / name).mkdir(parents=True)
     (path / "damaged/manifest.json").write_text("{")
     run = RunFolder.create(path, "made", 7)
-    RunFolder(run, Manifest.now("quick", 7, (), "analytic"), "").note("goal", {})
+    RunFolder(run, load_scenario("quick", seed=7), (), "analytic").note("goal", {})
+    (run / "scenario.toml").write_text("")
     manifest = json.loads((run / "manifest.json").read_text())
     (path / "future/manifest.json").write_text(json.dumps(manifest | {"format": 99}))
     run.rename(path / "RUN")

@@ -96,7 +96,7 @@ def test_ctrl_c_during_setup_leaves_a_whole_folder(tmp_path, monkeypatch, capsys
         os.kill(os.getpid(), signal.SIGINT)
         return dump(scenario)
 
-    monkeypatch.setattr("hsr8.evaluation.recording.dump", interrupted)
+    monkeypatch.setattr("hsr8.recorder.run.run_folder.dump", interrupted)
     assert _run(tmp_path, "--quiet") == 130
     run = open_run(tmp_path)
     assert run.manifest["exit_reason"] == run.metrics()["exit_reason"] == "interrupted"

@@ -3,8 +3,9 @@ import weakref
 
 import pytest
 
-from hsr8.evaluation.recording import record, started_folder
+from hsr8.evaluation.recording import record
 from hsr8.loop import Simulation
+from hsr8.recorder.run.run_folder import RunFolder
 from hsr8.scenario.loader import load_scenario
 
 
@@ -21,7 +22,7 @@ def recorded(path):
     settings = ['robot.body="kinematic"', 'camera.source="analytic"', "duration=1.2"]
     simulation = Simulation(load_scenario("quick", settings), 1)
     model = weakref.ref(simulation.model)
-    record(simulation, started_folder(path, simulation.scenario, ("test",), "analytic"))
+    record(simulation, RunFolder(path, simulation.scenario, ("test",), "analytic"))
     return model
 
 

@@ -9,13 +9,14 @@ from hsr8.recorder.run import run_folder
 from hsr8.recorder.run.manifest import FORMAT, Manifest
 from hsr8.recorder.run.run_folder import RunFolder
 from hsr8.recorder.run.run_reader import open_run
+from hsr8.scenario.loader import load_scenario
 
 
 @pytest.fixture
 def folder(tmp_path):
     path = RunFolder.create(tmp_path, "quick", 7)
-    manifest = Manifest.now("quick", 7, ("hsr8", "run", "quick", "--seed", "7"), "analytic")
-    return RunFolder(path, manifest, 'name = "quick"\n')
+    words = ("hsr8", "run", "quick", "--seed", "7")
+    return RunFolder(path, load_scenario("quick", seed=7), words, "analytic")
 
 
 def test_folders_of_equal_runs_are_different(tmp_path):
@@ -33,14 +34,14 @@ def test_a_finished_run_can_be_read_back(folder):
     assert run.manifest["rows"] == {"ticks": 5}
     assert run.manifest["libraries"]["mujoco"].startswith("4.0")
     assert run.metrics() == {"success": True, "time_to_goal_s": None}
-    assert run.scenario_file.read_text() == 'name = "quick"\n'
+    assert run.scenario() == load_scenario("quick", seed=7)
 
 
 def test_the_newest_run_below_a_folder_is_meant(tmp_path):
     for age, seed in ((300, 1), (100, 2), (200, 3)):
         path = RunFolder.create(tmp_path, "quick", seed)
         file = path / run_folder.MANIFEST
-        Manifest.now("quick", seed, (), "analytic").write(file)
+        Manifest.now(load_scenario("quick", seed=seed), (), "analytic").write(file)
         os.utime(file, (1e9 - age, 1e9 - age))
     assert open_run(tmp_path).seed == 2
     assert open_run(tmp_path / "quick").seed == 2
@@ -48,7 +49,7 @@ def test_the_newest_run_below_a_folder_is_meant(tmp_path):
 
 def test_runs_are_looked_for_at_the_two_levels_of_scenario_and_run_only(tmp_path):
     path = RunFolder.create(tmp_path / "runs", "quick", 1)
-    RunFolder(path, Manifest.now("quick", 1, (), "analytic"), "")
+    RunFolder(path, load_scenario("quick"), (), "analytic")
     for folder in (path, path.parent, tmp_path / "runs"):
         assert open_run(folder).path == path
     with pytest.raises(UsageError, match="no run in this folder"):

@@ -4,9 +4,9 @@ import pytest
 
 from hsr8.cli.main import entry
 from hsr8.errors import UsageError
-from hsr8.recorder.run.manifest import Manifest
 from hsr8.recorder.run.run_folder import RunFolder
 from hsr8.recorder.run.run_reader import open_run
+from hsr8.scenario.loader import load_scenario
 
 COMMANDS = [
     ["info"],
@@ -77,7 +77,7 @@ def test_an_unreadable_sweep_is_one_clear_error(tmp_path, capsys):
 )
 def test_only_a_run_that_ended_must_be_complete(tmp_path, end, ended):
     path = RunFolder.create(tmp_path, "quick", 7)
-    folder = RunFolder(path, Manifest.now("quick", 7, (), "analytic"), "")
+    folder = RunFolder(path, load_scenario("quick", seed=7), (), "analytic")
     folder.note(end, {"events": 3})
     run = open_run(path)
     assert run.ended == ended
