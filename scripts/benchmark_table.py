@@ -131,7 +131,7 @@ COLUMNS: dict[str, tuple[str, Column]] = {
     "clearance": ("min clearance, median [mm]", _middle("min_clearance_m", 1e3, ".0f")),
     "time": ("time to goal, median [s]", _time),
     "head": ("head travel, median [rad/s]", _middle("head_travel_radps")),
-    "position": ("position RMSE, median [mm]", _middle("localization_rmse_m", 1e3, ".1f", " mm")),
+    "position": ("position RMSE, median", _middle("localization_rmse_m", 1e3, ".1f", " mm")),
     "heading": ("heading RMSE, median [deg]", _middle("heading_rmse_deg", 1.0, ".3f")),
     "nees": ("NEES / 3, mean", _mean("nees_mean")),
     "static_track": (
@@ -139,7 +139,7 @@ COLUMNS: dict[str, tuple[str, Column]] = {
         _middle("static_track_rmse_m", 1e3, ".1f"),
     ),
     "mover_velocity": (
-        "mover velocity RMSE, median [cm/s]",
+        "mover velocity RMSE, median",
         _middle("mover_velocity_rmse_mps", 1e2, ".1f", " cm/s"),
     ),
     "recognised": ("mover recognised after, median [s]", _middle("recognised_s")),
@@ -150,7 +150,7 @@ COLUMNS: dict[str, tuple[str, Column]] = {
     ),
     "zmp_margin": ("min ZMP margin, median [mm]", _middle("zmp_min_margin_m", 1e3, ".1f")),
     "limited": ("limited ticks, median [1]", _middle("limited_fraction")),
-    "speed": ("speed, median [times real time]", _middle("real_time_factor", 1.0, ".1f", " times")),
+    "speed": ("speed over real time, median", _middle("real_time_factor", 1.0, ".1f", " times")),
     "wall": ("wall time, median [s]", _middle("wall_time_s", 1.0, ".1f")),
     "tick": ("walking tick, median of means [ms]", _middle("walk_tick_mean_ms", 1.0, ".3f")),
     "crashed": (
