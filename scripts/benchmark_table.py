@@ -109,6 +109,8 @@ def _mean(name: str) -> "Column":
 
 def _equal(runs: Sequence[Run], reference: Sequence[Run]) -> str:
     pairs = pair(runs, reference) if runs is not reference else []
+    if not pairs:
+        return ""
     return f"{sum(a['state_hash'] == b['state_hash'] for a, b in pairs)} of {len(pairs)}"
 
 
