@@ -23,7 +23,7 @@ from hsr8.rerun_log.camera import log_camera, log_gaze, log_gaze_window, style_c
 from hsr8.rerun_log.decisions import LANES, PLOTS, log_clearance, log_decisions, style_plots
 from hsr8.rerun_log.robot import RobotShapes, followed_entity
 from hsr8.rerun_log.shapes import sole_outline
-from hsr8.rerun_log.stream import APPLICATION, LogStream
+from hsr8.rerun_log.stream import ABANDONED, APPLICATION, LogStream
 from hsr8.rerun_log.walking import log_every_record, log_walking, style_walking
 from hsr8.rerun_log.world import PATH_HEIGHT, WorldShapes, log_footsteps, log_waypoints
 from hsr8.robot_builder import build_model
@@ -72,8 +72,10 @@ class RunLog:
     ) -> None:
         model, robot, layout = world
         self._pose_period, self._frame_period = (0.0, 0.0) if full else (POSE_PERIOD, FRAME_PERIOD)
-        # Without this call Rerun keeps the threads of streams that are no longer used.
-        rr.init(APPLICATION, init_logging=False)
+        # Without this call Rerun keeps the threads of streams that are no longer used. It waits for
+        # all streams, so it fails after one that was abandoned.
+        if not ABANDONED:
+            rr.init(APPLICATION, init_logging=False)
         self.stream = log = LogStream(name)
         indexed = scenario.duration <= MAX_INDEXED
         is_file = isinstance(target, Path)
