@@ -82,8 +82,8 @@ class LocalExecutor:
 
     def _start(self, job: Job) -> tuple[Child, BaseProcess]:
         """Start the process of a job; the first call waits until the server has loaded."""
-        # Ctrl-C interrupts the sweep, which then ends its runs: the server and its children
-        # inherit that they ignore it.
+        # Ctrl-C interrupts the sweep, which then ends its runs; the server inherits that it is
+        # ignored.
         handler = signal.signal(signal.SIGINT, signal.SIG_IGN)
         try:
             forkserver.ensure_running()
@@ -102,4 +102,5 @@ def _run(job: Job, results: "Connection[RunResult, object]", work: Work) -> None
     watched = end_with_parent(os.getppid(), signal.SIGKILL)
     if not watched or sweep is None or not sweep.is_alive():
         os._exit(ORPHAN)
+    signal.signal(signal.SIGINT, signal.SIG_IGN)  # also under a server that others started
     serve(job, results, work)
