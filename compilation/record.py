@@ -4,34 +4,38 @@ from dataclasses import asdict
 from typing import TYPE_CHECKING, Any, cast
 
 import numpy as np
-from numpy.typing import DTypeLike, NDArray
+from numpy.typing import NDArray
 
 if TYPE_CHECKING:
     from _typeshed import DataclassInstance
 
 WORD = 8  # bytes
-Field = tuple[str, DTypeLike] | tuple[str, DTypeLike, int | tuple[int, ...]]
+FieldType = type | np.dtype[Any] | tuple[Any, ...]
 
 
-def record_type(*fields: Field) -> np.dtype[np.record]:
-    """Return the type of records with fields of a name, a type and a shape.
+def record_type(**fields: FieldType) -> np.dtype[np.record]:
+    """Return the type of records.
 
     Every field begins at a multiple of `WORD`, which compiled code requires of nested records.
+
+    Args:
+        fields: type of each field: a number, another record, or (one of these, *shape).
 
     Raises:
         TypeError: a name is that of an attribute of arrays, which would hide the field.
     """
     formats: list[Any] = []
     offsets, offset = [], 0
-    for name, kind, *shape in fields:
+    for name, kind in fields.items():
         if hasattr(np.recarray, name):
             raise TypeError(f"{name}: name of a field; expected no attribute of arrays")
-        of_field: Any = (kind, *shape) if shape else kind
+        one, *shape = kind if isinstance(kind, tuple) else (kind,)
+        of_field: Any = (one, tuple(shape)) if shape else one
         formats.append(of_field)
         offsets.append(offset)
         offset += -(-np.dtype(of_field).itemsize // WORD) * WORD
     layout: Any = {
-        "names": [name for name, *_ in fields],
+        "names": list(fields),
         "formats": formats,
         "offsets": offsets,
         "itemsize": offset,
@@ -46,4 +50,4 @@ def record(parameters: "DataclassInstance", **others: float) -> NDArray[np.recor
     """
     values = asdict(parameters) | others
     numbers = {name: v for name, v in values.items() if isinstance(v, int | float)}
-    return np.array([tuple(numbers.values())], record_type(*((n, np.float64) for n in numbers)))
+    return np.array([tuple(numbers.values())], record_type(**dict.fromkeys(numbers, float)))

@@ -16,19 +16,12 @@ from hsr8.plugin_method import number
 from hsr8.plugin_walker import CustomWalker
 from hsr8.record import Event, EventWatch, RunOutcome, Second, Tick, TickRecord
 from hsr8.robot import Robot, SensorFrame
-from hsr8.robot_builder import (
-    build_body,
-    build_model,
-    build_robot,
-    camera_model,
-    require_planner,
-)
+from hsr8.robot_builder import build_body, build_model, build_robot, camera_model, require_planner
 from hsr8.robots.loaded import load_robot
 from hsr8.scenario.schema import Scenario
 from hsr8.world.body.faults import SensorFaults, ServoFaults
 from hsr8.world.camera.head_camera import HeadCamera
 from hsr8.world.field.generator import draw_world
-from hsr8.world.model.index import ModelIndex
 from hsr8.world.truth.truth import Truth
 from navigation.decision import GazeDecision, MotionDecision
 from walking.engine import PlanDiverged
@@ -152,13 +145,6 @@ class Simulation:
                 f"scenario {scenario.name!r}: invalid parameters in walking, vision, belief or "
                 f"navigation: {error}"
             ) from error
-
-    @property
-    def index(self) -> ModelIndex:
-        """Addresses in the model."""
-        return ModelIndex.of(
-            self.model, self.humanoid, len(self.layout.static), len(self.layout.movers)
-        )
 
     @property
     def time(self) -> float:

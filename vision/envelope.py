@@ -30,14 +30,14 @@ MIN_INNER = 2  # of them without the columns at its steps
 NEAR_QUANTILE = 0.1  # of the distances of the points, for the nearest [1]
 
 PIECE = record_type(
-    ("left", np.float64),
-    ("right", np.float64),
-    ("left_true", np.bool_),
-    ("right_true", np.bool_),
-    ("run", np.float64),
-    ("first", np.int64),
-    ("last", np.int64),
-    ("sigma", np.float64),
+    left=float,
+    right=float,
+    left_true=bool,
+    right_true=bool,
+    run=float,
+    first=int,
+    last=int,
+    sigma=float,
 )
 """Piece of the lower or upper outline that belongs to one cylinder.
 

@@ -20,13 +20,13 @@ NEAR, FAR = 1.0, -1.0  # half of the circle of a rim
 MAX_RIMS = 3  # a beacon shows three
 
 SIDE = record_type(
-    ("azimuth", np.float64),
-    ("sigma", np.float64),
-    ("points", np.float64),
-    ("low", np.float64),
-    ("high", np.float64),
-    ("trusted", np.bool_),
-    ("occluded", np.bool_),
+    azimuth=float,
+    sigma=float,
+    points=float,
+    low=float,
+    high=float,
+    trusted=bool,
+    occluded=bool,
 )
 """One side edge: azimuth from the heading of the camera, standard deviation of one point of it
 [rad], number of independent points averaged; minimum and maximum slope of the visible edge [1];
@@ -34,13 +34,13 @@ whether it is an edge of the object, neither of an occluding object nor of the i
 is partly occluded by a nearer object."""
 
 RIM = record_type(
-    ("first", np.int64),
-    ("last", np.int64),
-    ("sigma", np.float64),
-    ("outer", np.int64),
-    ("height", np.float64),
-    ("half", np.float64),
-    ("middle", np.float64),
+    first=int,
+    last=int,
+    sigma=float,
+    outer=int,
+    height=float,
+    half=float,
+    middle=float,
 )
 """Lower or upper edge of a blob, without its ends and cut parts: first and last (exclusive) of its
 points and standard deviation of one slope [1]. Of the rim of a candidate also the outer label of
@@ -48,16 +48,16 @@ the points in use or `ANY`, height above the floor [unit], `NEAR` or `FAR`, and 
 middle point [1]."""
 
 BLOB = record_type(
-    ("box", np.int64, 4),
-    ("label", np.int64),
-    ("first_run", np.int64),
-    ("last_run", np.int64),
-    ("first_extent", np.int64),
-    ("cut", np.bool_),
-    ("azimuth", np.float64, 2),
-    ("slope", np.float64, 2),
-    ("sides", SIDE, 2),
-    ("rims", RIM, 2),
+    box=(int, 4),
+    label=int,
+    first_run=int,
+    last_run=int,
+    first_extent=int,
+    cut=bool,
+    azimuth=(float, 2),
+    slope=(float, 2),
+    sides=(SIDE, 2),
+    rims=(RIM, 2),
 )
 """Connected component of one colour class.
 
@@ -68,19 +68,19 @@ the border of the image or the self mask. Minimum and maximum azimuth from the h
 [rad] and slope [1] of its edges. Left and right side; lower and upper rim."""
 
 CANDIDATE = record_type(
-    ("upper", np.int64),
-    ("lower", np.int64),
-    ("occluded", np.bool_),
-    ("reported", np.bool_),
-    ("sides", SIDE, 2),
-    ("rims", RIM, MAX_RIMS),
-    ("rim_count", np.int64),
-    ("height", np.float64),
-    ("prior", np.float64, 2),
-    ("cylinder", np.float64, 3),
-    ("covariance", np.float64, (3, 3)),
-    ("misfit", np.float64),
-    ("outlier_fraction", np.float64),
+    upper=int,
+    lower=int,
+    occluded=bool,
+    reported=bool,
+    sides=(SIDE, 2),
+    rims=(RIM, MAX_RIMS),
+    rim_count=int,
+    height=float,
+    prior=(float, 2),
+    cylinder=(float, 3),
+    covariance=(float, 3, 3),
+    misfit=float,
+    outlier_fraction=float,
 )
 """Candidate of one cylinder, and its fit.
 

@@ -22,15 +22,15 @@ MIN_RUN = 1e-6  # minimum horizontal part of a ray
 EXACT = PoseParameters(0.0, 0.0, 0.0, 0.0)
 
 VIEW = record_type(
-    ("position", np.float64, 3),
-    ("rotation", np.float64, (3, 3)),
-    ("middle", np.float64, 2),
-    ("focal", np.float64),
-    ("heading", np.float64),
-    ("ahead", np.float64, 2),
-    ("clearance", np.float64),
-    ("variance", np.float64, 4),
-    ("smear", np.float64, 2),
+    position=(float, 3),
+    rotation=(float, 3, 3),
+    middle=(float, 2),
+    focal=float,
+    heading=float,
+    ahead=(float, 2),
+    clearance=float,
+    variance=(float, 4),
+    smear=(float, 2),
 )
 """Camera of one image.
 

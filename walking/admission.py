@@ -11,17 +11,18 @@ A plan that is tried is a copy: the plan in force changes only when one is taken
 """
 
 from compilation import compiled
+from compilation.record import record_type
 from walking.footsteps import foothold, landing_of, towards, towards_strides
 from walking.gait import aimed, retime, support_foot, update_phase
 from walking.patterns import is_feasible, remains_feasible
 from walking.pendulum import plan_pendulum
-from walking.records import Record, record
+from walking.records import Record
 from walking.reference import BEST, LIVE, TRIAL, WANTED, copy_plan, plan_walk
 from walking.steering import moves
 from walking.support import Region
 from walking.timing import CLOCK, TIMING
 
-ADMISSION = record(stepping=bool, completed=int, clock=CLOCK, fraction=float, between=TIMING)
+ADMISSION = record_type(stepping=bool, completed=int, clock=CLOCK, fraction=float, between=TIMING)
 """Admission, see `walking.admission`: whether the gait was stepping, completed footsteps and clock
 in the last tick; admitted fraction of the wanted change [1]; timing of a plan that is tried."""
 

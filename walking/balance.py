@@ -13,6 +13,7 @@ from math import exp, log
 from typing import NamedTuple
 
 from compilation import compiled
+from compilation.record import record_type
 from walking.admission import admit
 from walking.command import BALANCE, LANDING_FROZEN, LANDING_SPEED, ZMP_REGION
 from walking.footsteps import (
@@ -37,13 +38,13 @@ from walking.pendulum import (
     track_reference,
 )
 from walking.plane import Point, clamp, dead_zone, rotate, rotate_back
-from walking.records import Record, record
+from walking.records import Record
 from walking.reference import LIVE, WANTED, plan_walk, reference_of
 from walking.steering import moves
 from walking.support import Region, clip
 from walking.timing import equal_clocks
 
-PLACING = record(applied=(float, 3), bound=int, moved_x=float, moved_y=float, accepted=bool)
+PLACING = record_type(applied=(float, 3), bound=int, moved_x=float, moved_y=float, accepted=bool)
 """Foot placement: velocity that the footsteps follow; limits that bind, as bits; shift of the
 landing by a capture step [m]; whether the ZMP plan of this tick was admitted."""
 

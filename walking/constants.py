@@ -4,6 +4,7 @@ from math import cosh, sinh
 
 import numpy as np
 
+from compilation.record import record_type
 from walking.balance import ankle_gain
 from walking.body.robot_model import NECK, RobotModel
 from walking.dimension import HSR_VIII, override, scale_parameters
@@ -13,13 +14,13 @@ from walking.footsteps import STILL, STRIDES, velocity_strides
 from walking.parameters import CONTROL_PERIOD, GRAVITY, LIGHT_LOAD, WalkingParameters
 from walking.patterns import PREVIEW_SUM, preview_gains
 from walking.pendulum import natural_frequency
-from walking.records import GENERATORS, SECTIONS, Record, record
+from walking.records import GENERATORS, SECTIONS, Record
 from walking.swing_reaction import leg_reaction
 
-SOLE = record(centre=float, half_length=float, half_width=float)
+SOLE = record_type(centre=float, half_length=float, half_width=float)
 """Rectangle of a sole in the foot frame [m]."""
 
-ROBOT = record(
+ROBOT = record_type(
     # Parameters: gait, pattern, estimator, ...
     **SECTIONS,
     # Pendulum: ω [1/s], cosh and sinh of ω times the control period [1].

@@ -7,11 +7,12 @@ one foot and closes it with the other one; only the mean over both is the comman
 from math import cos, exp, sin
 
 from compilation import compiled
+from compilation.record import record_type
 from walking.parameters import CONTROL_PERIOD
 from walking.plane import Point, Vector, clamp
-from walking.records import Record, record
+from walking.records import Record
 
-CORRECTIONS = record(
+CORRECTIONS = record_type(
     # Gait cycle: first support foot and the last one, -1 for none.
     first=int,
     support=int,

@@ -10,9 +10,12 @@ from __future__ import annotations
 
 from dataclasses import astuple, dataclass, fields, is_dataclass, replace
 from functools import cache
-from typing import Any, TypeVar, get_type_hints
+from typing import TYPE_CHECKING, Any, TypeVar, get_type_hints
 
-Section = TypeVar("Section")
+if TYPE_CHECKING:
+    from _typeshed import DataclassInstance
+
+Section = TypeVar("Section", bound="DataclassInstance")
 
 
 @dataclass(frozen=True, slots=True)
@@ -129,12 +132,11 @@ def scale_parameters(parameters: Section, old: RobotMeasures, new: RobotMeasures
     rules = rules_of(section)
     scaled: dict[str, Any] = {}
     for name in (field.name for field in fields(section)):
-        value = getattr(parameters, name)
-        if is_dataclass(value):
-            scaled[name] = scale_parameters(value, old, new)
+        if is_dataclass(getattr(parameters, name)):
+            scaled[name] = scale_parameters(getattr(parameters, name), old, new)
         elif name in rules:
-            scaled[name] = rules[name].scale(value, old, new)
-    return replace(parameters, **scaled)  # type: ignore[type-var]
+            scaled[name] = rules[name].scale(getattr(parameters, name), old, new)
+    return replace(parameters, **scaled)
 
 
 @cache
@@ -151,10 +153,10 @@ def rules_of(section: type) -> dict[str, Rule]:
 def override(scaled: Section, chosen: Section, defaults: Section) -> Section:
     """Return `chosen` with the scaled value wherever it equals the default."""
     values: dict[str, Any] = {}
-    for name in (field.name for field in fields(chosen)):  # type: ignore[arg-type]
+    for name in (field.name for field in fields(chosen)):
         value, default = getattr(chosen, name), getattr(defaults, name)
         if is_dataclass(value):
             values[name] = override(getattr(scaled, name), value, default)
         elif value == default:
             values[name] = getattr(scaled, name)
-    return replace(chosen, **values)  # type: ignore[type-var]
+    return replace(chosen, **values)

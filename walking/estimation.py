@@ -11,19 +11,22 @@ import numpy as np
 from scipy.linalg import solve_discrete_are
 
 from compilation import compiled
+from compilation.record import record_type
 from walking.body.kinematics import feet_poses
 from walking.body.robot_model import RobotModel
 from walking.odometry import reckon
 from walking.parameters import CONTROL_PERIOD, EstimatorParameters
 from walking.plane import Array, Indices, Point, Vector, from_frame, norm, rotate, rotate_back
-from walking.records import Record, record
+from walking.records import Record
 from walking.state import BodySensors
 
-FOOT = record(x=float, y=float, z=float, yaw=float, load=float, pressure_x=float, pressure_y=float)
+FOOT = record_type(
+    x=float, y=float, z=float, yaw=float, load=float, pressure_x=float, pressure_y=float
+)
 """Measured foot: position [m] and yaw [rad] in the level frame of the heading, load [N], centre of
 pressure in the foot frame [m]."""
 
-SENSING = record(
+SENSING = record_type(
     started=bool,
     roll=float,
     pitch=float,

@@ -6,11 +6,12 @@ the DCM error and damp the trunk.
 """
 
 from compilation import compiled
+from compilation.record import record_type
 from walking.parameters import CONTROL_PERIOD
 from walking.plane import Array, Point, Vector, clamp, rotate_back
-from walking.records import Record, record
+from walking.records import Record
 
-JOINT = record(
+JOINT = record_type(
     lower=float,
     upper=float,
     lag=float,

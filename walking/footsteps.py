@@ -9,15 +9,16 @@ from math import cos, sin, sqrt
 from typing import NamedTuple
 
 from compilation import compiled
+from compilation.record import record_type
 from walking.command import CLEARANCE, REACH, STEP_LENGTH, STEP_SIDE, STEP_TURN
 from walking.parameters import CONTROL_PERIOD
 from walking.plane import Array, Point, Vector, clamp, from_frame, rotate_back
-from walking.records import Record, record
+from walking.records import Record
 
-FOOTHOLD = record(left=bool, x=float, y=float, yaw=float)
+FOOTHOLD = record_type(left=bool, x=float, y=float, yaw=float)
 """`Foothold`."""
 
-STRIDES = record(right=FOOTHOLD, left=FOOTHOLD)
+STRIDES = record_type(right=FOOTHOLD, left=FOOTHOLD)
 """Landing of either foot in the frame of the other."""
 
 POSITION_TOLERANCE = 0.024  # of equal footholds, per half stance [1]

@@ -6,10 +6,11 @@ first stance. Times are control ticks.
 """
 
 from compilation import compiled
+from compilation.record import record_type
 from walking.footsteps import FOOTHOLD, Foothold, foothold, is_parallel, landing_of, put
 from walking.parameters import CONTROL_PERIOD
 from walking.plane import Point, clamp, from_frame
-from walking.records import Record, record
+from walking.records import Record
 from walking.swing import lift_profile, min_swing_ticks, move_foot, moved, rest_at
 from walking.timing import (
     CLOCK,
@@ -21,7 +22,7 @@ from walking.timing import (
     ticks_of,
 )
 
-GAIT = record(
+GAIT = record_type(
     stepping=bool,
     support=int,
     completed=int,

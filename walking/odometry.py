@@ -12,12 +12,13 @@ from math import cos, pi, sin
 import numpy as np
 
 from compilation import compiled
+from compilation.record import record_type
 from compilation.value import value
 from walking.parameters import CONTROL_PERIOD, OdometryParameters
 from walking.plane import Array, Point, norm
-from walking.records import Record, record
+from walking.records import Record
 
-ODOMETRY = record(
+ODOMETRY = record_type(
     x=float,
     y=float,
     yaw=float,

@@ -18,14 +18,15 @@ from math import exp, inf, log, sqrt
 from typing import NamedTuple
 
 from compilation import compiled
+from compilation.record import record_type
 from walking.parameters import CONTROL_PERIOD
 from walking.pendulum import dcm_of, dcm_reference, hold, ramp_weights, track_reference
 from walking.plane import Point, clamp, rotate
-from walking.records import Record, record
+from walking.records import Record
 from walking.reference import is_single
 from walking.support import Region
 
-ZMP_FUNCTIONS = record(
+ZMP_FUNCTIONS = record_type(
     aimed=bool,
     xi=(float, 2),
     zeta=(float, 2),

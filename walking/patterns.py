@@ -18,6 +18,7 @@ import numpy as np
 from scipy.linalg import solve_discrete_are
 
 from compilation import compiled
+from compilation.record import record_type
 from walking.footsteps import FOOTHOLD, STRIDES
 from walking.gait import GAIT
 from walking.paper_pattern import (
@@ -30,16 +31,16 @@ from walking.paper_pattern import (
 from walking.parameters import CONTROL_PERIOD, PatternParameters
 from walking.pendulum import dcm_of, dcm_reference, step_pendulum, track_reference
 from walking.plane import Point
-from walking.records import DCM, PAPER, PREVIEW, ROBUST, Record, record
+from walking.records import DCM, PAPER, PREVIEW, ROBUST, Record
 from walking.reference import BEST, LIVE, RAMP, STEPS, reference_of
 from walking.support import Region
 from walking.zmp_plan import ZMP_PLAN, admits_knots, advance_knots
 from walking.zmp_plan import remains_feasible as knots_remain_feasible
 
-PREVIEW_SUM = record(gain=float, moment=float)
+PREVIEW_SUM = record_type(gain=float, moment=float)
 """Running sums Σ f_j and Σ j f_j of the gains of preview control [1]."""
 
-PLAN = record(
+PLAN = record_type(
     gait=GAIT,
     landing=FOOTHOLD,
     following=STRIDES,

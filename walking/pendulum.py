@@ -6,12 +6,13 @@ Kajita et al., IROS 2001; divergent component of motion ξ = x + x'/ω: Takenaka
 from math import cosh, exp, sinh, sqrt
 
 from compilation import compiled
+from compilation.record import record_type
 from walking.parameters import CONTROL_PERIOD, GRAVITY
 from walking.plane import Point, Vector
-from walking.records import Record, record
+from walking.records import Record
 from walking.support import Region, clip
 
-PENDULUM = record(x=float, y=float, vx=float, vy=float, zmp_x=float, zmp_y=float)
+PENDULUM = record_type(x=float, y=float, vx=float, vy=float, zmp_x=float, zmp_y=float)
 """Pendulum in the plan frame: position [m], velocity [m/s], ZMP of the last tick [m]."""
 
 

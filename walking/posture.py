@@ -7,14 +7,15 @@ leg would be stretched. The arms swing against the legs.
 from math import asin, atan2, cos, sin, sqrt
 
 from compilation import compiled
+from compilation.record import record_type
 from walking.body.kinematics import FootPose, solve_leg
 from walking.gait import is_airborne, swing_of
 from walking.parameters import CONTROL_PERIOD
 from walking.plane import Array, Point, Vector, clamp, dead_zone, from_frame, rotate_back
-from walking.records import Record, record
+from walking.records import Record
 from walking.swing import REFERENCE
 
-LIMBS = record(
+LIMBS = record_type(
     moved=bool,
     feet=(REFERENCE, 2),
     pelvis=(float, 3),

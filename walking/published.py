@@ -6,6 +6,7 @@ from typing import Any
 import numpy as np
 
 from compilation import compiled
+from compilation.record import record_type
 from walking.body.kinematics import chain_pose, inclined, times, turned
 from walking.command import (
     STRIDE_LIMITS,
@@ -29,7 +30,7 @@ from walking.footsteps import (
 from walking.gait import support_foot, swing_foot
 from walking.odometry import Odometry
 from walking.plane import Array, Frame, Indices, from_frame, rotate
-from walking.records import Record, record
+from walking.records import Record
 from walking.reference import LIVE, STEPS
 from walking.state import Balance, HeadCameraPose, Phase, WalkingState
 from walking.support import CORNERS, polygon
@@ -38,10 +39,10 @@ from walking.timing import duration
 PHASES = (Phase.STANDING, Phase.DOUBLE_SUPPORT, Phase.LEFT_SUPPORT, Phase.RIGHT_SUPPORT)
 STANDING, DOUBLE_SUPPORT, LEFT_SUPPORT, RIGHT_SUPPORT = range(len(PHASES))
 
-PUBLISHED = record(
+PUBLISHED = record_type(
     phase=int,
-    odometry=record(x=float, y=float, yaw=float, covariance=(float, 3, 3)),
-    camera=record(
+    odometry=record_type(x=float, y=float, yaw=float, covariance=(float, 3, 3)),
+    camera=record_type(
         rotation=(float, 3, 3),
         position=(float, 3),
         pan=float,
@@ -59,7 +60,7 @@ PUBLISHED = record(
     pitch=float,
     step_count=int,
     fallen=bool,
-    balance=record(
+    balance=record_type(
         com=(float, 2),
         dcm=(float, 2),
         support=(float, CORNERS, 2),

@@ -15,55 +15,25 @@ the name of an attribute of arrays (``base``, ``size``, ``data`` ...), which wou
 """
 
 from dataclasses import fields
-from math import prod
 from typing import Any
 
 import numpy as np
 
+from compilation.record import record_type
 from walking.parameters import WalkingParameters
 
 Record = Any
 """Record, or array of records; type checkers do not know the fields."""
 
-FieldType = type | np.dtype[Any] | tuple[Any, ...]
-
-_NUMBERS: dict[type, str] = {float: "f8", int: "i8", bool: "?"}
-WORD = 8  # bytes; every field begins at a multiple, which compiled code requires
 GENERATORS = ("dcm", "preview", "paper", "robust")
 """Pattern generators; a record holds the index."""
 DCM, PREVIEW, PAPER, ROBUST = range(len(GENERATORS))
 
 
-def record(**types: FieldType) -> np.dtype[Any]:
-    """Return the type of a record.
-
-    Args:
-        types: type of each field: a number, another record, or (one of these, *shape).
-    """
-    formats: list[Any] = []
-    offsets, offset = [], 0
-    for name, kind in types.items():
-        if hasattr(np.recarray, name):
-            raise TypeError(f"{name}: name of a field; expected no attribute of arrays")
-        one, *shape = kind if isinstance(kind, tuple) else (kind,)
-        number = np.dtype(_NUMBERS[one] if isinstance(one, type) else one)
-        formats.append((number, tuple(shape)) if shape else number)
-        offsets.append(offset)
-        words = -(-number.itemsize * prod(shape) // WORD)
-        offset += WORD * words
-    layout: Any = {
-        "names": list(types),
-        "formats": formats,
-        "offsets": offsets,
-        "itemsize": offset,
-    }
-    return np.dtype((np.record, np.dtype(layout, align=True)))
-
-
 def _section(cls: type) -> np.dtype[Any]:
     """Return the record of a section of the parameters; a choice is an index."""
     kinds = {field.name: field.default for field in fields(cls)}
-    return record(
+    return record_type(
         **{
             name: int if isinstance(value, int | str) else float
             for name, value in kinds.items()

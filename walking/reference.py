@@ -1,12 +1,13 @@
 """Plan of the walk: footholds, and the ZMP reference that they give."""
 
 from compilation import compiled
+from compilation.record import record_type
 from walking.footsteps import FOOTHOLD, Foothold, foothold, is_parallel, landing_of, put
 from walking.gait import scheduled_zmp, stop_ticks, support_foot, swing_foot, zmp_between, zmp_under
 from walking.plane import Point
-from walking.records import Record, record
+from walking.records import Record
 
-RAMP = record(
+RAMP = record_type(
     ticks=int,
     ax=float,
     ay=float,

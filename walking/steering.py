@@ -6,6 +6,7 @@ Velocity commands and command states may follow in any order.
 from math import sqrt
 
 from compilation import compiled
+from compilation.record import record_type
 from walking.command import ACCELERATION, BALANCE, COMBINED_SPEED, SETTLING, SPEED
 from walking.footsteps import (
     STILL,
@@ -17,13 +18,13 @@ from walking.footsteps import (
 )
 from walking.parameters import CONTROL_PERIOD
 from walking.plane import Vector, clamp
-from walking.records import PAPER, Record, record
+from walking.records import PAPER, Record
 from walking.timing import TIMING, cadence, command_timing, duration, put_timing
 
-COMMAND = record(explicit=bool, values=(float, 6))
+COMMAND = record_type(explicit=bool, values=(float, 6))
 """Velocity (vx, vy, wz), or the fields of a command state in order, see `walking.command`."""
 
-STEERING = record(
+STEERING = record_type(
     command=COMMAND,
     state=COMMAND,
     velocity=(float, 3),

@@ -7,12 +7,13 @@ to a landing at rest, replanned in every tick.
 from math import ceil
 
 from compilation import compiled
+from compilation.record import record_type
 from walking.footsteps import Foothold, towards
 from walking.parameters import CONTROL_PERIOD
 from walking.plane import norm
-from walking.records import Record, record
+from walking.records import Record
 
-REFERENCE = record(
+REFERENCE = record_type(
     x=float, y=float, yaw=float, height=float, rate=(float, 3), acceleration=(float, 3)
 )
 """Reference of a foot in the plan frame: position [m], yaw [rad], height above the floor [m]; rates

@@ -5,6 +5,7 @@ feed-forward.
 """
 
 from compilation import compiled
+from compilation.record import record_type
 from walking.admission import ADMISSION, remember
 from walking.balance import PLACING, advance_pendulum, end_capture, exceeds, place_foot, zmp_shift
 from walking.command import BALANCE, FALLEN, SWING_HEIGHT, TIMING
@@ -38,7 +39,7 @@ from walking.parameters import CONTROL_PERIOD
 from walking.pendulum import PENDULUM
 from walking.plane import Array, Point, norm, rotate, rotate_back
 from walking.posture import LIMBS, advance_head, head_joints, pelvis_over, set_posture
-from walking.records import Record, record
+from walking.records import Record
 from walking.reference import LIVE, plan_walk
 from walking.steering import (
     STEERING,
@@ -53,7 +54,7 @@ from walking.swing import rest_at
 from walking.swing_reaction import compensate
 from walking.timing import cadence, put_timing
 
-WALK = record(
+WALK = record_type(
     ticks=int,
     sensing=SENSING,
     steering=STEERING,

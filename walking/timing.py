@@ -7,24 +7,25 @@ support, in which the other foot swings.
 from math import sqrt
 
 from compilation import compiled
+from compilation.record import record_type
 from walking.command import SWING_HEIGHT
 from walking.command import TIMING as TIMING_LIMIT
 from walking.parameters import CONTROL_PERIOD
 from walking.plane import Array, Point, Vector
-from walking.records import Record, record
+from walking.records import Record
 
-TIMING = record(double=int, single=int, swing_height=float)
+TIMING = record_type(double=int, single=int, swing_height=float)
 """Control ticks in double and single support [1], height of the swing foot at mid-swing [m]."""
 
-SHIFT = record(begin=int, end=int, zmp_x=float, zmp_y=float, right_weight=float)
+SHIFT = record_type(begin=int, end=int, zmp_x=float, zmp_y=float, right_weight=float)
 """Shift of ZMP and weight to the support foot: begin and end in ticks since the begin of the
 footstep; ZMP [m] and load fraction of the right foot [1] at its begin."""
 
-SINGLE = record(ticks=int, first=int, last=int, origin=float)
+SINGLE = record_type(ticks=int, first=int, last=int, origin=float)
 """Single support: duration, begin and end of the swing in ticks since its begin, and phase of the
 swing at `first`, which is the present if retimed in the air [1]."""
 
-CLOCK = record(timing=TIMING, shift=SHIFT, single=SINGLE)
+CLOCK = record_type(timing=TIMING, shift=SHIFT, single=SINGLE)
 """Timing of the next footsteps, weight shift and single support of this one."""
 
 Timing = tuple[int, int, float]

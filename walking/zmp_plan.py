@@ -17,22 +17,23 @@ solved in `walking.zmp_solver`. Knots in the same parallelogram are a cell, see 
 """
 
 from compilation import compiled
+from compilation.record import record_type
 from walking.footsteps import FOOTHOLD, equal
 from walking.parameters import CONTROL_PERIOD
 from walking.pendulum import ramp_weights, slide_tick, track_reference
-from walking.records import Record, record
+from walking.records import Record
 from walking.reference import BEST, LIVE
 from walking.support import Region
 from walking.zmp_program import Sole, lay_out
 from walking.zmp_solver import solve
 
-SUPPORT = record(end=int, unloading=FOOTHOLD, loading=FOOTHOLD)
+SUPPORT = record_type(end=int, unloading=FOOTHOLD, loading=FOOTHOLD)
 """Support phase of a plan: its end in ticks from the begin of the plan, and its feet."""
 
 COMPARED = 5
 """Supports of a plan that are compared with a later reference."""
 
-ZMP_PLAN = record(
+ZMP_PLAN = record_type(
     exists=bool,
     age=int,
     dual_x=float,

@@ -6,13 +6,14 @@ boxes do not reach the DCM in the direction of the residual.
 """
 
 from compilation import compiled
+from compilation.record import record_type
 from walking.plane import Array, Point
-from walking.records import Record, record
+from walking.records import Record
 
-KNOT = record(ticks=float, x=float, y=float)
+KNOT = record_type(ticks=float, x=float, y=float)
 """Knot of the planned ZMP: ticks since the previous knot, position [m]."""
 
-CELL = record(
+CELL = record_type(
     x=float,
     y=float,
     ax=float,

@@ -15,13 +15,13 @@ Array = NDArray[np.float64]
 Rows = NDArray[np.record]
 
 DETECTION = record_type(
-    ("position", np.float64, 2),
-    ("covariance", np.float64, (2, 2)),
-    ("radius", np.float64),
-    ("radius_sigma", np.float64),
-    ("by_radius", np.float64, 2),
-    ("distance", np.float64),
-    ("partial", np.bool_),
+    position=(float, 2),
+    covariance=(float, 2, 2),
+    radius=float,
+    radius_sigma=float,
+    by_radius=(float, 2),
+    distance=float,
+    partial=bool,
 )
 """Detection in W.
 

@@ -13,24 +13,24 @@ Array = NDArray[np.float64]
 Rows = NDArray[np.record]
 
 OBJECT = record_type(
-    ("id", np.int64),
-    ("label", np.int64),  # index in the labels of the tracker
-    ("weights", np.float64, 3),
-    ("states", np.float64, (3, imm.SIZE)),
-    ("covariances", np.float64, (3, imm.SIZE, imm.SIZE)),
-    ("best", np.float64, (2, 2)),
-    ("radius", np.float64),
-    ("radius_sigma", np.float64),
-    ("first_time", np.float64),
-    ("last_time", np.float64),
-    ("last_seen", np.float64, 2),
-    ("detection_reach", np.float64),
-    ("motion", np.int64),
-    ("hits", np.int64),
-    ("misses", np.int64),
-    ("unseen_time", np.float64),
-    ("lost", np.bool_),
-    ("existence", np.float64),
+    id=int,
+    label=int,  # index in the labels of the tracker
+    weights=(float, 3),
+    states=(float, 3, imm.SIZE),
+    covariances=(float, 3, imm.SIZE, imm.SIZE),
+    best=(float, 2, 2),
+    radius=float,
+    radius_sigma=float,
+    first_time=float,
+    last_time=float,
+    last_seen=(float, 2),
+    detection_reach=float,
+    motion=int,
+    hits=int,
+    misses=int,
+    unseen_time=float,
+    lost=bool,
+    existence=float,
 )
 """State of one obstacle between frames.
 

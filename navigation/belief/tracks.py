@@ -21,24 +21,24 @@ STATIC, MOVING, UNKNOWN = range(3)
 X, Y, VX, VY, TURN_RATE, WEIGHT = range(6)  # rows of a cloud of particles
 
 TRACK = record_type(
-    ("id", np.int64),
-    ("label", np.int64),  # index in the labels of the set
-    ("position", np.float64, 2),
-    ("velocity", np.float64, 2),
-    ("covariance", np.float64, (4, 4)),
-    ("radius", np.float64),
-    ("radius_sigma", np.float64),
-    ("motion", np.int64),  # index in MOTIONS
-    ("hits", np.int64),
-    ("age", np.float64),
-    ("last_seen", np.float64, 2),
-    ("visible", np.bool_),
-    ("cloud", np.int64),  # index in the clouds of the set, -1 for none
-    ("reach", np.float64),
-    ("turn_rate", np.float64),
-    ("speed", np.float64),
-    ("sigma", np.float64),
-    ("speed_sigma", np.float64),
+    id=int,
+    label=int,  # index in the labels of the set
+    position=(float, 2),
+    velocity=(float, 2),
+    covariance=(float, 4, 4),
+    radius=float,
+    radius_sigma=float,
+    motion=int,  # index in MOTIONS
+    hits=int,
+    age=float,
+    last_seen=(float, 2),
+    visible=bool,
+    cloud=int,  # index in the clouds of the set, -1 for none
+    reach=float,
+    turn_rate=float,
+    speed=float,
+    sigma=float,
+    speed_sigma=float,
 )
 """Record of a track: the fields of `Track`, speed and major standard deviations [m/s, m, m/s]."""
 

@@ -19,14 +19,14 @@ Rows = NDArray[np.record]
 UNSEEN, FREE, OCCUPIED = 0, 1, 2
 
 EYE = record_type(
-    ("position", np.float64, 3),
-    ("rotation", np.float64, (3, 3)),
-    ("heading", np.float64),
-    ("width", np.float64),
-    ("height", np.float64),
-    ("range", np.float64),
-    ("top", np.float64),
-    ("panoramic", np.bool_),
+    position=(float, 3),
+    rotation=(float, 3, 3),
+    heading=float,
+    width=float,
+    height=float,
+    range=float,
+    top=float,
+    panoramic=bool,
 )
 """Camera of one frame in W.
 

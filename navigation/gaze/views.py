@@ -15,13 +15,13 @@ MIN_DEPTH = 0.05  # of a visible point, relative to its distance [1]
 WIDER = 1.002  # margin for rounding, of the squared half width of an image at any tilt [1]
 
 LOOK = record_type(
-    ("x", np.float64),
-    ("y", np.float64),
-    ("weight", np.float64),
-    ("urgency", np.float64),
-    ("rate", np.float64),
-    ("top", np.float64),
-    ("foot_value", np.float64),
+    x=float,
+    y=float,
+    weight=float,
+    urgency=float,
+    rate=float,
+    top=float,
+    foot_value=float,
 )
 """Request of a look.
 

@@ -13,11 +13,11 @@ Array = NDArray[np.float64]
 Rows = NDArray[np.record]
 
 DISC = record_type(
-    ("position", np.float64, 2),
-    ("velocity", np.float64, 2),
-    ("radius", np.float64),
-    ("horizon", np.float64),
-    ("weight", np.float64),
+    position=(float, 2),
+    velocity=(float, 2),
+    radius=float,
+    horizon=float,
+    weight=float,
 )
 """Disc at constant velocity.
 

@@ -6,8 +6,8 @@ import pytest
 from compilation import compiled
 from compilation.record import WORD, record, record_type
 
-PART = record_type(("weight", np.float64), ("used", np.bool_))
-WHOLE = record_type(("flag", np.bool_), ("parts", PART, 2), ("matrix", np.float64, (2, 3)))
+PART = record_type(weight=float, used=bool)
+WHOLE = record_type(flag=bool, parts=(PART, 2), matrix=(float, 2, 3))
 
 
 @compiled
@@ -39,7 +39,7 @@ def test_every_field_begins_at_a_word():
 
 def test_attributes_of_arrays_are_refused_as_names():
     with pytest.raises(TypeError, match="size"):
-        record_type(("size", np.float64))
+        record_type(size=float)
 
 
 @dataclass(frozen=True)

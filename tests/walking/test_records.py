@@ -5,6 +5,7 @@ import pickle
 import numpy as np
 import pytest
 
+from compilation.record import record_type
 from compilation.value import comparable_value, value
 from walking.constants import ROBOT, parameters_record
 from walking.feedforward import JOINT
@@ -13,7 +14,7 @@ from walking.odometry import ODOMETRY
 from walking.parameters import WalkingParameters
 from walking.patterns import PLAN
 from walking.published import PUBLISHED
-from walking.records import GENERATORS, SECTIONS, record
+from walking.records import GENERATORS, SECTIONS
 from walking.tick import WALK
 from walking.zmp_solver import CELL, KNOT
 
@@ -21,7 +22,7 @@ from walking.zmp_solver import CELL, KNOT
 def test_a_field_with_the_name_of_an_attribute_of_arrays_is_refused():
     for name in ("size", "base", "strides", "data"):
         with pytest.raises(TypeError, match=name):
-            record(**{name: float})
+            record_type(**{name: float})
 
 
 def parts(kind):

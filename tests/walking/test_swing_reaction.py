@@ -5,6 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from compilation.record import record_type
 from walking.command import HeadTarget, VelocityCommand
 from walking.engine import WalkingEngine
 from walking.footsteps import FOOTHOLD, Foothold, put
@@ -12,7 +13,6 @@ from walking.gait import GAIT
 from walking.parameters import CONTROL_PERIOD, WalkingParameters
 from walking.patterns import PLAN
 from walking.posture import LIMBS
-from walking.records import record
 from walking.reference import zmp_under
 from walking.swing_reaction import compensate
 
@@ -31,7 +31,7 @@ def foothold(n, stride, *, side=1.0, angle=0.0):
 
 def plan_at(k, stride, *, steps=6, **walk):
     """Plan in tick `k` of a walk that goes on for ever."""
-    plan = np.zeros(1, record(gait=GAIT, steps=(FOOTHOLD, steps), step_count=int))[0]
+    plan = np.zeros(1, record_type(gait=GAIT, steps=(FOOTHOLD, steps), step_count=int))[0]
     gait, n = plan.gait, k // STEP
     clock, support = gait.clock, foothold(n, stride, **walk)
     gait.stepping, gait.support = True, 0 if support.left else 1

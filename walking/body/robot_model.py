@@ -8,15 +8,16 @@ from math import asin, atan2, sqrt
 import numpy as np
 import pinocchio as pin
 
+from compilation.record import record_type
 from walking.body import kinematics
 from walking.body.kinematics import FootPose, Leg
 from walking.body.tree import LEFT_LEG, RIGHT_LEG, Frame, RobotTree, Sole
 from walking.dimension import RobotMeasures
 from walking.parameters import GRAVITY
 from walking.plane import Array, Indices, Point
-from walking.records import Record, record
+from walking.records import Record
 
-NECK = record(
+NECK = record_type(
     movable=bool,
     tilt_first=bool,
     pan_joint=int,

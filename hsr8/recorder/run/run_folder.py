@@ -32,7 +32,6 @@ MANIFEST = "manifest.json"
 METRICS = "metrics.json"
 LOG = "log.rrd"
 VIDEO = "video.mp4"
-CRASH = "crash.txt"
 
 
 class RunFolder:

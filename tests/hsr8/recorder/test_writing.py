@@ -10,6 +10,7 @@ from pathlib import Path
 import pytest
 
 from hsr8.cli.main import entry
+from hsr8.evaluation import crash
 from hsr8.recorder.recorder import Memory, Recorder
 from hsr8.recorder.run import run_folder
 from hsr8.recorder.run.run_folder import RunFolder
@@ -53,7 +54,7 @@ def test_a_full_disk_is_one_line_and_noted_in_the_manifest(tmp_path, capfd, full
     (folder,) = (tmp_path / "quick").iterdir()
     assert json.loads((folder / "manifest.json").read_text())["exit_reason"] == "failed"
     assert not (folder / run_folder.METRICS).exists()
-    assert not (folder / run_folder.CRASH).exists()
+    assert not (folder / crash.FILE).exists()
     assert not list(folder.glob("*.tmp"))
 
 
