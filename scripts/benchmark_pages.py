@@ -71,8 +71,8 @@ class Page:
         lines += [self.filled(page["answer"], runs), "", *self.rows(runs), ""]
         lines += ["**Setup.** " + page["setup"], ""]
         lines += ["**Caveats.**", "", *(f"- {text}" for text in page["caveats"]), ""]
-        lines += [f"Seeds {_seeds(runs)}. {_made(made)} [Data](data/{self.name}.parquet).", ""]
-        lines += ["```bash", f"make benchmarks ONLY={self.name}", "```", ""]
+        made_by = f"[Data](data/{self.name}.parquet): `make benchmarks ONLY={self.name}`."
+        lines += [f"Seeds {_seeds(runs)}. {_made(made)} {made_by}", ""]
         if len(lines) > MAX_LINES:
             raise ValueError(f"{self.file}: {len(lines)} lines; expected at most {MAX_LINES}")
         return "\n".join(lines)
@@ -186,21 +186,18 @@ def index(definition: Definition, pages: Sequence[Page]) -> str:
     """
     stored = {page.name: page.read() for page in pages}
     lines = [MARK, "", "# Results", ""]
-    lines += [definition.index["text"].strip(), "", *_header(["page", "question", "answer"])]
+    lines += [definition.index["text"].strip(), "", *_header(["page", "answer"])]
     for page in pages:
         data = stored[page.name]
         answer = (
             page.filled(page.table["answer"], data[0]) if data else "not measured with this version"
         )
         link = f"[{page.table['title']}]({page.name}.md)" if data else page.table["title"]
-        lines.append(f"| {link} | {page.table['question']} | {answer} |")
+        lines.append(f"| {link} | {answer} |")
     made = [data[1] for data in stored.values() if data]
     if made:
         lines += ["", f"{_made(made[0])} {made[0]['machine']}."]
-    lines += ["", "```bash", "make benchmarks", "```", ""]
-    if len(made) < len(pages):
-        lines += [definition.index["missing"].strip(), ""]
-    return "\n".join(lines)
+    return "\n".join([*lines, ""])
 
 
 def headline(definition: Definition, pages: Sequence[Page]) -> list[str]:

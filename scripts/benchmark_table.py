@@ -11,8 +11,8 @@ Run = dict[str, Any]
 NUMBERS = (
     *("collisions", "falls", "certified_time_s", "time_to_goal_s", "min_clearance_m"),
     *("head_travel_radps", "localization_rmse_m", "heading_rmse_deg", "nees_mean"),
-    *("static_track_rmse_m", "mover_velocity_rmse_mps", "max_tilt_deg", "zmp_min_margin_m"),
-    *("limited_fraction", "real_time_factor", "wall_time_s", "walk_tick_mean_ms"),
+    *("static_track_rmse_m", "mover_velocity_rmse_mps", "max_tilt_deg", "limited_fraction"),
+    *("real_time_factor", "wall_time_s", "walk_tick_mean_ms"),
 )
 """Metrics of a run that the columns use, with these names."""
 
@@ -65,9 +65,9 @@ def _success(runs: Sequence[Run], _: Sequence[Run]) -> str:
 
 
 def proportion(outcomes: Sequence[bool]) -> str:
-    """Return for example ``97 of 100 (91 to 99 %)`` with a 95 % Wilson interval."""
+    """Return for example ``97 of 100 (91–99 %)`` with a 95 % Wilson interval."""
     p = Proportion.counted(sum(outcomes), len(outcomes))
-    return f"{p.count} of {p.n} ({100 * p.low:.0f} to {100 * p.high:.0f} %)"
+    return f"{p.count} of {p.n} ({100 * p.low:.0f}–{100 * p.high:.0f} %)"
 
 
 def _count(test: Callable[[Run], bool]) -> "Column":
@@ -150,7 +150,6 @@ COLUMNS: dict[str, tuple[str, Column]] = {
         "velocity error RMS, median [cm/s]",
         _middle("velocity_error_mps", 1e2, ".1f"),
     ),
-    "zmp_margin": ("min ZMP margin, median [mm]", _middle("zmp_min_margin_m", 1e3, ".1f")),
     "limited": ("limited ticks, median [1]", _middle("limited_fraction")),
     "speed": ("speed over real time, median", _middle("real_time_factor", 1.0, ".1f", " times")),
     "wall": ("wall time, median [s]", _middle("wall_time_s", 1.0, ".1f")),

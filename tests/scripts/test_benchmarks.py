@@ -86,7 +86,7 @@ def test_numbers_of_a_text(definition):
     (cell,) = definition.cells_of("no-fault")
     runs = [row(cell, result(seed, seed % 2 == 0)) for seed in range(10)]
     filled = Page("faults", definition).filled
-    assert filled("{no-fault.success}", runs) == "5 of 10 (24 to 76 %)"
+    assert filled("{no-fault.success}", runs) == "5 of 10 (24–76 %)"
     assert filled("{no-fault/quick.falls}", runs) == "0 of 10"
     assert filled("{no-fault/course.falls}", runs) == "(not measured)"
     assert COLUMNS["spt"][1](runs, runs) == f"{100 * 0.5 * 50 / 60:.0f} %"
