@@ -41,6 +41,9 @@ ROBOT = record_type(
     # foot frame (3) [m] and maximum distance of both [m].
     chains=(float, 2, 7, 15),
     reach=(float, 2, 7),
+    # Joints of the feet, and their frames on the links, see `RobotModel.on_link`.
+    foot_joints=(int, 2),
+    feet=(float, 2, 12),
     # First joint of the ankle in a leg; factor on the stiffness of the legs [1].
     ankle=int,
     stiffening=float,
@@ -111,6 +114,8 @@ def robot_record(robot: RobotModel, parameters: WalkingParameters) -> tuple[Reco
     r.height = p.pattern.pelvis_height - leg.hip[2]
     r.chains = [side.chain for side in robot.legs]
     r.reach = [side.reach for side in robot.legs]
+    r.foot_joints = [foot.joint for foot in robot.tree.feet]
+    r.feet = [robot.on_link(foot) for foot in robot.tree.feet]
     r.ankle, r.stiffening = leg.ankle, robot.stiffening
     r.shoulders, r.shoulder_signs = robot.tree.shoulders or (-1, -1), robot.shoulder_signs()
     robot.neck.describe(r.neck)

@@ -12,7 +12,7 @@ from scipy.linalg import solve_discrete_are
 
 from compilation import compiled
 from compilation.record import record_type
-from walking.body.kinematics import feet_poses
+from walking.body.kinematics import frame_pose, tree_pass
 from walking.body.robot_model import RobotModel
 from walking.odometry import reckon
 from walking.parameters import CONTROL_PERIOD, EstimatorParameters
@@ -77,9 +77,8 @@ def sense(walks: Record, sensors: BodySensors, robot: RobotModel, robots: Record
         robot: model of the robot.
         robots: constants (1,).
     """
-    joints, chains = sensors.joint_position, robot.feet_chains
-    rest = (sensors.orientation, sensors.gyro, sensors.foot_force, *chains, robots)
-    fallen: bool = watch(walks, joints, robot.com(joints), *rest)
+    rest = (sensors.orientation, sensors.gyro, sensors.foot_force, robot.links, robot.order, robots)
+    fallen: bool = watch(walks, sensors.joint_position, *rest)
     return fallen
 
 
@@ -87,12 +86,11 @@ def sense(walks: Record, sensors: BodySensors, robot: RobotModel, robots: Record
 def watch(
     walks: Record,
     angles: Array,
-    com: Array,
     orientation: Array,
     gyro: Array,
     pads: Array,
-    feet_chains: Array,
-    feet_joints: Indices,
+    links: Array,
+    order: Indices,
     robots: Record,
 ) -> bool:
     """Measure the body; return whether the robot is fallen.
@@ -100,26 +98,28 @@ def watch(
     Args:
         walks: state (1,), changed.
         angles: measured angles of all joints (n,) [rad].
-        com: centre of mass for these joints in the base frame (3,) [m].
         orientation: attitude of the IMU, quaternion w-x-y-z (4,).
         gyro: angular velocity of the trunk (3,) [rad/s].
         pads: load on the pads of each sole (2, 4) [N].
-        feet_chains: chains to the feet, see `walking.body.kinematics.feet_poses`.
-        feet_joints: joints of these chains.
+        links: links of the robot, see `walking.body.kinematics.tree_pass`.
+        order: order of its joints.
         robots: constants (1,).
     """
-    walk, legs = walks[0], np.empty((2, 4))
-    feet_poses(feet_chains, feet_joints, angles, legs)
-    measure(walk.sensing, legs, com, orientation, gyro, pads, robots[0])
+    walk, robot, legs, poses = walks[0], robots[0], np.empty((2, 4)), np.empty((links.shape[0], 12))
+    com = tree_pass(links, order, angles, poses)
+    for side in range(2):
+        R, (x, y, z) = frame_pose(poses[robot.foot_joints[side]], robot.feet[side])
+        legs[side, 0], legs[side, 1], legs[side, 2], legs[side, 3] = x, y, z, atan2(R[3], R[0])
+    measure(walk.sensing, legs, com, orientation, gyro, pads, robot)
     walk.ticks += 1
-    return is_fallen(walk.sensing, robots[0])
+    return is_fallen(walk.sensing, robot)
 
 
 @compiled
 def measure(
     sensing: Record,
     legs: Array,
-    com: Array,
+    com: Vector,
     orientation: Array,
     gyro: Array,
     pads: Array,
@@ -130,7 +130,7 @@ def measure(
     Args:
         sensing: changed.
         legs: x, y, z [m] and yaw [rad] of the left and the right foot in the base frame (2, 4).
-        com: centre of mass for the measured joints in the base frame (3,) [m].
+        com: centre of mass for the measured joints in the base frame [m].
         orientation: attitude of the IMU, quaternion w-x-y-z (4,).
         gyro: angular velocity (3,) [rad/s].
         pads: load on front left, front right, back left and back right of each sole (2, 4) [N].
@@ -147,7 +147,7 @@ def measure(
         foot.x, foot.y, foot.z = level(ankle, tilt)
         foot.yaw = legs[side, 3]
         foot.load, foot.pressure_x, foot.pressure_y = load_of(pads[side], robot.sole)
-    sensing.com[0], sensing.com[1], sensing.com[2] = level((com[0], com[1], com[2]), tilt)
+    sensing.com[0], sensing.com[1], sensing.com[2] = level(com, tilt)
     left = max(0.0, sensing.feet[0].load - robot.light_load)
     right = max(0.0, sensing.feet[1].load - robot.light_load)
     both = left + right

@@ -4,10 +4,13 @@
 feed-forward.
 """
 
+import numpy as np
+
 from compilation import compiled
 from compilation.record import record_type
 from walking.admission import ADMISSION, remember
 from walking.balance import PLACING, advance_pendulum, end_capture, exceeds, place_foot, zmp_shift
+from walking.body.kinematics import tree_pass
 from walking.command import BALANCE, FALLEN, SWING_HEIGHT, TIMING
 from walking.corrections import (
     CORRECTIONS,
@@ -37,7 +40,7 @@ from walking.gait import (
 )
 from walking.parameters import CONTROL_PERIOD
 from walking.pendulum import PENDULUM
-from walking.plane import Array, Point, norm, rotate, rotate_back
+from walking.plane import Array, Indices, Point, norm, rotate, rotate_back
 from walking.posture import LIMBS, advance_head, head_joints, pelvis_over, set_posture
 from walking.records import Record
 from walking.reference import LIVE, plan_walk
@@ -127,6 +130,8 @@ def begin(
     joints: Record,
     robots: Record,
     sums: Record,
+    links: Array,
+    order: Indices,
     q: Array,
     v: Array,
     a: Array,
@@ -146,6 +151,8 @@ def begin(
         joints: joints of the robot (n,), changed.
         robots: constants (1,).
         sums: sums of the gains of preview control.
+        links: links of the robot, see `walking.body.kinematics.tree_pass`.
+        order: order of its joints.
         q: position of the dynamic model, set.
         v: velocity of the dynamic model, set.
         a: acceleration of the dynamic model, set.
@@ -188,6 +195,8 @@ def begin(
         walk.bound |= SWING_HEIGHT
     end_capture(walk, live)
     _move_body(walk, live, joints, angles, head, robot)
+    poses = np.empty((links.shape[0], 12))
+    walk.limbs.com[0], walk.limbs.com[1], _ = tree_pass(links, order, angles, poses)
     acceleration = walk.limbs.offset_acceleration
     w2 = robot.omega * robot.omega
     moved = (
@@ -205,7 +214,6 @@ def finish(
     joints: Record,
     robots: Record,
     forces: Array,
-    com: Array,
     gyro: Array,
     angles: Array,
     measured: Array,
@@ -219,7 +227,6 @@ def finish(
         joints: joints of the robot (n,), changed.
         robots: constants (1,).
         forces: generalised forces of the motion without contact, those of the base first.
-        com: centre of mass of the posture in the base frame (3,) [m].
         gyro: angular velocity of the trunk (3,) [rad/s].
         angles: planned angles of all joints (n,) [rad].
         measured: measured angles of all joints (n,) [rad].
@@ -227,7 +234,6 @@ def finish(
     """
     walk, robot = walks[0], robots[0]
     gait = plans[LIVE].gait
-    walk.limbs.com[0], walk.limbs.com[1] = com[0], com[1]
     left, right = foothold(gait.footholds[0]), foothold(gait.footholds[1])
     zmps = (zmp_under(left, robot), zmp_under(right, robot))
     set_offsets(joints, walk, forces, gyro, zmps, robot)

@@ -7,7 +7,6 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from walking.body.kinematics import feet_poses
 from walking.estimation import (
     SENSING,
     compare_with_plan,
@@ -161,8 +160,10 @@ class Body:
         self.model, self.sensors = model, sensors
         self.walk = np.zeros(1, WALK)[0]
         self.sensing, self.limbs = self.walk.sensing, self.walk.limbs
-        self.com, self.legs = robot.com(sensors.joint_position).copy(), np.empty((2, 4))
-        feet_poses(*robot.feet_chains, sensors.joint_position, self.legs)
+        self.com, self.legs = tuple(robot.com(sensors.joint_position).tolist()), np.empty((2, 4))
+        for row, foot in zip(self.legs, robot.tree.feet, strict=True):
+            rotation, row[:3] = robot.frame_pose(foot, sensors.joint_position)
+            row[3] = np.arctan2(rotation[1, 0], rotation[0, 0])
         self.measure()
         for side, foot in enumerate(self.limbs.feet):
             seen = self.sensing.feet[side]

@@ -72,6 +72,12 @@ def about(x: float, y: float, z: float, angle: float) -> Matrix:
 
 
 @compiled
+def rotation_of(row: Array) -> Matrix:
+    """Return the rotation at the begin of a row."""
+    return row[0], row[1], row[2], row[3], row[4], row[5], row[6], row[7], row[8]
+
+
+@compiled
 def inclined(roll: float, pitch: float) -> Matrix:
     """Return the attitude R_RB of a trunk with roll and pitch [rad]."""
     cr, sr, cp, sp = cos(roll), sin(roll), cos(pitch), sin(pitch)
@@ -94,8 +100,7 @@ def chain_pose(chain: Array, angles: Array, axes: Array, origins: Array) -> tupl
         row = chain[k]
         dx, dy, dz = turned(R, row[MOVE], row[MOVE + 1], row[MOVE + 2])
         px, py, pz = px + dx, py + dy, pz + dz
-        fixed = (row[0], row[1], row[2], row[3], row[4], row[5], row[6], row[7], row[8])
-        R = times(R, fixed)
+        R = times(R, rotation_of(row))
         if k < angles.shape[0]:
             x, y, z = row[AXIS], row[AXIS + 1], row[AXIS + 2]
             axes[k, 0], axes[k, 1], axes[k, 2] = turned(R, x, y, z)
@@ -105,23 +110,48 @@ def chain_pose(chain: Array, angles: Array, axes: Array, origins: Array) -> tupl
 
 
 @compiled
-def feet_poses(chains: Array, moving: Indices, joints: Array, feet: Array) -> None:
-    """Set x, y, z [m] and yaw [rad] of both feet in the base frame.
+def tree_pass(links: Array, order: Indices, angles: Array, poses: Array) -> Vector:
+    """Set the poses of all links and return the centre of mass [m], both in the base frame.
 
     Args:
-        chains: chains from the base to the left and the right foot (2, k + 1, 15).
-        moving: indices of their joints: those of a leg, and of a waist above it (2, k).
-        joints: joint angles (n,) [rad].
-        feet: set (2, 4).
+        links: see `RobotTree.links` (n + 1, 10).
+        order: joints and their parents, parents first (n, 2).
+        angles: joint angles (n,) [rad].
+        poses: rotation, row by row, and position of each link, set; the last is the base
+            (n + 1, 12) [m].
     """
-    k = moving.shape[1]
-    axes, origins, angles = np.empty((k, 3)), np.empty((k, 3)), np.empty(k)
-    for side in range(2):
-        for joint in range(k):
-            angles[joint] = joints[moving[side, joint]]
-        R, p = chain_pose(chains[side], angles, axes, origins)
-        feet[side, 0], feet[side, 1], feet[side, 2] = p
-        feet[side, 3] = np.arctan2(R[3], R[0])
+    last = links.shape[0] - 1
+    mass, mx, my, mz = links[last, 6], links[last, 7], links[last, 8], links[last, 9]
+    for k in range(12):
+        poses[last, k] = 1.0 if k in (0, 4, 8) else 0.0
+    for k in range(last):
+        joint, parent = order[k, 0], order[k, 1]
+        link, pose, before = links[joint], poses[joint], poses[parent]
+        P = rotation_of(before)
+        dx, dy, dz = turned(P, link[0], link[1], link[2])
+        x, y, z = before[MOVE] + dx, before[MOVE + 1] + dy, before[MOVE + 2] + dz
+        R = times(P, about(link[3], link[4], link[5], angles[joint]))
+        for i in range(9):
+            pose[i] = R[i]
+        pose[MOVE], pose[MOVE + 1], pose[MOVE + 2] = x, y, z
+        m, (cx, cy, cz) = link[6], turned(R, link[7], link[8], link[9])
+        mass += m
+        mx, my, mz = mx + m * x + cx, my + m * y + cy, mz + m * z + cz
+    return mx / mass, my / mass, mz / mass
+
+
+@compiled
+def frame_pose(link: Array, frame: Array) -> tuple[Matrix, Vector]:
+    """Return rotation and position [m] in the base frame of a frame on a link.
+
+    Args:
+        link: pose of the link, see `tree_pass` (12,).
+        frame: rotation, row by row, and position of the frame on it (12,) [m].
+    """
+    R = rotation_of(link)
+    dx, dy, dz = turned(R, frame[MOVE], frame[MOVE + 1], frame[MOVE + 2])
+    position = (link[MOVE] + dx, link[MOVE + 1] + dy, link[MOVE + 2] + dz)
+    return times(R, rotation_of(frame)), position
 
 
 class FootPose(NamedTuple):

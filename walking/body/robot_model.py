@@ -107,39 +107,20 @@ class Dynamics:
 
     Args:
         model: model of Pinocchio.
-        in_q: indices of the joints in its position (n,).
 
     Attributes:
         q, v, a: position, velocity and acceleration of level base and joints in the order of
             Pinocchio, input of `forces`.
     """
 
-    def __init__(self, model: pin.Model, in_q: Indices) -> None:
-        self._model, self._data, self._in_q = model, model.createData(), in_q
-        self._measured = pin.neutral(model)
+    def __init__(self, model: pin.Model) -> None:
+        self._model, self._data = model, model.createData()
         self.q, self.v, self.a = pin.neutral(model), np.zeros(model.nv), np.zeros(model.nv)
-
-    def com(self, joint_position: Array) -> Array:
-        """Return the centre of mass in the base frame (3,) [m] for joint angles (n,) [rad]."""
-        self._measured[self._in_q] = joint_position
-        com: Array = pin.centerOfMass(self._model, self._data, self._measured, False)
-        return com
 
     def forces(self) -> Array:
         """Return the generalised forces of the motion without contact, those of the base first."""
         forces: Array = pin.rnea(self._model, self._data, self.q, self.v, self.a)
         return forces
-
-    def moved_com(self) -> Array:
-        """Return the centre of mass in the base frame (3,) [m] in the last call of `forces`."""
-        com: Array = pin.centerOfMass(self._model, self._data, pin.POSITION, False)
-        return com
-
-    def joint_pose(self, name: str, joint_position: Array) -> pin.SE3:
-        """Return the pose of a joint in the base frame for joint angles (n,) [rad]."""
-        self._measured[self._in_q] = joint_position
-        pin.forwardKinematics(self._model, self._data, self._measured)
-        return self._data.oMi[self._model.getJointId(name)]
 
 
 class RobotModel:
@@ -153,8 +134,7 @@ class RobotModel:
         names: names of the joints (n,).
         mass: total mass [kg].
         legs: left and right leg.
-        feet_chains: chains from the base to the feet, with a waist above the legs, and their
-            joints, see `kinematics.feet_poses`.
+        links, order: links and their order, see `RobotTree.links` (n + 1, 10), (n, 2).
         neck: pan and tilt of the camera.
         sole: rectangle of each sole.
         support: part of it that the ankles can press on the floor.
@@ -171,17 +151,15 @@ class RobotModel:
     def __init__(self, tree: RobotTree) -> None:
         self.tree = tree
         self.names = tree.names
-        self._model = _dynamic_model(tree)
+        self._model = dynamic_model(tree)
         ids = [self._model.getJointId(name) for name in tree.names]
         self.indices = (
             np.array([self._model.joints[i].idx_q for i in ids]),
             np.array([self._model.joints[i].idx_v for i in ids]),
         )
-        self.dynamics = Dynamics(self._model, self.indices[0])
+        self.dynamics = Dynamics(self._model)
         self.mass = float(tree.masses.sum())
-        paths = [tree.path(foot.joint) for foot in tree.feet]
-        ends = zip(paths, tree.feet, strict=True)
-        self.feet_chains = np.array([tree.chain(p, foot) for p, foot in ends]), np.array(paths)
+        self.links, self.order, self._rotations = tree.links()
         self.legs = (
             Leg.of(tree.chain(list(range(6)), tree.feet[0]), tree.posture[LEFT_LEG]),
             Leg.of(tree.chain(list(range(6, 12)), tree.feet[1]), tree.posture[RIGHT_LEG]),
@@ -234,17 +212,18 @@ class RobotModel:
         return factor
 
     def with_own_buffers(self) -> RobotModel:
-        """Return the same robot with separate buffers for its kinematics and dynamics.
+        """Return the same robot with separate buffers for its dynamics.
 
         Several engines of one robot then run in turn or in threads without affecting each other.
         """
         robot = copy(self)
-        robot.dynamics = Dynamics(self._model, self.indices[0])
+        robot.dynamics = Dynamics(self._model)
         return robot
 
     def com(self, joint_position: Array) -> Array:
         """Return the centre of mass in the base frame (3,) [m] for joint angles (n,) [rad]."""
-        return self.dynamics.com(joint_position)
+        poses = np.empty((len(self.links), 12))
+        return np.array(kinematics.tree_pass(self.links, self.order, joint_position, poses))
 
     def inverse_dynamics(
         self,
@@ -313,12 +292,17 @@ class RobotModel:
         )
         return RobotMeasures(*(float(f"{measure:.6g}") for measure in exact))
 
+    def on_link(self, frame: Frame) -> Array:
+        """Return rotation, row by row, and position of a frame on its link (12,) [m]."""
+        rotation = self._rotations[frame.joint]
+        return np.array([*(rotation @ frame.rotation).ravel(), *(rotation @ frame.position)])
+
     def frame_pose(self, frame: Frame, joint_position: Array) -> tuple[Array, Array]:
         """Return rotation (3, 3) and position (3,) [m] of a frame in the base frame."""
-        if frame.joint < 0:
-            return frame.rotation, frame.position
-        joint = self.dynamics.joint_pose(self.names[frame.joint], joint_position)
-        return joint.rotation @ frame.rotation, joint.act(frame.position)
+        poses = np.empty((len(self.links), 12))
+        kinematics.tree_pass(self.links, self.order, joint_position, poses)
+        rotation, position = kinematics.frame_pose(poses[frame.joint], self.on_link(frame))
+        return np.reshape(rotation, (3, 3)), np.array(position)
 
     def leg_groups(self) -> dict[str, tuple[int, ...]]:
         """Return the indices of hip, knee and ankle joints within a leg, for people."""
@@ -340,7 +324,7 @@ class RobotModel:
         return axis
 
 
-def _dynamic_model(tree: RobotTree) -> pin.Model:
+def dynamic_model(tree: RobotTree) -> pin.Model:
     """Return the Pinocchio model of a robot with a free base."""
     model = pin.Model()
     root = model.addJoint(0, pin.JointModelFreeFlyer(), pin.SE3.Identity(), BASE)

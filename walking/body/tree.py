@@ -162,6 +162,31 @@ class RobotTree:
         rows.append([*(rotation @ end.rotation).ravel(), *position, 0.0, 0.0, 0.0])
         return np.array(rows)
 
+    def links(self) -> tuple[Array, Indices, Array]:
+        """Return the links as arrays, see `kinematics.tree_pass`.
+
+        Their frames are at the joints and parallel to the base with all joints at zero.
+
+        Returns:
+            position of each joint in the frame of its parent [m], its axis, mass [kg] and first
+            moment [kg m] of its link in its frame; the last row is the base (n + 1, 10). Joints and
+            their parents, parents first, n for the base (n, 2). Rotations of the joint frames of
+            this tree in the frames of the links (n + 1, 3, 3).
+        """
+        n = len(self.names)
+        links, rotations = np.zeros((n + 1, 10)), np.zeros((n + 1, 3, 3))
+        rotations[n] = np.eye(3)
+        joints = sorted(range(n), key=lambda joint: len(self.path(joint)))
+        order = np.column_stack([joints, self.parents[joints] % (n + 1)])
+        for joint, parent in order:
+            rotations[joint] = rotations[parent] @ self.rotations[joint]
+            links[joint, :3] = rotations[parent] @ self.positions[joint]
+            links[joint, 3:6] = rotations[joint] @ self.axes[joint]
+        for body, mass in zip(self.bodies, self.masses, strict=True):
+            links[body.joint, 6] += mass
+            links[body.joint, 7:] += mass * (rotations[body.joint] @ body.position)
+        return links, order, rotations
+
 
 def turn(axis: Array, angle: float) -> Array:
     """Return the rotation (3, 3) about a unit axis (3,) by an angle [rad]."""

@@ -1,8 +1,19 @@
 """Dynamics, ready posture and measures of a robot."""
 
-import numpy as np
-import pytest
+from dataclasses import replace
 
+import numpy as np
+import pinocchio as pin
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+from scipy.spatial.transform import Rotation
+
+from hsr8.robots.description import read_description
+from hsr8.robots.loaded import load_robot
+from hsr8.robots.locate import find_description, installed_model, robot_names
+from walking.body.kinematics import tree_pass
+from walking.body.robot_model import dynamic_model
 from walking.body.tree import LEFT_LEG, RIGHT_LEG
 
 
@@ -30,7 +41,47 @@ def test_torque_at_rest_is_the_gradient_of_the_potential_energy(robot):
         assert torque[joint] == pytest.approx(robot.mass * 9.81 * rise / 2e-6, abs=1e-5)
 
 
-def test_the_centre_of_mass_is_that_of_the_motion(robot):
-    q = robot.ready + 0.1 * np.sin(np.arange(float(len(robot.names))))
-    robot.inverse_dynamics(q, 0.5 * q, q, (0.3, 0.1))
-    assert robot.dynamics.moved_com() == pytest.approx(robot.com(q), abs=1e-12)
+def assert_same_as_pinocchio(tree, seed):
+    """Compare centre of mass and frames of a random posture with Pinocchio."""
+    q = np.random.default_rng(seed).uniform(-np.pi, np.pi, len(tree.names))
+    model = dynamic_model(tree)
+    data, position = model.createData(), pin.neutral(model)
+    position[[model.joints[model.getJointId(name)].idx_q for name in tree.names]] = q
+    links, order, rotations = tree.links()
+    poses = np.empty((len(links), 12))
+    com = tree_pass(links, order, q, poses)
+    expected = pin.centerOfMass(model, data, position)
+    np.testing.assert_allclose(com, expected, rtol=0.0, atol=1e-12)
+    for joint, name in enumerate(tree.names):
+        expected = data.oMi[model.getJointId(name)]
+        rotation = poses[joint, :9].reshape(3, 3) @ rotations[joint]
+        np.testing.assert_allclose(rotation, expected.rotation, rtol=0.0, atol=1e-12)
+        np.testing.assert_allclose(poses[joint, 9:], expected.translation, rtol=0.0, atol=1e-12)
+
+
+@pytest.mark.parametrize("name", robot_names())
+def test_the_centre_of_mass_is_that_of_pinocchio(name):
+    file = find_description(name)
+    if installed_model(read_description(file), file.parent) is None:
+        pytest.skip("the model is not installed")
+    for seed in range(20):
+        assert_same_as_pinocchio(load_robot(name).model.tree, seed)
+
+
+@given(st.integers(0, 10**6))
+def test_it_is_that_of_pinocchio_for_any_tree(robot, seed):
+    """Joints in any order: a waist may follow the legs that it carries."""
+    rng, n = np.random.default_rng(seed), len(robot.names)
+    names = rng.permutation(n)
+    parents = np.full(n, -1)
+    for k in range(1, n):
+        parents[names[k]] = rng.choice([-1, *names[:k]])
+    axes = rng.normal(size=(n, 3))
+    tree = replace(
+        robot.tree,
+        parents=parents,
+        axes=axes / np.linalg.norm(axes, axis=1)[:, None],
+        rotations=Rotation.random(n, rng=rng).as_matrix(),
+        positions=rng.uniform(-0.3, 0.3, (n, 3)),
+    )
+    assert_same_as_pinocchio(tree, seed)
