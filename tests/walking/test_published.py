@@ -82,11 +82,11 @@ def published(model, strides_of, make_walk):
     sensing.x, sensing.y, sensing.vx, sensing.vy = 0.001, -0.002, 0.01, 0.02
     placing.moved_x, placing.moved_y = 0.03, -0.01
     walk.unloading, walk.loading = plan.gait.footholds[1], plan.gait.footholds[0]
-    published = np.zeros(1, PUBLISHED)  # a state keeps its numbers when the next one is published
 
     def state(x=0.0, y=0.0, yaw=0.0):
         odometry = np.zeros(1, ODOMETRY)[0]
         odometry.x, odometry.y, odometry.yaw = x, y, yaw
+        published = np.zeros(1, PUBLISHED)
         publish_plan(published[0], walk, plan, odometry, model.robot)
         return walking_state(published, VelocityCommand(0.2))
 
