@@ -6,6 +6,7 @@ from dataclasses import replace
 
 from hsr8.cli.command_line import command_words, option_tables, settings
 from hsr8.cli.options import Run
+from hsr8.plugin_file import inspect_plugins
 from hsr8.scenario.loader import load_scenario
 
 
@@ -18,6 +19,7 @@ def main(options: Run) -> int:
         options=option_tables(options),
         trust=options.trust or None,
     )
+    inspect_plugins(scenario.plugin)
     if not options.quiet:
         print(f"{scenario.name}, seed {scenario.seed}", file=sys.stderr, flush=True)
     from hsr8.cli.recorded_run import start  # noqa: PLC0415  takes seconds

@@ -39,6 +39,19 @@ def test_help_imports_nothing_heavy():
         assert command in done.stdout
 
 
+def test_a_missing_plugin_is_refused_before_anything_is_compiled():
+    words = ["run", "quick", "--set", "plugin.planner=none.py:Mine"]
+    script = (
+        f"import sys; from hsr8.cli.main import entry; code = entry({words}); "
+        "print('mujoco' in sys.modules, code)"
+    )
+    done = subprocess.run(
+        [sys.executable, "-c", script], capture_output=True, text=True, check=True, timeout=60
+    )
+    assert done.stdout.strip() == "False 2"
+    assert "none.py:Mine: cannot read none.py" in done.stderr
+
+
 def test_no_arguments_show_the_help(capsys):
     assert entry([]) == 0
     assert "First steps" in capsys.readouterr().out
