@@ -28,7 +28,6 @@ from hsr8.loop import Simulation
 from hsr8.recorder.run.run_folder import VIDEO, RunFolder, new_run_folder
 from hsr8.recorder.run.run_reader import open_run
 from hsr8.render.viewer import LiveView, live_view
-from hsr8.rerun_log.run_log import write_log
 from hsr8.scenario.schema import Scenario
 
 BAG = "bag"  # folder in that of the run
@@ -110,6 +109,9 @@ def _write_outputs(options: Run, path: Path) -> list[Hsr8Error]:
 
 
 def _write_log(path: Path, _: Run) -> None:
+    # Imported late: runs without a log start 0.2 s earlier.
+    from hsr8.rerun_log.run_log import write_log  # noqa: PLC0415
+
     write_log(open_run(path))
 
 

@@ -18,15 +18,18 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from math import ceil, inf
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.interpolate import CubicHermiteSpline
 
 from hsr8.scenario.schema import Scenario
 from hsr8.scenario.section import Point
 from hsr8.scenario.track_file import RecordedTrack, recorded_tracks
 from hsr8.scenario.world import TrackMover
+
+if TYPE_CHECKING:
+    from scipy.interpolate import CubicHermiteSpline
 
 Array = NDArray[np.float64]
 
@@ -63,8 +66,11 @@ class Track:
     period: float = inf
 
     @cached_property
-    def curve(self) -> CubicHermiteSpline:
+    def curve(self) -> "CubicHermiteSpline":
         """Position by time of the recording."""
+        # Imported late: runs without recorded movers start 0.1 s earlier.
+        from scipy.interpolate import CubicHermiteSpline  # noqa: PLC0415
+
         rates = rates_at_samples(np.array(self.times), np.array(self.points))
         return CubicHermiteSpline(self.times, self.points, rates)
 
@@ -202,7 +208,7 @@ def rates_at_samples(times: Array, points: Array) -> Array:
     return np.concatenate([means[:1], middle, means[-1:]])
 
 
-def speed_bounds(curve: CubicHermiteSpline) -> Array:
+def speed_bounds(curve: "CubicHermiteSpline") -> Array:
     """Return upper bounds of the speed between the samples of a curve (n - 1,) [m/s].
 
     The velocity is a quadratic polynomial of time. In each of `SUBDIVISIONS` parts it is in the

@@ -52,6 +52,18 @@ def test_a_missing_plugin_is_refused_before_anything_is_compiled():
     assert "none.py:Mine: cannot read none.py" in done.stderr
 
 
+def test_a_run_without_log_and_recorded_movers_imports_no_library_for_them(tmp_path):
+    words = ["run", "quick", "--duration", "0.1", "--quiet", "--camera", "analytic"]
+    script = (
+        f"import sys; from hsr8.cli.main import entry; entry({[*words, '--out', str(tmp_path)]}); "
+        "print([m for m in ('rerun', 'scipy.interpolate', 'matplotlib') if m in sys.modules])"
+    )
+    done = subprocess.run(
+        [sys.executable, "-c", script], capture_output=True, text=True, check=True, timeout=120
+    )
+    assert done.stdout.strip() == "[]"
+
+
 def test_no_arguments_show_the_help(capsys):
     assert entry([]) == 0
     assert "First steps" in capsys.readouterr().out
