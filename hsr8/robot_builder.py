@@ -61,7 +61,7 @@ def field_of_view(scenario: Scenario) -> tuple[float, float]:
 def camera_model(scenario: Scenario) -> CameraModel:
     """Return the constants of the robot's camera for navigation."""
     humanoid, camera = load_robot(scenario.robot.model), scenario.camera
-    body = humanoid.model.with_own_buffers()
+    body = humanoid.model
     height = humanoid.height + float(body.frame_pose(body.tree.camera, body.ready)[1][2])
     return CameraModel(
         *field_of_view(scenario),

@@ -41,9 +41,10 @@ ROBOT = record_type(
     # foot frame (3) [m] and maximum distance of both [m].
     chains=(float, 2, 7, 15),
     reach=(float, 2, 7),
-    # Joints of the feet, and their frames on the links, see `RobotModel.on_link`.
-    foot_joints=(int, 2),
-    feet=(float, 2, 12),
+    # Joints that carry left foot, right foot and camera, and their poses on the links of these, see
+    # `RobotModel.on_link`.
+    carriers=(int, 3),
+    frames=(float, 3, 12),
     # First joint of the ankle in a leg; factor on the stiffness of the legs [1].
     ankle=int,
     stiffening=float,
@@ -114,8 +115,9 @@ def robot_record(robot: RobotModel, parameters: WalkingParameters) -> tuple[Reco
     r.height = p.pattern.pelvis_height - leg.hip[2]
     r.chains = [side.chain for side in robot.legs]
     r.reach = [side.reach for side in robot.legs]
-    r.foot_joints = [foot.joint for foot in robot.tree.feet]
-    r.feet = [robot.on_link(foot) for foot in robot.tree.feet]
+    frames = (*robot.tree.feet, robot.tree.camera)
+    r.carriers = [frame.joint for frame in frames]
+    r.frames = [robot.on_link(frame) for frame in frames]
     r.ankle, r.stiffening = leg.ankle, robot.stiffening
     r.shoulders, r.shoulder_signs = robot.tree.shoulders or (-1, -1), robot.shoulder_signs()
     robot.neck.describe(r.neck)

@@ -171,10 +171,8 @@ class WalkingEngine:
             self._plans,
             self._odometry.records,
             self._robots,
-            sensors.joint_position,
             sensors.joint_velocity,
             sensors.gyro,
-            *self._robot.neck.chain,
         )
         return walking_state(published, self._command)
 

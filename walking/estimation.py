@@ -12,7 +12,7 @@ from scipy.linalg import solve_discrete_are
 
 from compilation import compiled
 from compilation.record import record_type
-from walking.body.kinematics import frame_pose, tree_pass
+from walking.body.kinematics import MOVE, frame_pose, tree_pass
 from walking.body.robot_model import RobotModel
 from walking.odometry import reckon
 from walking.parameters import CONTROL_PERIOD, EstimatorParameters
@@ -32,6 +32,7 @@ SENSING = record_type(
     pitch=float,
     heading=float,
     turn_rate=float,
+    frames=(float, 3, 12),
     feet=(FOOT, 2),
     com=(float, 3),
     right_load=float,
@@ -47,10 +48,14 @@ SENSING = record_type(
     pressure_x=float,
     pressure_y=float,
 )
-"""Measured body: filtered roll and pitch, heading of the IMU [rad]; yaw rate [rad/s]; feet; centre
-of mass [m]; load fraction of the right foot, 0.5 in the air [1]. Error of the CoM, x, y [m], vx, vy
+"""Measured body: filtered roll and pitch, heading of the IMU [rad]; yaw rate [rad/s]; rotation, row
+by row, and position of left foot, right foot and camera in the base frame [m]; feet; centre of mass
+[m]; load fraction of the right foot, 0.5 in the air [1]. Error of the CoM, x, y [m], vx, vy
 [m/s]; planned load fraction of the right foot, once known; error of the DCM in the plan frame [m],
 of the centre of pressure forward and left [m]."""
+
+CAMERA_FRAME = 2
+"""Index of the camera in `SENSING.frames`; the feet have 0 and 1."""
 
 
 def steady_gains(omega: float, parameters: EstimatorParameters) -> tuple[float, float]:
@@ -105,12 +110,11 @@ def watch(
         order: order of its joints.
         robots: constants (1,).
     """
-    walk, robot, legs, poses = walks[0], robots[0], np.empty((2, 4)), np.empty((links.shape[0], 12))
+    walk, robot, poses = walks[0], robots[0], np.empty((links.shape[0], 12))
     com = tree_pass(links, order, angles, poses)
-    for side in range(2):
-        R, (x, y, z) = frame_pose(poses[robot.foot_joints[side]], robot.feet[side])
-        legs[side, 0], legs[side, 1], legs[side, 2], legs[side, 3] = x, y, z, atan2(R[3], R[0])
-    measure(walk.sensing, legs, com, orientation, gyro, pads, robot)
+    for k in range(3):
+        frame_pose(walk.sensing.frames[k], poses[robot.carriers[k]], robot.frames[k])
+    measure(walk.sensing, com, orientation, gyro, pads, robot)
     walk.ticks += 1
     return is_fallen(walk.sensing, robot)
 
@@ -118,18 +122,16 @@ def watch(
 @compiled
 def measure(
     sensing: Record,
-    legs: Array,
     com: Vector,
     orientation: Array,
     gyro: Array,
     pads: Array,
     robot: Record,
 ) -> None:
-    """Measure the body and filter its tilt.
+    """Measure the body, of which the frames are known, and filter its tilt.
 
     Args:
         sensing: changed.
-        legs: x, y, z [m] and yaw [rad] of the left and the right foot in the base frame (2, 4).
         com: centre of mass for the measured joints in the base frame [m].
         orientation: attitude of the IMU, quaternion w-x-y-z (4,).
         gyro: angular velocity (3,) [rad/s].
@@ -142,16 +144,23 @@ def measure(
     sensing.turn_rate = gyro[2]
     tilt = (sensing.roll, sensing.pitch)
     for side in range(2):
-        foot = sensing.feet[side]
-        ankle = (legs[side, 0], legs[side, 1], legs[side, 2])
-        foot.x, foot.y, foot.z = level(ankle, tilt)
-        foot.yaw = legs[side, 3]
+        foot, frame = sensing.feet[side], sensing.frames[side]
+        foot.x, foot.y, foot.z = level((frame[MOVE], frame[MOVE + 1], frame[MOVE + 2]), tilt)
+        foot.yaw = atan2(frame[3], frame[0])
         foot.load, foot.pressure_x, foot.pressure_y = load_of(pads[side], robot.sole)
     sensing.com[0], sensing.com[1], sensing.com[2] = level(com, tilt)
     left = max(0.0, sensing.feet[0].load - robot.light_load)
     right = max(0.0, sensing.feet[1].load - robot.light_load)
     both = left + right
     sensing.right_load = right / both if both > 0.0 else 0.5
+
+
+@compiled
+def base_height(sensing: Record) -> float:
+    """Return the height of the base above the loaded feet [m]."""
+    load, left, right = sensing.right_load, sensing.feet[0], sensing.feet[1]
+    height: float = -(1.0 - load) * left.z - load * right.z
+    return height
 
 
 @compiled

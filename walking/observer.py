@@ -1,7 +1,5 @@
 """State estimation and head under a walking controller without a plan: measurements only."""
 
-from math import asin, atan2
-
 import numpy as np
 
 from compilation.value import value
@@ -21,6 +19,7 @@ from walking.parameters import (
 )
 from walking.plane import Array, Frame, Point, from_frame, norm, rotate, rotate_back
 from walking.posture import LIMBS, advance_head, head_joints
+from walking.published import CAMERA, publish_camera
 from walking.state import Balance, BodySensors, HeadCameraPose, Phase, WalkingState
 from walking.support import depth, polygon
 from walking.tick import WALK
@@ -161,8 +160,7 @@ class BodyObserver:
     def __init__(
         self, robot: RobotModel, parameters: WalkingParameters, odometry: LegOdometry
     ) -> None:
-        self._robot = robot = robot.with_own_buffers()
-        self._odometry = odometry
+        self._robot, self._odometry = robot, odometry
         self._robots, _ = robot_record(robot, parameters)
         self._walks = np.zeros(1, WALK)
         self._sensing = self._walks[0].sensing
@@ -194,7 +192,7 @@ class BodyObserver:
         yaw, tilt = float(sensing.heading), self._tilt
         measured = sensing.feet
         feet = np.column_stack([measured[axis] for axis in ("x", "y", "z")])
-        self._roll(sensors, feet, tilt, yaw)
+        self._roll(feet, tilt, yaw)
         left, right = (feet[:, :2] + self._rolling.rolled).tolist()
         reckon(
             self._odometry.records[0],
@@ -263,20 +261,10 @@ class BodyObserver:
         )
 
     def _camera(self, sensors: BodySensors) -> HeadCameraPose:
-        """Return the camera in the robot frame; every joint that carries it may move."""
-        rotation, position = self._robot.frame_pose(self._robot.tree.camera, sensors.joint_position)
-        tilt = self._tilt
-        ahead, left, up = rotation[:, 2].tolist()
-        pan_rate, tilt_rate = self._robot.neck.rates(sensors.joint_velocity)
-        return HeadCameraPose(
-            rotation=tilt @ rotation,
-            position=tilt @ position + (0.0, 0.0, self._height),
-            pan=atan2(left, ahead),
-            tilt=asin(min(1.0, max(-1.0, up))),
-            pan_rate=pan_rate,
-            tilt_rate=tilt_rate,
-            yaw_rate=float(tilt[2] @ sensors.gyro),
-        )
+        """Return the camera in the robot frame."""
+        camera, rates, gyro = np.zeros(1, CAMERA), sensors.joint_velocity, sensors.gyro
+        publish_camera(camera[0], self._sensing, self._height, rates, gyro, self._robots[0])
+        return HeadCameraPose(*camera.item())
 
     @property
     def _pose(self) -> Frame:
@@ -295,14 +283,12 @@ class BodyObserver:
         load = self._sensing.right_load
         return float(-(1.0 - load) * left - load * right)
 
-    def _roll(self, sensors: BodySensors, feet: Array, tilt: Array, yaw: float) -> None:
+    def _roll(self, feet: Array, tilt: Array, yaw: float) -> None:
         """Update the contact points of the feet."""
-        joints = sensors.joint_position
-        feet_frames = self._robot.tree.feet
-        rotations = [tilt @ self._robot.frame_pose(frame, joints)[0] for frame in feet_frames]
+        rotations = tilt @ self._sensing.frames[:2, :9].reshape(2, 3, 3)
         centres = self._sensing.feet
         pressures = np.column_stack([centres["pressure_x"], centres["pressure_y"]])
-        self._rolling.update(feet, np.array(rotations), pressures, yaw, self._contacts.on_floor)
+        self._rolling.update(feet, rotations, pressures, yaw, self._contacts.on_floor)
 
     def _add_slip(self) -> None:
         """Add the unmeasured slip of every footstep to the covariance of the odometry."""

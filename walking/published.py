@@ -3,11 +3,9 @@
 from math import asin, atan2, cos, sin
 from typing import Any
 
-import numpy as np
-
 from compilation import compiled
 from compilation.record import record_type
-from walking.body.kinematics import chain_pose, inclined, times, turned
+from walking.body.kinematics import MOVE, inclined, rotation_of, times, turned
 from walking.command import (
     STRIDE_LIMITS,
     Command,
@@ -16,7 +14,7 @@ from walking.command import (
     VelocityCommand,
     limits_of,
 )
-from walking.estimation import is_fallen
+from walking.estimation import CAMERA_FRAME, base_height, is_fallen
 from walking.footsteps import (
     FOOTHOLD,
     Foothold,
@@ -29,7 +27,7 @@ from walking.footsteps import (
 )
 from walking.gait import support_foot, swing_foot
 from walking.odometry import Odometry
-from walking.plane import Array, Frame, Indices, from_frame, rotate
+from walking.plane import Array, Frame, from_frame, rotate
 from walking.records import Record
 from walking.reference import LIVE, STEPS
 from walking.state import Balance, HeadCameraPose, Phase, WalkingState
@@ -39,18 +37,21 @@ from walking.timing import duration
 PHASES = (Phase.STANDING, Phase.DOUBLE_SUPPORT, Phase.LEFT_SUPPORT, Phase.RIGHT_SUPPORT)
 STANDING, DOUBLE_SUPPORT, LEFT_SUPPORT, RIGHT_SUPPORT = range(len(PHASES))
 
+CAMERA = record_type(
+    rotation=(float, 3, 3),
+    position=(float, 3),
+    pan=float,
+    tilt=float,
+    pan_rate=float,
+    tilt_rate=float,
+    yaw_rate=float,
+)
+"""`walking.state.HeadCameraPose`, in the same order."""
+
 PUBLISHED = record_type(
     phase=int,
     odometry=record_type(x=float, y=float, yaw=float, covariance=(float, 3, 3)),
-    camera=record_type(
-        rotation=(float, 3, 3),
-        position=(float, 3),
-        pan=float,
-        tilt=float,
-        pan_rate=float,
-        tilt_rate=float,
-        yaw_rate=float,
-    ),
+    camera=CAMERA,
     applied_velocity=(float, 3),
     footsteps=(FOOTHOLD, 1 + STEPS),
     zmp=(float, 2),
@@ -114,11 +115,8 @@ def publish(
     plans: Record,
     odometry: Record,
     robots: Record,
-    angles: Array,
     rates: Array,
     gyro: Array,
-    chain: Array,
-    moving: Indices,
 ) -> None:
     """Publish the state of a walk.
 
@@ -128,14 +126,12 @@ def publish(
         plans: plans of the walk (4,), see `walking.reference.LIVE`.
         odometry: dead reckoning (1,).
         robots: constants (1,).
-        angles: measured angles of all joints (n,) [rad].
         rates: measured rates of all joints (n,) [rad/s].
         gyro: angular velocity of the trunk (3,) [rad/s].
-        chain: chain from the base to the camera, see `walking.body.kinematics`.
-        moving: joints of the chain.
     """
     published, walk, plan, robot = records[0], walks[0], plans[LIVE], robots[0]
-    publish_camera(published.camera, walk.sensing, angles, rates, gyro, chain, moving, robot)
+    height = base_height(walk.sensing)
+    publish_camera(published.camera, walk.sensing, height, rates, gyro, robot)
     publish_plan(published, walk, plan, odometry[0], robot)
     publish_limits(published, walk, plan, robot)
 
@@ -231,46 +227,34 @@ def _publish_covariance(covariance: Array, odometry: Record) -> None:
 
 @compiled
 def publish_camera(
-    camera: Record,
-    sensing: Record,
-    angles: Array,
-    rates: Array,
-    gyro: Array,
-    chain: Array,
-    moving: Indices,
-    robot: Record,
+    camera: Record, sensing: Record, height: float, rates: Array, gyro: Array, robot: Record
 ) -> None:
-    """Publish the head camera in the robot frame: tilt by IMU, height by the loaded leg.
+    """Publish the head camera in the robot frame, level by the IMU.
 
     Args:
         camera: set.
         sensing: measured body.
-        angles: measured angles of all joints (n,) [rad].
+        height: height of the base above the floor [m].
         rates: measured rates of all joints (n,) [rad/s].
         gyro: angular velocity of the trunk (3,) [rad/s].
-        chain: chain from the base to the camera, see `walking.body.kinematics`.
-        moving: joints of the chain.
         robot: constants.
     """
-    own = np.empty(moving.size)
-    for k in range(moving.size):
-        own[k] = angles[moving[k]]
-    axes, origins = np.empty((moving.size, 3)), np.empty((moving.size, 3))
-    mounted, origin = chain_pose(chain, own, axes, origins)
+    frame, neck = sensing.frames[CAMERA_FRAME], robot.neck
+    mounted = rotation_of(frame)
     camera.pan = atan2(mounted[5], mounted[2])
     camera.tilt = asin(min(1.0, max(-1.0, mounted[8])))
-    neck, load = robot.neck, sensing.right_load
     camera.pan_rate = camera.tilt_rate = 0.0
     if neck.movable:
         camera.pan_rate = neck.pan_sign * rates[neck.pan_joint]
         camera.tilt_rate = neck.tilt_sign * rates[neck.tilt_joint]
     tilt = inclined(sensing.roll, sensing.pitch)
-    rotation, position = times(tilt, mounted), turned(tilt, origin[0], origin[1], origin[2])
+    rotation = times(tilt, mounted)
+    position = turned(tilt, frame[MOVE], frame[MOVE + 1], frame[MOVE + 2])
     for i in range(3):
         for j in range(3):
             camera.rotation[i, j] = rotation[3 * i + j]
         camera.position[i] = position[i]
-    camera.position[2] += -(1.0 - load) * sensing.feet[0].z - load * sensing.feet[1].z
+    camera.position[2] += height
     camera.yaw_rate = turned(tilt, gyro[0], gyro[1], gyro[2])[2]
 
 

@@ -160,10 +160,10 @@ class Body:
         self.model, self.sensors = model, sensors
         self.walk = np.zeros(1, WALK)[0]
         self.sensing, self.limbs = self.walk.sensing, self.walk.limbs
-        self.com, self.legs = tuple(robot.com(sensors.joint_position).tolist()), np.empty((2, 4))
-        for row, foot in zip(self.legs, robot.tree.feet, strict=True):
-            rotation, row[:3] = robot.frame_pose(foot, sensors.joint_position)
-            row[3] = np.arctan2(rotation[1, 0], rotation[0, 0])
+        self.com = tuple(robot.com(sensors.joint_position).tolist())
+        for side, foot in enumerate(robot.tree.feet):
+            rotation, position = robot.frame_pose(foot, sensors.joint_position)
+            self.sensing.frames[side] = [*rotation.ravel(), *position]
         self.measure()
         for side, foot in enumerate(self.limbs.feet):
             seen = self.sensing.feet[side]
@@ -176,7 +176,7 @@ class Body:
         pads = s.foot_force if pads is None else pads
         self.sensing.started = False
         rest = (s.gyro, pads, model.robot)
-        measure(self.sensing, self.legs, self.com, orientation, *rest)
+        measure(self.sensing, self.com, orientation, *rest)
         return self.sensing
 
     def compare(self, right=0.5):

@@ -6,14 +6,13 @@ import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
 
-from walking.body.kinematics import chain_pose
 from walking.body.tree import HEAD
 from walking.command import VelocityCommand
-from walking.estimation import SENSING
+from walking.estimation import CAMERA_FRAME, SENSING, base_height
 from walking.footsteps import foothold
 from walking.gait import start
 from walking.odometry import ODOMETRY
-from walking.published import PUBLISHED, publish_camera, publish_plan, walking_state
+from walking.published import CAMERA, PUBLISHED, publish_camera, publish_plan, walking_state
 from walking.reference import LIVE, plan_walk
 from walking.state import Phase
 
@@ -32,15 +31,15 @@ def look(robot, model):
     """Camera of a body that looks aside, and its pose in the base frame."""
 
     def published(**body):
-        sensing, camera = np.zeros(1, SENSING)[0], np.zeros(1, PUBLISHED)[0].camera
+        sensing, camera = np.zeros(1, SENSING)[0], np.zeros(1, CAMERA)[0]
         set_body(sensing, **body)
         joints, rates = robot.ready.copy(), np.zeros_like(robot.ready)
         joints[HEAD], rates[HEAD] = (0.4, -0.3), (1.0, -2.0)
-        chain, moving = robot.neck.chain
-        gyro = np.array([0.1, 0.2, 0.3])
-        publish_camera(camera, sensing, joints, rates, gyro, chain, moving, model.robot)
-        R_BC, p_BC = chain_pose(chain, joints[moving], np.empty((2, 3)), np.empty((2, 3)))
-        return camera, np.reshape(R_BC, (3, 3)), np.array(p_BC)
+        R_BC, p_BC = robot.frame_pose(robot.tree.camera, joints)
+        sensing.frames[CAMERA_FRAME] = [*R_BC.ravel(), *p_BC]
+        height, gyro = base_height(sensing), np.array([0.1, 0.2, 0.3])
+        publish_camera(camera, sensing, height, rates, gyro, model.robot)
+        return camera, R_BC, p_BC
 
     return published
 
@@ -66,6 +65,14 @@ def test_a_tilted_trunk_tilts_the_camera(look, roll, pitch):
     assert camera.rotation == pytest.approx(tilted @ R_BC)
     assert camera.position == pytest.approx(tilted @ p_BC - [0.0, 0.0, FEET[0][2]])
     assert camera.yaw_rate == pytest.approx(float(tilted[2] @ [0.1, 0.2, 0.3]))
+
+
+def test_a_fixed_camera_turns_with_the_trunk_only(robot, model):
+    fixed, sensing, camera = model.robot.copy(), np.zeros(1, SENSING)[0], np.zeros(1, CAMERA)[0]
+    fixed.neck.movable = False
+    rates, gyro = np.ones_like(robot.ready), np.array([0.1, 0.2, 0.3])
+    publish_camera(camera, sensing, 0.2, rates, gyro, fixed)
+    assert (camera.pan_rate, camera.tilt_rate, camera.yaw_rate) == (0.0, 0.0, 0.3)
 
 
 @pytest.fixture

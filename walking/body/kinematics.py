@@ -78,6 +78,14 @@ def rotation_of(row: Array) -> Matrix:
 
 
 @compiled
+def put_pose(row: Array, rotation: Matrix, position: Vector) -> None:
+    """Set a row to a rotation, row by row, and a position (12,) [m]."""
+    for k in range(9):
+        row[k] = rotation[k]
+    row[MOVE], row[MOVE + 1], row[MOVE + 2] = position
+
+
+@compiled
 def inclined(roll: float, pitch: float) -> Matrix:
     """Return the attitude R_RB of a trunk with roll and pitch [rad]."""
     cr, sr, cp, sp = cos(roll), sin(roll), cos(pitch), sin(pitch)
@@ -131,9 +139,7 @@ def tree_pass(links: Array, order: Indices, angles: Array, poses: Array) -> Vect
         dx, dy, dz = turned(P, link[0], link[1], link[2])
         x, y, z = before[MOVE] + dx, before[MOVE + 1] + dy, before[MOVE + 2] + dz
         R = times(P, about(link[3], link[4], link[5], angles[joint]))
-        for i in range(9):
-            pose[i] = R[i]
-        pose[MOVE], pose[MOVE + 1], pose[MOVE + 2] = x, y, z
+        put_pose(pose, R, (x, y, z))
         m, (cx, cy, cz) = link[6], turned(R, link[7], link[8], link[9])
         mass += m
         mx, my, mz = mx + m * x + cx, my + m * y + cy, mz + m * z + cz
@@ -141,17 +147,18 @@ def tree_pass(links: Array, order: Indices, angles: Array, poses: Array) -> Vect
 
 
 @compiled
-def frame_pose(link: Array, frame: Array) -> tuple[Matrix, Vector]:
-    """Return rotation and position [m] in the base frame of a frame on a link.
+def frame_pose(pose: Array, link: Array, frame: Array) -> None:
+    """Set the pose in the base frame of a frame on a link.
 
     Args:
-        link: pose of the link, see `tree_pass` (12,).
-        frame: rotation, row by row, and position of the frame on it (12,) [m].
+        pose: rotation, row by row, and position, set (12,) [m].
+        link: pose of the link, see `tree_pass` (12,) [m].
+        frame: pose of the frame on the link (12,) [m].
     """
     R = rotation_of(link)
     dx, dy, dz = turned(R, frame[MOVE], frame[MOVE + 1], frame[MOVE + 2])
     position = (link[MOVE] + dx, link[MOVE + 1] + dy, link[MOVE + 2] + dz)
-    return times(R, rotation_of(frame)), position
+    put_pose(pose, times(R, rotation_of(frame)), position)
 
 
 class FootPose(NamedTuple):

@@ -14,7 +14,7 @@ from walking.body.kinematics import FootPose, Leg
 from walking.body.tree import LEFT_LEG, RIGHT_LEG, Frame, RobotTree, Sole
 from walking.dimension import RobotMeasures
 from walking.parameters import GRAVITY
-from walking.plane import Array, Indices, Point
+from walking.plane import Array, Point
 from walking.records import Record
 
 NECK = record_type(
@@ -40,10 +40,6 @@ class Neck:
 
     Args:
         tree: the robot.
-
-    Attributes:
-        chain: chain from the base to the camera, see `walking.body.kinematics`, and the indices of
-            its joints.
     """
 
     def __init__(self, tree: RobotTree) -> None:
@@ -52,31 +48,20 @@ class Neck:
         self._tilt_first = tree.head is not None and tree.carries(tree.head[1], tree.head[0])
         order = tree.head or ()
         moving = list(order[::-1] if self._tilt_first else order)
-        self.chain: tuple[Array, Indices] = (
-            tree.chain(moving, tree.camera),
-            np.array(moving, dtype=np.int64),
-        )
+        self._chain, self._moving = tree.chain(moving, tree.camera), np.array(moving, np.int64)
         rest = tree.posture.copy()
         rest[moving] = 0.0
         axes, origins = np.zeros((2, 3)), np.zeros((2, 3))
-        kinematics.chain_pose(self.chain[0], rest[moving], axes, origins)
+        kinematics.chain_pose(self._chain, rest[moving], axes, origins)
         pan, tilt = axes[::-1] if self._tilt_first else axes
         self._signs = float(np.sign(pan[2])), -float(np.sign(tilt[1]))
         self._rest = self.angles(rest)  # of the optical axis with the head joints at zero
 
     def angles(self, joint_position: Array) -> Point:
         """Return pan and tilt for joint angles (n,) [rad]."""
-        chain, moving = self.chain
-        axes, origins = np.empty((moving.size, 3)), np.empty((moving.size, 3))
-        R, _ = kinematics.chain_pose(chain, joint_position[moving], axes, origins)
+        axes, origins = np.empty((2, 3)), np.empty((2, 3))
+        R, _ = kinematics.chain_pose(self._chain, joint_position[self._moving], axes, origins)
         return atan2(R[5], R[2]), asin(min(1.0, max(-1.0, R[8])))
-
-    def rates(self, joint_velocity: Array) -> Point:
-        """Return the rates of pan and tilt for joint rates (n,) [rad/s]."""
-        if self._head is None:
-            return 0.0, 0.0
-        pan, tilt = joint_velocity[list(self._head)].tolist()
-        return self._signs[0] * pan, self._signs[1] * tilt
 
     def range(self) -> Array:
         """Return lower and upper limit of pan and tilt (2, 2) [rad]."""
@@ -301,8 +286,9 @@ class RobotModel:
         """Return rotation (3, 3) and position (3,) [m] of a frame in the base frame."""
         poses = np.empty((len(self.links), 12))
         kinematics.tree_pass(self.links, self.order, joint_position, poses)
-        rotation, position = kinematics.frame_pose(poses[frame.joint], self.on_link(frame))
-        return np.reshape(rotation, (3, 3)), np.array(position)
+        pose = np.empty(12)
+        kinematics.frame_pose(pose, poses[frame.joint], self.on_link(frame))
+        return pose[:9].reshape(3, 3), pose[9:]
 
     def leg_groups(self) -> dict[str, tuple[int, ...]]:
         """Return the indices of hip, knee and ankle joints within a leg, for people."""
