@@ -107,9 +107,9 @@ class CameraView:
     Attributes:
         rotation: R_RC, columns right, down, forward (3, 3).
         position: p_RC (3,) [m].
-        pan, tilt: measured head angles [rad].
+        pan, tilt: measured direction of the optical axis in the base frame [rad].
         model: constants of the camera.
-        pan_rate, tilt_rate: measured head rates [rad/s].
+        pan_rate, tilt_rate: measured rates of the head joints [rad/s].
         blind: whether the camera turned too fast for its image to show anything.
     """
 

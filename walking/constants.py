@@ -41,8 +41,8 @@ ROBOT = record_type(
     # foot frame (3) [m] and maximum distance of both [m].
     chains=(float, 2, 7, 15),
     reach=(float, 2, 7),
-    # Joints that carry left foot, right foot and camera, and their poses on the links of these, see
-    # `RobotModel.on_link`.
+    # Frames of left foot, right foot and camera: joint that carries it, -1 for the base, and its
+    # pose on the link of this joint, see `RobotModel.on_link`.
     carriers=(int, 3),
     frames=(float, 3, 12),
     # First joint of the ankle in a leg; factor on the stiffness of the legs [1].

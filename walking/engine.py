@@ -163,7 +163,7 @@ class WalkingEngine:
         sensors = self._sensors
         if sensors is None:
             raise RuntimeError("the walking engine has no state before its first tick")
-        # A record over given bytes is made in a tenth of the time of `np.zeros(1, PUBLISHED)`.
+        # A record over given bytes is made in a fifth of the time of `np.zeros(1, PUBLISHED)`.
         published = np.ndarray(1, PUBLISHED, np.zeros(PUBLISHED.itemsize, np.uint8))
         publish(
             published,

@@ -128,7 +128,7 @@ def measure(
     pads: Array,
     robot: Record,
 ) -> None:
-    """Measure the body, of which the frames are known, and filter its tilt.
+    """Measure the body from `sensing.frames`, which must be set, and filter its tilt.
 
     Args:
         sensing: changed.

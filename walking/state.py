@@ -73,8 +73,8 @@ class HeadCameraPose:
     Attributes:
         rotation: R_RC, columns are the camera's right, down and forward axes (3, 3).
         position: p_RC (3,) [m]; z is the height above the floor.
-        pan, tilt: measured head angles [rad].
-        pan_rate, tilt_rate: measured head rates [rad/s].
+        pan, tilt: measured direction of the optical axis in the base frame [rad].
+        pan_rate, tilt_rate: measured rates of the head joints [rad/s].
         yaw_rate: measured yaw rate of the trunk [rad/s].
     """
 

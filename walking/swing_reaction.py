@@ -49,6 +49,7 @@ def leg_reaction(robot: RobotModel, height: float, lift: float) -> Vector:
         foot per upward acceleration and distance of the foot from the ZMP [s²/m]; N, backward shift
         per upward acceleration of the foot [s²].
     """
+    robot = robot.with_own_buffers()
     ahead = float(robot.com(robot.ready)[0])
     leg = robot.legs[0]
 

@@ -1,7 +1,7 @@
-"""Control tick of the walk: two compiled functions around inverse dynamics.
+"""Control tick of the walk: three compiled functions and inverse dynamics.
 
-`begin` estimates, decides, plans, and sets the posture and its rates; `finish` adds the
-feed-forward.
+`walking.estimation.watch` measures the body; `begin` estimates, decides, plans, and sets the
+posture and its rates; after inverse dynamics `finish` adds the feed-forward.
 """
 
 import numpy as np

@@ -1,4 +1,4 @@
-"""Kinematics of chains of joints: legs and head.
+"""Kinematics of chains of joints (legs, head), and of the whole tree in one pass.
 
 A chain of k joints is an array (k + 1, 15): of each joint the fixed rotation (9, row by row) and
 translation (3) of its frame in that of the joint before, then its axis (3); the last row is the
@@ -73,7 +73,7 @@ def about(x: float, y: float, z: float, angle: float) -> Matrix:
 
 @compiled
 def rotation_of(row: Array) -> Matrix:
-    """Return the rotation at the begin of a row."""
+    """Return the rotation in the first nine columns of a row."""
     return row[0], row[1], row[2], row[3], row[4], row[5], row[6], row[7], row[8]
 
 

@@ -168,10 +168,11 @@ class RobotTree:
         Their frames are at the joints and parallel to the base with all joints at zero.
 
         Returns:
-            position of each joint in the frame of its parent [m], its axis, mass [kg] and first
-            moment [kg m] of its link in its frame; the last row is the base (n + 1, 10). Joints and
-            their parents, parents first, n for the base (n, 2). Rotations of the joint frames of
-            this tree in the frames of the links (n + 1, 3, 3).
+            Links: position of each joint in the frame of its parent [m], its axis, mass [kg] and
+            first moment [kg m] of its link in its frame; the last row is the base (n + 1, 10).
+            Order: joints and their parents, parents first, n for the base (n, 2).
+            Rotations: rotation of each joint frame of this tree in the frame of its link
+            (n + 1, 3, 3).
         """
         n = len(self.names)
         links, rotations = np.zeros((n + 1, 10)), np.zeros((n + 1, 3, 3))

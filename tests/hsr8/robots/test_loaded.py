@@ -9,6 +9,10 @@ import pytest
 from hsr8.robots.loaded import load_robot
 from tests.hsr8.robots.robot_parts import adding, part
 from tests.hsr8.robots.small_humanoid import SmallHumanoid
+from walking.constants import robot_record
+from walking.estimation import sense
+from walking.state import BodySensors
+from walking.tick import WALK
 
 ROBOTS = {
     "plain": SmallHumanoid(),
@@ -17,6 +21,24 @@ ROBOTS = {
     "waist": SmallHumanoid(waist="y"),
     "no head": SmallHumanoid(head=""),
 }
+SITES = ("hsr8/l_foot", "hsr8/r_foot", "hsr8/camera")
+
+
+def frames(robot):
+    """Frames of left foot, right foot and camera."""
+    return *robot.model.tree.feet, robot.model.tree.camera
+
+
+def still(angles):
+    """Reading of an upright body at rest."""
+    return BodySensors(
+        joint_position=angles,
+        joint_velocity=np.zeros_like(angles),
+        gyro=np.zeros(3),
+        accelerometer=np.zeros(3),
+        orientation=np.array([1.0, 0.0, 0.0, 0.0]),
+        foot_force=np.zeros((2, 4)),
+    )
 
 
 @pytest.fixture
@@ -56,6 +78,16 @@ def test_kinematics_and_centre_of_mass_are_those_of_mujoco(load, name):
     com = turned @ (data.subtree_com[model.body(robot.roles.base).id] - base.xpos)
     np.testing.assert_allclose(robot.model.com(angles), com, rtol=0.0, atol=1e-12)
     assert robot.model.mass == pytest.approx(model.body_subtreemass[1], rel=1e-12)
+    walks, constants = np.zeros(1, WALK), robot_record(robot.model, robot.parameters)[0]
+    sense(walks, still(angles), robot.model, constants)
+    for measured, frame, site in zip(
+        walks[0]["sensing"]["frames"], frames(robot), SITES, strict=True
+    ):
+        rotation, position = robot.model.frame_pose(frame, angles)
+        np.testing.assert_array_equal(measured, [*rotation.ravel(), *position])
+        place = data.site(site)
+        np.testing.assert_allclose(position, turned @ (place.xpos - base.xpos), atol=1e-12)
+        np.testing.assert_allclose(rotation, turned @ place.xmat.reshape(3, 3), atol=1e-12)
     for leg, six, side in zip(robot.model.legs, (slice(0, 6), slice(6, 12)), "lr", strict=True):
         foot = leg.pose(angles[six])
         place = turned @ (data.site(f"hsr8/{side}_foot").xpos - base.xpos)
