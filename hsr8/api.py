@@ -76,7 +76,7 @@ def run(
             folder = RunFolder(path, loaded, command, renderer)
         result = record(simulation, folder)
         if log:
-            from hsr8.rerun_log.run_log import write_log  # noqa: PLC0415  takes a third of a second
+            from hsr8.rerun_log.run_log import write_log  # noqa: PLC0415  takes 0.2 s
 
             write_log(open_run(path))
     if result.exit_reason == "interrupted":

@@ -20,7 +20,6 @@ from pathlib import Path
 from statistics import median
 
 from hsr8.cli.main import COLLECT_AFTER
-from hsr8.cli.yardstick import step_time
 from hsr8.files import atomic
 from hsr8.loop import Simulation
 from hsr8.scenario.loader import load_scenario
@@ -113,8 +112,7 @@ def main() -> None:
     print(
         f"`{options.scenario}`, seed {options.seed}, {bench.simulated:g} s: "
         f"{bench.simulated / bench.loop:.2f} times real time, the floor "
-        f"{bench.simulated / bench.floor:.1f}; the loop takes {bench.ratio:.2f} floors. "
-        f"Speed times a physics step: {bench.simulated / bench.loop * step_time():.0f} us.\n"
+        f"{bench.simulated / bench.floor:.1f}; the loop takes {bench.ratio:.2f} floors.\n"
     )
     print("\n".join(bench.table()))
 

@@ -12,7 +12,7 @@ from hsr8.world.body.physics import place_robot
 from hsr8.world.field.generator import draw_layout
 
 BLOCKS, STEPS = 10, 100
-COURSE = 330.0  # speed of `course` times the time of a step, as `scripts/bench.py` prints [us]
+COURSE = 410.0  # `real_time_factor` of `hsr8 run course` times the time of a step [us]
 
 
 def step_time() -> float:

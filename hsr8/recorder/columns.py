@@ -1,7 +1,7 @@
 """Columns of a table: one line states the source, text, unit and shape of each.
 
 Columns are filled from the recorded objects directly, without rows. A source that is a path of
-attributes works in both directions: `arrays_of` reads the attributes of recorded objects,
+attributes works in both directions: `batch_of` reads the attributes of recorded objects,
 `attributes` returns them from a table.
 
 A shape contains numbers, names of sizes that are constant in a run, like ``("joints",)``, and, at

@@ -26,42 +26,38 @@ HEAVY = (
 PROGRAM = [sys.executable, "-m", "hsr8"]
 
 
-def test_help_imports_nothing_heavy():
+def imported_by(words, modules):
+    """Exit code of a command, those of some modules that it imports, and its output."""
     script = (
-        "import sys; from hsr8.cli.main import entry; code = entry(['--help']); "
-        f"print([m for m in {HEAVY} if m in sys.modules], code, file=sys.stderr)"
-    )
-    done = subprocess.run(
-        [sys.executable, "-c", script], capture_output=True, text=True, check=True, timeout=60
-    )
-    assert done.stderr.strip() == "[] 0"
-    for command in COMMANDS:
-        assert command in done.stdout
-
-
-def test_a_missing_plugin_is_refused_before_mujoco_is_imported():
-    words = ["run", "quick", "--set", "plugin.planner=none.py:Mine"]
-    script = (
-        f"import sys; from hsr8.cli.main import entry; code = entry({words}); "
-        "print('mujoco' in sys.modules, code)"
-    )
-    done = subprocess.run(
-        [sys.executable, "-c", script], capture_output=True, text=True, check=True, timeout=60
-    )
-    assert done.stdout.strip() == "False 2"
-    assert "none.py:Mine: cannot read none.py" in done.stderr
-
-
-def test_a_run_without_log_and_recorded_movers_imports_no_library_for_them(tmp_path):
-    words = ["run", "quick", "--duration", "0.1", "--quiet", "--camera", "analytic"]
-    script = (
-        f"import sys; from hsr8.cli.main import entry; entry({[*words, '--out', str(tmp_path)]}); "
-        "print([m for m in ('mujoco', 'rerun', 'scipy.interpolate') if m in sys.modules])"
+        f"import sys; from hsr8.cli.main import entry; code = entry({[*words]}); "
+        f"print(code, *(m for m in {[*modules]} if m in sys.modules))"
     )
     done = subprocess.run(
         [sys.executable, "-c", script], capture_output=True, text=True, check=True, timeout=120
     )
-    assert done.stdout.strip() == "['mujoco']"
+    *_, (code, *imported) = map(str.split, done.stdout.splitlines())
+    return int(code), imported, done.stdout + done.stderr
+
+
+def test_help_imports_nothing_heavy():
+    code, imported, said = imported_by(["--help"], HEAVY)
+    assert (code, imported) == (0, [])
+    for command in COMMANDS:
+        assert command in said
+
+
+def test_a_missing_plugin_is_refused_before_mujoco_is_imported():
+    words = ["run", "quick", "--set", "plugin.planner=none.py:Mine"]
+    code, imported, said = imported_by(words, ["mujoco"])
+    assert (code, imported) == (2, [])
+    assert "none.py:Mine: cannot read none.py" in said
+
+
+def test_a_run_without_log_and_recorded_movers_imports_no_library_for_them(tmp_path):
+    words = ["run", "quick", "--duration", "0.1", "--quiet", "--camera", "analytic"]
+    optional = ["rerun", "scipy.interpolate"]
+    _, imported, _ = imported_by([*words, "--out", str(tmp_path)], ["mujoco", *optional])
+    assert imported == ["mujoco"]
     assert [*tmp_path.rglob("metrics.json")]
 
 

@@ -12,7 +12,7 @@ import pytest
 
 from hsr8.robots.description import RobotDescription, read_description
 from hsr8.robots.loaded import RawRobot, read_robot
-from hsr8.robots.locate import find_description, find_model, installed_model
+from hsr8.robots.locate import find_description, find_model, installed_model, robot_names
 from hsr8.robots.refusals import check_roles
 from hsr8.robots.roles import Roles, find_roles
 from tests.hsr8.robots.small_humanoid import SmallHumanoid
@@ -31,6 +31,10 @@ def installed(name: str) -> pytest.MarkDecorator:
     file = find_description(name)
     missing = installed_model(read_description(file), file.parent) is None
     return pytest.mark.skipif(missing, reason=f"needs the wheel of {name}")
+
+
+SHIPPED = [pytest.param(name, marks=installed(name)) for name in robot_names()]
+"""Names of the shipped robots whose models are installed, the others skipped."""
 
 
 def compiled(robot: SmallHumanoid, *changes: Change) -> mujoco.MjModel:

@@ -10,8 +10,7 @@ from hsr8.robots.loaded import load_robot
 from tests.hsr8.robots.robot_parts import adding, part
 from tests.hsr8.robots.small_humanoid import SmallHumanoid
 from walking.constants import robot_record
-from walking.estimation import sense
-from walking.state import BodySensors
+from walking.estimation import watch
 from walking.tick import WALK
 
 ROBOTS = {
@@ -27,18 +26,6 @@ SITES = ("hsr8/l_foot", "hsr8/r_foot", "hsr8/camera")
 def frames(robot):
     """Frames of left foot, right foot and camera."""
     return *robot.model.tree.feet, robot.model.tree.camera
-
-
-def still(angles):
-    """Reading of an upright body at rest."""
-    return BodySensors(
-        joint_position=angles,
-        joint_velocity=np.zeros_like(angles),
-        gyro=np.zeros(3),
-        accelerometer=np.zeros(3),
-        orientation=np.array([1.0, 0.0, 0.0, 0.0]),
-        foot_force=np.zeros((2, 4)),
-    )
 
 
 @pytest.fixture
@@ -79,7 +66,8 @@ def test_kinematics_and_centre_of_mass_are_those_of_mujoco(load, name):
     np.testing.assert_allclose(robot.model.com(angles), com, rtol=0.0, atol=1e-12)
     assert robot.model.mass == pytest.approx(model.body_subtreemass[1], rel=1e-12)
     walks, constants = np.zeros(1, WALK), robot_record(robot.model, robot.parameters)[0]
-    sense(walks, still(angles), robot.model, constants)
+    upright, rest = np.array([1.0, 0.0, 0.0, 0.0]), (np.zeros(3), np.zeros((2, 4)))
+    watch(walks, angles, upright, *rest, robot.model.links, robot.model.order, constants)
     for measured, frame, site in zip(
         walks[0]["sensing"]["frames"], frames(robot), SITES, strict=True
     ):

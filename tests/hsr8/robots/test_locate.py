@@ -9,8 +9,7 @@ from hsr8.errors import ModelError
 from hsr8.robots import locate
 from hsr8.robots.description import RobotDescription, read_description
 from hsr8.robots.files import models_dir
-from hsr8.robots.loaded import load_robot, read_robot
-from hsr8.robots.locate import find_description, installed_model, robot_names
+from hsr8.robots.loaded import load_robot
 
 NAMES = ["alexander", "apollo", "berkeley", "g1", "hsr8", "icub", "jvrc1", "op3", "t1"]
 MODEL = "some_robot/robot.xml"
@@ -213,17 +212,6 @@ def test_a_failed_fetch_is_refused_with_its_reason(fetching, module, reason):
     with pytest.raises(ModelError) as caught:
         locate.find_model(description(robot_descriptions=module), fetching / "robot.toml")
     assert reason in str(caught.value)
-
-
-@pytest.mark.parametrize("name", robot_names())
-def test_mass_and_joints_are_those_of_the_model(name):
-    file = find_description(name)
-    description = read_description(file)
-    if installed_model(description, file.parent) is None:
-        pytest.skip("the model is not installed")
-    model = read_robot(description, file).model
-    assert description.about.mass == pytest.approx(model.body_subtreemass[1], rel=0.01)
-    assert description.about.joints == model.njnt - 1
 
 
 def test_the_leg_is_that_of_the_model():

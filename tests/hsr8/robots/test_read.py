@@ -7,10 +7,11 @@ import mujoco
 import pytest
 
 from hsr8.errors import ModelError
+from hsr8.robots.description import read_description
 from hsr8.robots.loaded import load_robot, read_robot
-from hsr8.robots.locate import digest
+from hsr8.robots.locate import digest, find_description
 from tests.hsr8.robots.mesh_humanoid import write_robot
-from tests.hsr8.robots.robot_parts import adding, described, part, setting
+from tests.hsr8.robots.robot_parts import SHIPPED, adding, described, part, setting
 from tests.hsr8.robots.small_humanoid import SmallHumanoid
 
 
@@ -148,3 +149,12 @@ def test_a_change_of_a_mesh_is_another_robot(tmp_path):
     mesh = next(path for path in tmp_path.rglob("*") if path.suffix in (".stl", ".obj"))
     mesh.write_bytes(mesh.read_bytes() + b" ")
     assert digest(str(file)) != before
+
+
+@pytest.mark.parametrize("name", SHIPPED)
+def test_mass_and_joints_of_a_description_are_those_of_the_model(name):
+    file = find_description(name)
+    description = read_description(file)
+    model = read_robot(description, file).model
+    assert description.about.mass == pytest.approx(model.body_subtreemass[1], rel=0.01)
+    assert description.about.joints == model.njnt - 1

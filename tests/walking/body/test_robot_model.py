@@ -9,9 +9,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 from scipy.spatial.transform import Rotation
 
-from hsr8.robots.description import read_description
 from hsr8.robots.loaded import load_robot
-from hsr8.robots.locate import find_description, installed_model, robot_names
+from tests.hsr8.robots.robot_parts import SHIPPED
 from walking.body.kinematics import tree_pass
 from walking.body.robot_model import dynamic_model
 from walking.body.tree import LEFT_LEG, RIGHT_LEG
@@ -59,11 +58,8 @@ def assert_same_as_pinocchio(tree, seed):
         np.testing.assert_allclose(poses[joint, 9:], expected.translation, rtol=0.0, atol=1e-12)
 
 
-@pytest.mark.parametrize("name", robot_names())
+@pytest.mark.parametrize("name", SHIPPED)
 def test_the_centre_of_mass_is_that_of_pinocchio(name):
-    file = find_description(name)
-    if installed_model(read_description(file), file.parent) is None:
-        pytest.skip("the model is not installed")
     for seed in range(20):
         assert_same_as_pinocchio(load_robot(name).model.tree, seed)
 
