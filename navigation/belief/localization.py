@@ -9,9 +9,8 @@ from collections.abc import Mapping
 import numpy as np
 from numpy.typing import NDArray
 
-from navigation.angles import wrap
-from navigation.belief import pose_filter
 from navigation.belief.beacon_relocalization import BeaconRelocalization
+from navigation.belief.pose_filter import PoseFilter
 from navigation.observation import Frame, Observation, bearing_variance
 from navigation.parameters.belief import LocalizationParameters
 from navigation.transform import rotate, yaw_rotation
@@ -47,7 +46,7 @@ class Localizer:
         self._parameters = parameters
         self._beacons = {name: (float(x), float(y)) for name, (x, y) in beacons.items()}
         self._relocalization = BeaconRelocalization(parameters, self._beacons)
-        self._set(np.asarray(pose, float), np.asarray(covariance, float))
+        self._filter = PoseFilter(pose, covariance)
         self._last_valid = self.pose
         self._previous: tuple[float, list[float]] | None = None
         self.lost = False
@@ -57,12 +56,12 @@ class Localizer:
     @property
     def pose(self) -> Array:
         """x, y, heading of R in W (3,), a copy [m, m, rad]."""
-        return self._pose.copy()
+        return self._filter.pose
 
     @property
     def covariance(self) -> Array:
         """Covariance of the pose (3, 3), a copy."""
-        return self._P.copy()
+        return self._filter.covariance
 
     def update(self, frame: Frame) -> None:
         """Predict by the odometry since the last frame, then correct by the beacons of the frame.
@@ -76,26 +75,25 @@ class Localizer:
         detected = {o.label: o for o in reversed(frame.observations) if o.kind == "beacon"}
         displaced = self._relocalization.displaced
         beacons = [o for n, o in detected.items() if n in self._beacons and n not in displaced]
-        self._predict(frame)
         for observation in beacons:
             self._relocalization.remember(observation, frame)
-        if self.lost:
-            self._recover(frame, beacons)
-        elif beacons:
-            self._detect_failure(frame.time, beacons, self._correct(frame, beacons))
-        if not pose_filter.is_valid(self._pose, self._P):
+        try:
+            self._predict(frame)
+            if self.lost:
+                self._recover(frame, beacons)
+            elif beacons:
+                self._detect_failure(frame.time, beacons, self._correct(frame, beacons))
+            valid = self._filter.is_valid()
+        except np.linalg.LinAlgError:
+            valid = False
+        if not valid:
             self._restart()
         self._last_valid = self.pose
-
-    def _set(self, pose: Array, covariance: Array) -> None:
-        self._pose = pose.copy()
-        self._pose[2] = wrap(float(pose[2]))
-        self._P = 0.5 * (covariance + covariance.T)
 
     def _restart(self) -> None:
         """Re-initialize, lost, at the last valid pose."""
         self.faults += 1
-        self._set(self._last_valid, self._parameters.lost_covariance())
+        self._filter.set(self._last_valid, self._parameters.lost_covariance())
         self.lost = True
         self._relocalization.begin()
 
@@ -110,18 +108,17 @@ class Localizer:
         middle = last[2] + 0.5 * turn
         dx, dy = rotate(-middle, (odometry[0] - last[0], odometry[1] - last[1]))
         drift = self._parameters.drift_rate() * (frame.time - previous[0])
-        rotation = yaw_rotation(float(self._pose[2]))
+        rotation = yaw_rotation(float(self.pose[2]))
         Q = rotation @ frame.motion_covariance @ rotation.T + drift
-        if not pose_filter.predict(self._pose, self._P, np.array([dx, dy, turn]), Q):
-            self._restart()
+        self._filter.predict(np.array([dx, dy, turn]), Q)
 
     def _correct(self, frame: Frame, beacons: list[Observation]) -> list[str]:
         """Correct by all beacons inside the gate, as one measurement; return their names."""
-        pose, P, gate = self._pose, self._P, self._parameters.gate
-        distances = pose_filter.nis(pose, P, *self._measurement(frame, beacons)).tolist()
+        distances = self._filter.nis(*self._measurement(frame, beacons)).tolist()
+        gate = self._parameters.gate
         accepted = [o for o, d in zip(beacons, distances, strict=True) if d <= gate]
-        if accepted and not pose_filter.correct(pose, P, *self._measurement(frame, accepted)):
-            self._restart()
+        if accepted:
+            self._filter.update(*self._measurement(frame, accepted))
         return [o.label for o in accepted]
 
     def _measurement(self, frame: Frame, beacons: list[Observation]) -> tuple[Array, Array, Array]:
@@ -139,14 +136,14 @@ class Localizer:
         if self._relocalization.is_lost(time, accepted, rejected):
             self._relocalization.begin()
             self.lost = True
-            self._P = self._parameters.lost_covariance()
+            self._filter.set(self.pose, self._parameters.lost_covariance())
 
     def _recover(self, frame: Frame, beacons: list[Observation]) -> None:
         """Relocalize from the recent detections."""
-        pose = self._relocalization.locate(frame, self._pose) if beacons else None
+        pose = self._relocalization.locate(frame, self.pose) if beacons else None
         if pose is None:
             return
         self.lost = False
         self.recoveries += 1
-        self._set(pose, self._parameters.recovery_covariance())
+        self._filter.set(pose, self._parameters.recovery_covariance())
         self._correct(frame, beacons)

@@ -23,6 +23,7 @@ LIBRARIES = (
     "scipy",
     "pin",
     "opencv-python-headless",
+    "filterpy",
     "pydantic",
     "av",
 )

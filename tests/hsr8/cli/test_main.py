@@ -19,6 +19,7 @@ HEAVY = (
     "scipy",
     "cv2",
     "pinocchio",
+    "filterpy",
     "av",
     "pydantic",
     "matplotlib",

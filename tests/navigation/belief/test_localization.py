@@ -109,6 +109,13 @@ def updates(count, seed):
     assert localizer.faults == 0
 
 
+def test_eight_beacons_in_every_frame_for_40_s_cause_no_fault():
+    rng = np.random.default_rng(3)
+    for localizer, pose in walk(rng, (0.0, 0.0, pi - 0.01), 40.0, lambda _: list(BEACONS)):
+        assert np.hypot(*(localizer.pose - pose)[:2]) < 0.15
+    assert localizer.faults == localizer.recoveries == 0
+
+
 def test_covariance_stays_positive_definite_over_1000_random_updates():
     updates(1000, seed=7)
 
@@ -200,12 +207,15 @@ def test_a_shared_yaw_error_beyond_the_bearings_leaves_the_noise_a_covariance():
     assert localizer.faults == 0
 
 
-@pytest.mark.parametrize("part", ["_pose", "_P"])
-def test_a_filter_with_a_number_that_is_none_is_started_again(part):
+@pytest.mark.parametrize("part", ["pose", "covariance"])
+@pytest.mark.parametrize("names", [[], ["b0"]])
+def test_a_filter_with_a_number_that_is_none_is_started_again(part, names):
     localizer = Localizer(LocalizationParameters(), BEACONS, np.zeros(3), P0)
     localizer.update(frame(0.1, (0, 0, 0), []))
-    getattr(localizer, part)[...] = np.nan
-    localizer.update(frame(0.2, (0, 0, 0), []))
+    state = {"pose": localizer.pose, "covariance": localizer.covariance}
+    state[part][...] = np.nan
+    localizer._filter.set(**state)
+    localizer.update(frame(0.2, (0, 0, 0), [beacon((0, 0, 0), name) for name in names]))
     assert localizer.faults == 1
     assert np.isfinite(localizer.pose).all()
     assert np.isfinite(localizer.covariance).all()

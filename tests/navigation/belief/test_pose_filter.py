@@ -1,105 +1,184 @@
-"""Against filterpy's unscented Kalman filter."""
+"""Properties of the pose filter: limit of small noise, symmetries, order of the landmarks."""
 
+from contextlib import suppress
 from math import pi
 
 import numpy as np
 import pytest
-from filterpy.kalman import JulierSigmaPoints, UnscentedKalmanFilter
 
 from navigation.angles import wrap, wrap_array
-from navigation.belief import pose_filter
+from navigation.belief.pose_filter import PoseFilter
+from navigation.transform import propagate, rotate
 from tests.navigation.sightings import range_bearing
 
 LANDMARKS = np.array([(1.5, -2.0), (-2.5, -1.0), (-1.0, 0.5)])
 P = np.array([[4e-3, 1e-3, 0.0], [1e-3, 3e-3, 1e-3], [0.0, 1e-3, 2e-3]])
 R = np.diag([1e-3, 1e-4] * 3) + 5e-5 * np.outer([0, 1] * 3, [0, 1] * 3)
+Q = np.diag([1e-4, 2e-4, 3e-4])
+INCREMENT = np.array([0.1, -0.02, 0.2])
 HEADINGS = [0.3, pi - 0.01, -pi + 0.01, 1.57]
 
 
-def circular(angles, weights):
-    return np.arctan2(weights @ np.sin(angles), weights @ np.cos(angles))
-
-
-def mean_of(first):
-    def mean(points, weights):
-        result = weights @ points
-        result[first :: first + 1] = circular(points[:, first :: first + 1], weights)
-        return result
-
-    return mean
-
-
-def difference_of(first):
-    def difference(a, b):
-        result = a - b
-        result[first :: first + 1] = wrap_array(result[first :: first + 1])
-        return result
-
-    return difference
-
-
-def observe(pose, landmarks):
+def observe(pose, landmarks=LANDMARKS):
     return np.array([v for p in landmarks.tolist() for v in range_bearing(pose, tuple(p))])
 
 
-def move(pose, dt, increment):
-    dx, dy, turn = increment
-    middle = pose[2] + 0.5 * turn
-    c, s = np.cos(middle), np.sin(middle)
-    return pose + np.array([c * dx - s * dy, s * dx + c * dy, turn])
-
-
-def reference(pose):
-    f = UnscentedKalmanFilter(
-        dim_x=3,
-        dim_z=2,
-        dt=1.0,
-        fx=move,
-        hx=observe,
-        points=JulierSigmaPoints(3, kappa=0.0),
-        x_mean_fn=mean_of(2),
-        z_mean_fn=mean_of(1),
-        residual_x=difference_of(2),
-        residual_z=difference_of(1),
-        state_add=lambda x, step: np.array([*(x + step)[:2], wrap((x + step)[2])]),
-    )
-    f.x, f.P = np.array(pose, float), P.copy()
-    return f
+def jacobian(pose, landmarks=LANDMARKS):
+    """Partial derivatives of distances and bearings with respect to the pose (2 k, 3)."""
+    rows = []
+    for x, y in landmarks.tolist():
+        dx, dy = x - pose[0], y - pose[1]
+        d = np.hypot(dx, dy)
+        rows += [(-dx / d, -dy / d, 0.0), (dy / d**2, -dx / d**2, -1.0)]
+    return np.array(rows)
 
 
 @pytest.mark.parametrize("heading", HEADINGS)
-def test_predictions_and_corrections_are_those_of_filterpy(heading):
-    f, pose, covariance = reference((0.4, -1.0, heading)), np.array([0.4, -1.0, heading]), P.copy()
-    increment, Q = np.array([0.1, -0.02, 0.2]), np.diag([1e-4, 2e-4, 3e-4])
-    f.Q = Q
-    f.predict(increment=increment)
-    assert pose_filter.predict(pose, covariance, increment, Q)
-    assert pose == pytest.approx(f.x)
-    assert covariance == pytest.approx(f.P)
-    z = observe((0.5, -0.95, heading + 0.23), LANDMARKS)
-    f.sigmas_f = f.points_fn.sigma_points(f.x, f.P)
-    f.update(z, R=R, landmarks=LANDMARKS)
-    assert pose_filter.correct(pose, covariance, z, R, LANDMARKS)
-    assert pose == pytest.approx(f.x)
-    assert covariance == pytest.approx(f.P)
-    assert pose_filter.is_valid(pose, covariance)
+def test_with_little_noise_it_is_the_extended_kalman_filter(heading):
+    small, pose = 1e-6, np.array([0.4, -1.0, heading])
+    f = PoseFilter(pose, small * P)
+    f.predict(INCREMENT, small * Q)
+    end = np.array([*rotate(0.5 * INCREMENT[2], tuple(INCREMENT[:2])), INCREMENT[2]])
+    mean, F = propagate(pose, np.zeros(3), end)
+    mean[2] = wrap(mean[2])
+    predicted = small * (F @ P @ F.T + Q)
+    assert f.pose == pytest.approx(mean, abs=1e-8)
+    assert f.covariance == pytest.approx(predicted, rel=1e-4, abs=1e-12)
+
+    z = observe(mean + np.array([1e-3, -1e-3, 1e-3]))
+    y, H = z - observe(mean), jacobian(mean)
+    y[1::2] = wrap_array(y[1::2])
+    S = H @ predicted @ H.T + small * R
+    K = predicted @ H.T @ np.linalg.inv(S)
+    for k, distance in enumerate(f.nis(z, small * R, LANDMARKS)):
+        rows = slice(2 * k, 2 * k + 2)
+        expected = y[rows] @ np.linalg.solve(S[rows, rows], y[rows])
+        assert distance == pytest.approx(expected, rel=0.02)
+    f.update(z, small * R, LANDMARKS)
+    corrected = mean + K @ y
+    corrected[2] = wrap(corrected[2])
+    assert f.pose == pytest.approx(corrected, abs=1e-5)
+    assert f.covariance == pytest.approx((np.eye(3) - K @ H) @ predicted, rel=1e-3, abs=1e-11)
 
 
 @pytest.mark.parametrize("heading", HEADINGS)
-def test_the_nis_of_a_landmark_is_that_of_its_own_update(heading):
+def test_turning_the_world_turns_the_estimate(heading):
+    """Heading 0 is far from the wrap, and its estimate is the reference.
+
+    The directions of the sigma points depend on the axes, and a second-order error with them.
+    """
+    estimates = []
+    for turn in (0.0, heading):
+        T = np.eye(3)
+        T[:2, :2] = [[np.cos(turn), -np.sin(turn)], [np.sin(turn), np.cos(turn)]]
+        landmarks = LANDMARKS @ T[:2, :2].T
+        f = PoseFilter(np.array([0.0, 0.0, turn]), T @ P @ T.T)
+        f.predict(INCREMENT, T @ Q @ T.T)
+        z = observe((0.13, 0.05, 0.15))
+        f.update(z, R, landmarks)
+        assert -pi < f.pose[2] <= pi
+        position = T[:2, :2].T @ f.pose[:2]
+        estimates.append(([*position, wrap(f.pose[2] - turn)], T.T @ f.covariance @ T))
+    (pose, covariance), (turned, turned_covariance) = estimates
+    assert turned == pytest.approx(pose, abs=1e-3)
+    assert turned_covariance == pytest.approx(covariance, abs=2e-5)
+
+
+def test_the_order_of_the_landmarks_does_not_matter():
+    pose = np.array([0.4, -1.0, pi - 0.01])
+    z = observe(pose + np.array([0.05, 0.03, 0.05]))
+    results = []
+    for order in ([0, 1, 2], [2, 0, 1], [1, 0, 2]):
+        f, entries = PoseFilter(pose, P), np.ravel([(2 * k, 2 * k + 1) for k in order])
+        f.update(z[entries], R[np.ix_(entries, entries)], LANDMARKS[order])
+        results.append((f.pose, f.covariance))
+    for a, b in results[1:]:
+        assert a == pytest.approx(results[0][0], abs=1e-12)
+        assert b == pytest.approx(results[0][1], abs=1e-14)
+
+
+@pytest.mark.parametrize("heading", HEADINGS)
+def test_independent_landmarks_together_or_in_sequence_are_the_same_information(heading):
+    """Sigma points are drawn before each update."""
+    pose, independent = np.array([0.4, -1.0, heading]), np.diag([1e-3, 1e-4] * 3)
+    z = observe((0.42, -0.97, heading + 0.03))
+    together, one_by_one = PoseFilter(pose, 0.25 * P), PoseFilter(pose, 0.25 * P)
+    together.update(z, independent, LANDMARKS)
+    for k in range(3):
+        rows = slice(2 * k, 2 * k + 2)
+        one_by_one.update(z[rows], independent[rows, rows], LANDMARKS[k : k + 1])
+    difference = one_by_one.pose - together.pose
+    assert [*difference[:2], wrap(difference[2])] == pytest.approx([0.0] * 3, abs=1e-3)
+    sigma = np.sqrt(np.diag(together.covariance))
+    assert np.sqrt(np.diag(one_by_one.covariance)) == pytest.approx(sigma, abs=1e-3)
+
+
+def test_repeated_observations_add_their_information():
+    """With the sigma points of the prediction the third one would leave no covariance."""
+    pose = np.array([0.4, -1.0, 0.2])
+    f, small, z = PoseFilter(pose, 1e-4 * P), 1e-4 * R, observe((0.4, -1.0, 0.2))
+    information = np.linalg.inv(1e-4 * P)
+    H = jacobian(pose)
+    for _ in range(10):
+        f.update(z, small, LANDMARKS)
+        information += H.T @ np.linalg.solve(small, H)
+    assert f.covariance == pytest.approx(np.linalg.inv(information), rel=0.01, abs=1e-11)
+
+
+@pytest.mark.parametrize("heading", HEADINGS)
+def test_the_nis_of_a_landmark_is_that_of_the_landmark_alone(heading):
     pose = np.array([0.4, -1.0, heading])
-    z = observe((0.42, -0.95, heading + 0.03), LANDMARKS)
-    for k, distance in enumerate(pose_filter.nis(pose, P, z, R, LANDMARKS)):
-        f, rows = reference(pose), slice(2 * k, 2 * k + 2)
-        f.sigmas_f = f.points_fn.sigma_points(f.x, f.P)
-        f.update(z[rows], R=R[rows, rows], landmarks=LANDMARKS[k : k + 1])
-        assert distance == pytest.approx(f.mahalanobis**2)
+    z = observe((0.42, -0.95, heading + 0.03))
+    for k, distance in enumerate(PoseFilter(pose, P).nis(z, R, LANDMARKS)):
+        rows = slice(2 * k, 2 * k + 2)
+        (alone,) = PoseFilter(pose, P).nis(z[rows], R[rows, rows], LANDMARKS[k : k + 1])
+        assert distance == pytest.approx(alone)
 
 
-@pytest.mark.parametrize("broken", [-np.eye(3), np.full((3, 3), np.nan), np.zeros((3, 3))])
-def test_a_covariance_that_is_not_positive_definite_is_reported(broken):
-    pose, z = np.array([0.4, -1.0, 0.2]), observe((0.4, -1.0, 0.2), LANDMARKS)
-    assert not pose_filter.is_valid(pose, broken)
-    assert not pose_filter.predict(pose.copy(), broken.copy(), np.zeros(3), np.zeros((3, 3)))
-    assert not pose_filter.correct(pose.copy(), broken.copy(), z, R, LANDMARKS)
-    assert np.isinf(pose_filter.nis(pose, broken, z, R, LANDMARKS)).all()
+@pytest.mark.parametrize("heading", HEADINGS)
+def test_the_nis_has_the_mean_of_a_chi_square_distribution(heading):
+    rng, pose = np.random.default_rng(0), np.array([0.4, -1.0, heading])
+    poses = rng.multivariate_normal(pose, 0.25 * P, 1000)
+    noise = rng.multivariate_normal(np.zeros(6), R, 1000)
+    f = PoseFilter(pose, 0.25 * P)
+    nis = [f.nis(observe(p) + e, R, LANDMARKS) for p, e in zip(poses, noise, strict=True)]
+    assert np.mean(nis, axis=0) == pytest.approx(2.0, rel=0.15)
+
+
+@pytest.mark.parametrize("broken", [-np.eye(3), np.diag([1.0, -1.0, 1.0]), np.zeros((3, 3))])
+def test_a_covariance_that_is_not_positive_definite_is_an_error(broken):
+    pose, z = np.array([0.4, -1.0, 0.2]), observe((0.4, -1.0, 0.2))
+    assert PoseFilter(pose, P).is_valid()
+    assert not PoseFilter(pose, broken).is_valid()
+    for use in (
+        lambda f: f.predict(np.zeros(3), np.zeros((3, 3))),
+        lambda f: f.nis(z, R, LANDMARKS),
+        lambda f: f.update(z, R, LANDMARKS),
+    ):
+        with pytest.raises(np.linalg.LinAlgError):
+            use(PoseFilter(pose, broken))
+
+
+@pytest.mark.parametrize(
+    ("pose", "covariance"), [((np.nan, 0.0, 0.0), P), ((0.0, 0.0, 0.0), np.full((3, 3), np.nan))]
+)
+def test_a_number_that_is_not_finite_stays_invalid(pose, covariance):
+    f = PoseFilter(np.array(pose), covariance)
+    assert not f.is_valid()
+    with suppress(np.linalg.LinAlgError):
+        f.predict(INCREMENT, Q)
+        f.update(observe((0.4, -1.0, 0.2)), R, LANDMARKS)
+    assert not f.is_valid()
+
+
+def test_a_noise_that_is_not_positive_definite_is_an_error():
+    f = PoseFilter(np.array([0.4, -1.0, 0.2]), P)
+    with pytest.raises(np.linalg.LinAlgError):
+        f.update(observe((0.4, -1.0, 0.2)), -R, LANDMARKS)
+
+
+def test_pose_and_covariance_are_copies():
+    f = PoseFilter(np.array([0.4, -1.0, 0.2]), P)
+    f.pose[:], f.covariance[:] = 0.0, 0.0
+    assert f.pose.tolist() == [0.4, -1.0, 0.2]
+    assert np.array_equal(f.covariance, P)
