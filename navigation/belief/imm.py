@@ -379,6 +379,19 @@ def speed(weights: Array, states: Array) -> float:
 
 
 @compiled
+def mean_speed(weights: Array, states: Array) -> float:
+    """Return the mean of the speeds of the moving modes of one obstacle [m/s].
+
+    Modes that differ by a reversal cancel in `speed`, but not in this mean.
+    """
+    total = 0.0
+    for mode in range(FORWARD, REVERSED + 1):
+        u, v = states[mode, 2], states[mode, 3]
+        total += weights[mode] * sqrt(u * u + v * v)
+    return float(total / (weights[FORWARD] + weights[REVERSED]))
+
+
+@compiled
 def moments(weights: Array, states: Array, covariances: Array) -> tuple[Array, Array]:
     """Return mean (5,) and covariance (5, 5) of one obstacle, given that it moves; see `mean`."""
     on = weights[FORWARD] / (weights[FORWARD] + weights[REVERSED])

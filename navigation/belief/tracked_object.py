@@ -104,7 +104,8 @@ def correct(o: np.record, d: np.record, time: float, p: np.record) -> None:
         # Assigned through the particles, outside the gate of all modes: reset the filters.
         moving = max(1.0 - o.weights[imm.STATIC], 0.5)
         imm.initialize(o.weights, o.states, o.covariances, z, raw, moving, p)
-    imm.update(o.weights, o.states, o.covariances, z, raw * inflation, p.max_log_ratio)
+    else:
+        imm.update(o.weights, o.states, o.covariances, z, raw * inflation, p.max_log_ratio)
     fuse_radius(o, d, inflation, p)
     o.hits += 1
     o.misses, o.unseen_time = 0, 0.0
@@ -139,6 +140,9 @@ def classify(o: np.record, p: np.record) -> None:
     elif o.motion == MOVING:
         if moving < p.moving_exit_probability:
             o.motion = STATIC
+        elif imm.mean_speed(o.weights, o.states) < p.min_moving_speed:
+            # At zero speed the modes predict the same, so that detections do not decide.
+            o.motion = UNKNOWN
     elif (
         moving > p.moving_probability
         and o.hits >= p.min_moving_hits
