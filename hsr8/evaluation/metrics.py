@@ -24,6 +24,7 @@ from navigation.angles import wrap
 from navigation.parameters.navigation import MissionParameters
 
 Array = NDArray[np.float64]
+Mask = NDArray[np.bool_]
 Truth = dict[str, Array]
 
 COLUMNS = {
@@ -79,6 +80,7 @@ def metrics(
     records, frames = tables["records"], tables["frames"]
     truth = truth_at(frames, records)
     time = float(records["time"][-1]) if len(records) else 0.0
+    undisturbed = _undisturbed(records, frames, truth)
     arrival = _arrival(frames, truth, layout, mission)
     collisions, first = _collisions(records)
     moving = sum(c.moving for c in collisions)
@@ -99,7 +101,7 @@ def metrics(
         "path_length_m": path,
         **_certified(certificate, layout),
         "min_clearance_m": clearance if isfinite(clearance) else None,
-        **_localization(frames, truth),
+        **_localization(frames, truth, undisturbed),
         "obstacle_speed_rmse_mps": _obstacle_speed(frames, truth, layout),
         "sim_time_s": time,
         "wall_time_s": wall_time,
@@ -118,7 +120,7 @@ def metrics(
         "lost_fraction": mean(frames["lost"]),
         "filter_faults": int(frames["filter_faults"][-1]) if len(frames) else 0,
         "camera_frames": len(frames),
-        **track_metrics(frames, truth, layout),
+        **track_metrics(frames, truth, layout, undisturbed),
         **walk_metrics(tables),
     }
 
@@ -227,17 +229,40 @@ def _path(records: Table, scale: float) -> tuple[float, float]:
     return path, standing
 
 
-def _localization(frames: Table, truth: Truth) -> dict[str, object]:
-    """Compare believed and true poses."""
+def _undisturbed(records: Table, frames: Table, truth: Truth) -> Mask:
+    """Return whether no contact has displaced the robot since its start or last relocalization.
+
+    Dead reckoning does not measure the displacement of a foot that an obstacle pushes over the
+    floor, so that the error of the pose has no known covariance. Consistency is measured in the
+    other frames.
+    """
+    time, lost = truth["time"], frames["lost"]
+    relocalized = np.zeros(len(frames), dtype=bool)
+    relocalized[1:] = lost[:-1] & ~lost[1:]
+    contact = _latest(records["time"][records["contacts"].counts > 0], time)
+    undisturbed: Mask = (contact == -inf) | (contact < _latest(time[relocalized], time))
+    return undisturbed
+
+
+def _latest(events: Array, times: Array) -> Array:
+    """Return the time of the latest event at or before each of `times` (n,) [s]; -inf if none."""
+    latest: Array = np.append(-inf, events)[np.searchsorted(events, times, side="right")]
+    return latest
+
+
+def _localization(frames: Table, truth: Truth, undisturbed: Mask) -> dict[str, object]:
+    """Compare believed and true poses; consistency in the undisturbed frames (n,)."""
     errors = frames["pose"] - truth["robot"]
     errors[:, 2] = [wrap(turn) for turn in errors[:, 2].tolist()]
-    whitened = np.linalg.solve(frames["pose_covariance"], errors[..., None])[..., 0]
+    consistent = errors[undisturbed]
+    covariance = frames["pose_covariance"][undisturbed]
+    whitened = np.linalg.solve(covariance, consistent[..., None])[..., 0]
     dx, dy, turns = errors.T
     heading = root_mean([turn**2 for turn in turns.tolist()])
     return {
         "localization_rmse_m": root_mean(dx * dx + dy * dy),
         "heading_rmse_deg": None if heading is None else degrees(heading),
-        "nees_mean": mean([float(e @ w) / 3.0 for e, w in zip(errors, whitened, strict=True)]),
+        "nees_mean": mean([float(e @ w) / 3.0 for e, w in zip(consistent, whitened, strict=True)]),
     }
 
 

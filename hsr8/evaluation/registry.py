@@ -185,7 +185,8 @@ SECTIONS = {
         Metric(
             "nees_mean",
             "normalised estimation error squared of the pose / 3: 1 if the covariance is "
-            "consistent, larger if it is too small",
+            "consistent, larger if it is too small; frames after a contact with an obstacle or "
+            "beacon count from the next relocalization on",
             RUN | SWEEP | COMPARED,
             "NEES / 3",
         ),
@@ -217,7 +218,8 @@ SECTIONS = {
         Metric("mover_velocity_rmse_mps", "RMS velocity error of these movers"),
         Metric(
             "static_track_nees_mean",
-            "error of `static_track_rmse_m` as normalised estimation error squared / 2",
+            "error of `static_track_rmse_m` as normalised estimation error squared / 2, in the "
+            "frames of `nees_mean`",
         ),
         Metric("mover_track_nees_mean", "the same of `mover_track_rmse_m`"),
         Metric("mover_velocity_nees_mean", "the same of `mover_velocity_rmse_mps`"),

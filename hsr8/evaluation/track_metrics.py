@@ -13,6 +13,7 @@ from navigation.belief.belief import Motion
 
 Array = NDArray[np.float64]
 Indices = NDArray[np.intp]
+Mask = NDArray[np.bool_]
 
 # Lengths are those in a world of scale 1.
 MAX_MATCH_DISTANCE = 0.3  # from a track to its obstacle [m]
@@ -20,13 +21,16 @@ MAX_RANGE = 3.5  # movers farther away are not in view [m]
 SETTLING_TIME = 1.0  # time in view after which the errors of a moving track count [s]
 
 
-def track_metrics(frames: Table, truth: dict[str, Array], layout: Layout) -> dict[str, object]:
+def track_metrics(
+    frames: Table, truth: dict[str, Array], layout: Layout, undisturbed: Mask
+) -> dict[str, object]:
     """Compare the tracks of every camera frame with the true obstacles.
 
     Args:
         frames: camera frames of the run.
         truth: columns of the records at the frames.
         layout: layout of the run's world.
+        undisturbed: frames in which consistency is measured (f,).
 
     Returns:
         Results by name, with units at the end; None if nothing was measured.
@@ -66,23 +70,28 @@ def track_metrics(frames: Table, truth: dict[str, Array], layout: Layout) -> dic
     error = tracks["position"][chosen] - position
     velocity_error = tracks["velocity"][chosen] - truth["obstacle_velocities"][row, obstacle]
     covariance = tracks["covariance"][chosen]
+    calm, place, speed = undisturbed[row], covariance[:, :2, :2], covariance[:, 2:, 2:]
     return {
-        **_errors("static_track", "rmse_m", error[static], covariance[static, :2, :2]),
-        **_errors("mover_track", "rmse_m", error[moving], covariance[moving, :2, :2]),
-        **_errors("mover_velocity", "rmse_mps", velocity_error[moving], covariance[moving, 2:, 2:]),
+        **_errors("static_track", "rmse_m", error, place, static, calm),
+        **_errors("mover_track", "rmse_m", error, place, moving, calm),
+        **_errors("mover_velocity", "rmse_mps", velocity_error, speed, moving, calm),
         "movers_recognised_after_s": recognised_after,
     }
 
 
-def _errors(name: str, unit: str, error: Array, covariance: Array) -> dict[str, object]:
+def _errors(
+    name: str, unit: str, error: Array, covariance: Array, counted: Mask, calm: Mask
+) -> dict[str, object]:
     """Return root mean square and consistency of errors (n, 2) with covariances (n, 2, 2).
 
-    The normalised estimation error squared (NEES) is per degree of freedom, 1 if consistent.
+    The normalised estimation error squared (NEES) is per degree of freedom, 1 if consistent. Only
+    the errors `counted` (n,) count, in the NEES only those that are `calm` (n,), too.
     """
-    x, y = error.T
-    xx, xy, yx, yy = covariance.reshape(-1, 4).T
+    root = root_mean(np.sum(np.square(error[counted]), axis=1))
+    x, y = error[counted & calm].T
+    xx, xy, yx, yy = covariance[counted & calm].reshape(-1, 4).T
     normalised = (yy * x * x - (xy + yx) * x * y + xx * y * y) / (xx * yy - xy * yx) / 2
-    return {f"{name}_{unit}": root_mean(x * x + y * y), f"{name}_nees_mean": mean(normalised)}
+    return {f"{name}_{unit}": root, f"{name}_nees_mean": mean(normalised)}
 
 
 def owners(

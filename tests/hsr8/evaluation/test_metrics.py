@@ -116,6 +116,34 @@ def test_localization_errors_are_root_mean_squares(measure, fake):
     assert results["nees_mean"] == pytest.approx(nees)
 
 
+@pytest.mark.parametrize(
+    ("contact", "lost", "counted"),
+    [
+        (None, (), range(6)),
+        (2, (), range(2)),  # the displacement is unknown for good
+        (2, (3,), (0, 1, 4, 5)),  # relocalized in frame 4
+        (2, (0, 1), (0, 1)),  # relocalized with the contact, not after it
+        (2, (4, 5), (0, 1)),
+        (0, (), ()),
+    ],
+)
+def test_the_nees_excludes_frames_between_a_contact_and_the_next_relocalization(
+    measure, fake, contact, lost, counted
+):
+    """The error of frame k is k + 1 standard deviations of 1 cm along x."""
+    records = []
+    for k in range(6):
+        belief = (0.01 * (k + 1), 0.0, 0.0)
+        frame = fake.frame(0.06 * k, belief, lost=k in lost)
+        touching = (0,) if k == contact else ()
+        records.append(fake.record(0.06 * k, contacts=touching, frame=frame))
+    results = measure(records)
+    squares = [(k + 1) ** 2 for k in range(6)]
+    expected = np.mean([squares[k] / 3 for k in counted]) if counted else None
+    assert results["nees_mean"] == (None if expected is None else pytest.approx(expected))
+    assert results["localization_rmse_m"] == pytest.approx(0.01 * np.sqrt(np.mean(squares)))
+
+
 def test_tracks_are_compared_with_the_nearest_obstacle_if_any(measure, fake):
     wrong = fake.track(2, 0.0, velocity=(0.03, 0.1))
     ghost = fake.track(0, 0.0, error=(-0.7, 1.0), velocity=(9.0, 9.0))

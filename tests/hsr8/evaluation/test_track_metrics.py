@@ -14,14 +14,15 @@ DT = 0.06
 def measure(layout, fake, tables_of):
     """Results of tracks, given by frame."""
 
-    def measured(*frames):
+    def measured(*frames, disturbed=()):
         records = [
             fake.record(DT * k, frame=fake.frame(DT * k, tracks=tracks))
             for k, tracks in enumerate(frames)
         ]
         tables = tables_of(records)
         truth = truth_at(tables["frames"], tables["records"])
-        return track_metrics(tables["frames"], truth, layout)
+        undisturbed = ~np.isin(np.arange(len(frames)), disturbed)
+        return track_metrics(tables["frames"], truth, layout, undisturbed)
 
     return measured
 
@@ -40,6 +41,17 @@ def test_static_tracks_have_errors_and_consistency(measure, fake):
     assert results["static_track_rmse_m"] == pytest.approx(0.02)
     assert results["static_track_nees_mean"] == pytest.approx((0.5 + 2.0) / 2)
     assert results["mover_track_rmse_m"] is None
+
+
+def test_frames_after_a_contact_count_in_the_error_but_not_in_the_consistency(measure, fake):
+    frames = [
+        [fake.track(0, 0.0, error=(0.02, 0.0))],
+        [fake.track(0, DT, error=(0.0, 0.02))],
+        [fake.track(0, 2 * DT, error=(0.04, 0.0))],
+    ]
+    results = measure(*frames, disturbed=[1, 2])
+    assert results["static_track_rmse_m"] == pytest.approx(np.sqrt((2 * 0.02**2 + 0.04**2) / 3))
+    assert results["static_track_nees_mean"] == pytest.approx(0.5)
 
 
 def test_a_mover_counts_after_a_second_in_view_if_recognised(measure, fake):
