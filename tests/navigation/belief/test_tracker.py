@@ -118,6 +118,19 @@ def test_a_mover_is_moving_within_two_seconds_and_never_static(view, observe, se
     assert np.hypot(*(track.velocity - (0.0, speed))) < 0.05
 
 
+@pytest.mark.parametrize("seed", range(5))
+def test_a_mover_that_stops_is_not_moving_after_rare_looks(view, observe, seed):
+    """One noisy look per half second."""
+    stage, interval = Stage(view, observe, seed), 0.5
+    motions = []
+    for k in range(40):
+        stage.time += interval - DT
+        tracks = stage.show((1.2, min(-0.4 + 0.1 * interval * k, 0.0)))
+        motions += [t.motion for t in tracks]
+    assert Motion.MOVING in motions
+    assert Motion.MOVING not in motions[-10:]
+
+
 def test_sway_of_the_body_does_not_make_obstacles_move(view, observe):
     """Pitch errors at the step frequency shift all ranges together."""
     stage = Stage(view, observe)

@@ -8,9 +8,11 @@ import pytest
 
 from compilation.record import record
 from navigation.belief.belief import Motion
+from navigation.belief.detections import DETECTION
 from navigation.belief.tracked_object import (
     OBJECT,
     classify,
+    correct,
     detection_reach,
     published,
     search_radius,
@@ -162,6 +164,47 @@ def test_verdicts_have_hysteresis(motion, moving, verdict):
     objects = make(filters(moving), motion=motion)
     classify(objects[0], LIMITS[0])
     assert verdict_of(objects) is verdict
+
+
+@pytest.mark.parametrize(
+    ("speed", "verdict"),
+    [
+        (P.min_moving_speed + 0.001, Motion.MOVING),
+        (P.min_moving_speed - 0.001, Motion.UNKNOWN),
+        (0.0, Motion.UNKNOWN),
+    ],
+)
+def test_a_mover_that_has_stopped_is_undecided(speed, verdict):
+    """At zero speed detections do not change the probabilities of the modes."""
+    objects = make(filters(0.5, (speed, 0.0)), motion=Motion.MOVING)
+    classify(objects[0], LIMITS[0])
+    assert verdict_of(objects) is verdict
+
+
+def test_a_mover_that_may_have_reversed_has_not_stopped():
+    modes = filters(0.999, (0.1, 0.0))
+    modes["weights"] = [0.001, 0.4995, 0.4995]
+    modes["states"][2, 2:] *= -1.0
+    objects = make(modes, motion=Motion.MOVING)
+    classify(objects[0], LIMITS[0])
+    assert track_of(objects, 5.0).velocity == pytest.approx([0.0, 0.0])
+    assert verdict_of(objects) is Motion.MOVING
+
+
+@pytest.mark.parametrize("last_time", [5.0, 9.99])
+def test_a_detection_outside_the_gate_counts_once(last_time):
+    """The filters start again at the detection, as those of a new track."""
+    d = np.zeros(1, DETECTION)[0]
+    d.position, d.covariance, d.radius, d.radius_sigma = (2.0, 2.0), SHARP, 0.08, 0.01
+    objects = make(filters(0.7), motion=Motion.MOVING, last_time=last_time)
+    o = objects[0]
+    correct(o, d, 10.0, LIMITS[0])
+    for state, covariance in zip(o.states, o.covariances, strict=True):
+        assert state.tolist() == [2.0, 2.0, 0.0, 0.0, 0.0]
+        assert np.array_equal(covariance[:2, :2], SHARP)
+    assert 1.0 - o.weights[0] == pytest.approx(0.7)
+    assert (o.hits, o.last_time) == (51, 10.0)
+    assert track_of(objects, 10.0).covariance[2, 2] == pytest.approx(P.velocity_sigma**2)
 
 
 @pytest.mark.parametrize(
