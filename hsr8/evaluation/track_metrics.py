@@ -70,17 +70,20 @@ def track_metrics(
     error = tracks["position"][chosen] - position
     velocity_error = tracks["velocity"][chosen] - truth["obstacle_velocities"][row, obstacle]
     covariance = tracks["covariance"][chosen]
-    calm, place, speed = undisturbed[row], covariance[:, :2, :2], covariance[:, 2:, 2:]
+    of_position, of_velocity = covariance[:, :2, :2], covariance[:, 2:, 2:]
+    calm = undisturbed[row]
     return {
-        **_errors("static_track", "rmse_m", error, place, static, calm),
-        **_errors("mover_track", "rmse_m", error, place, moving, calm),
-        **_errors("mover_velocity", "rmse_mps", velocity_error, speed, moving, calm),
+        **_errors("static_track", "rmse_m", error, of_position, counted=static, calm=calm),
+        **_errors("mover_track", "rmse_m", error, of_position, counted=moving, calm=calm),
+        **_errors(
+            "mover_velocity", "rmse_mps", velocity_error, of_velocity, counted=moving, calm=calm
+        ),
         "movers_recognised_after_s": recognised_after,
     }
 
 
 def _errors(
-    name: str, unit: str, error: Array, covariance: Array, counted: Mask, calm: Mask
+    name: str, unit: str, error: Array, covariance: Array, *, counted: Mask, calm: Mask
 ) -> dict[str, object]:
     """Return root mean square and consistency of errors (n, 2) with covariances (n, 2, 2).
 

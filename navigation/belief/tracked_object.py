@@ -141,7 +141,7 @@ def classify(o: np.record, p: np.record) -> None:
         if moving < p.moving_exit_probability:
             o.motion = STATIC
         elif imm.mean_speed(o.weights, o.states) < p.min_moving_speed:
-            # At zero speed the modes predict the same, so that detections do not decide.
+            # At zero speed all modes predict one position: detections do not decide.
             o.motion = UNKNOWN
     elif (
         moving > p.moving_probability

@@ -120,7 +120,7 @@ def test_localization_errors_are_root_mean_squares(measure, fake):
     ("contact", "lost", "counted"),
     [
         (None, (), range(6)),
-        (2, (), range(2)),  # the displacement is unknown for good
+        (2, (), range(2)),  # never relocalized
         (2, (3,), (0, 1, 4, 5)),  # relocalized in frame 4
         (2, (0, 1), (0, 1)),  # relocalized with the contact, not after it
         (2, (4, 5), (0, 1)),
