@@ -54,12 +54,22 @@ def test_a_missing_plugin_is_refused_before_mujoco_is_imported():
     assert "none.py:Mine: cannot read none.py" in said
 
 
-def test_a_run_without_log_and_recorded_movers_imports_no_library_for_them(tmp_path):
+def test_a_run_without_log_does_not_import_rerun(tmp_path):
     words = ["run", "quick", "--duration", "0.1", "--quiet", "--camera", "analytic"]
-    optional = ["rerun", "scipy.interpolate"]
-    _, imported, _ = imported_by([*words, "--out", str(tmp_path)], ["mujoco", *optional])
+    _, imported, _ = imported_by([*words, "--out", str(tmp_path)], ["mujoco", "rerun"])
     assert imported == ["mujoco"]
     assert [*tmp_path.rglob("metrics.json")]
+
+
+def test_a_scenario_without_recorded_movers_does_not_import_their_interpolation():
+    script = (
+        "import sys; from hsr8.scenario.loader import load_scenario; load_scenario('quick'); "
+        "print('scipy.interpolate' in sys.modules)"
+    )
+    done = subprocess.run(
+        [sys.executable, "-c", script], capture_output=True, text=True, check=True, timeout=60
+    )
+    assert done.stdout.split() == ["False"]
 
 
 def test_no_arguments_show_the_help(capsys):

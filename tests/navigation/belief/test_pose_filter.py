@@ -61,6 +61,14 @@ def test_with_little_noise_it_is_the_extended_kalman_filter(heading):
     assert f.covariance == pytest.approx((np.eye(3) - K @ H) @ predicted, rel=1e-3, abs=1e-11)
 
 
+def test_the_sigma_points_have_the_fourth_moment_of_a_normal_distribution():
+    """After a metre with an uncertain heading the mean is exp(-variance / 2) m ahead."""
+    sigma = 0.5
+    f = PoseFilter(np.zeros(3), np.diag([1e-6, 1e-6, sigma**2]))
+    f.predict(np.array([1.0, 0.0, 0.0]), 1e-6 * np.eye(3))
+    assert f.pose == pytest.approx([np.exp(-0.5 * sigma**2), 0.0, 0.0], abs=3e-4)
+
+
 @pytest.mark.parametrize("heading", HEADINGS)
 def test_turning_the_world_turns_the_estimate(heading):
     """Heading 0 is far from the wrap, and its estimate is the reference.
