@@ -13,8 +13,6 @@ Rows = NDArray[np.record]
 Regions = tuple[Rows, Table]
 ROW, START, STOP, COLOR = range(4)  # columns of a table of runs
 LEFT, TOP, RIGHT, BOTTOM, AREA, LABEL, RUNS = range(7)  # columns of a table of regions
-WORD = 8  # pixels that are compared at once
-REPEAT = np.uint64(0x0101010101010101)  # a label times this is a word of that label
 
 
 @compiled
@@ -27,31 +25,9 @@ def _root(parent: Table, run: int) -> int:
 
 
 @compiled
-def _end(flat: Labels, words: NDArray[np.uint64], start: int, stop: int) -> int:
-    """Return the end of the run that begins at `start`.
-
-    Args:
-        flat: labels of an image, row by row (n,).
-        words: view of `flat` by words, without an incomplete last one.
-        start: first pixel of the run.
-        stop: end of its row.
-    """
-    label = flat[start]
-    word = label * REPEAT
-    end = start + 1
-    while end < stop and flat[end] == label:
-        end += 1
-        while end % WORD == 0 and end + WORD <= stop and words[end // WORD] == word:
-            end += WORD
-    return end
-
-
-@compiled
 def _runs_of(labels: Labels) -> tuple[Table, Table]:
     """Return all runs, by row, then column (n, 4), and the parent of each (n,)."""
     height, width = labels.shape
-    flat = labels.reshape(-1)
-    words = flat[: flat.size // WORD * WORD].view(np.uint64)
     runs = np.empty((height * width, 4), np.int32)
     parent = np.empty(height * width, np.int32)
     n = above = 0
@@ -60,7 +36,9 @@ def _runs_of(labels: Labels) -> tuple[Table, Table]:
         end = 0
         while end < width:
             label, start = labels[row, end], end
-            end = _end(flat, words, row * width + start, (row + 1) * width) - row * width
+            end += 1
+            while end < width and labels[row, end] == label:
+                end += 1
             if label == 0:
                 continue
             runs[n, ROW], runs[n, START], runs[n, STOP], runs[n, COLOR] = row, start, end, label

@@ -68,17 +68,6 @@ def _edge(
 
 
 @compiled
-def _sort(values: Array) -> None:
-    """Sort by insertion, in place."""
-    for i in range(1, len(values)):
-        value, j = values[i], i
-        while j > 0 and values[j - 1] > value:
-            values[j] = values[j - 1]
-            j -= 1
-        values[j] = value
-
-
-@compiled
 def _set_side(
     side: np.record, points: Array, outer: Labels, pixel: float, sign: float, edge_sigma: float
 ) -> None:
@@ -102,7 +91,7 @@ def _set_side(
         ranked[i] = outwards if outer[i] == 0 else INVALID
         free += outer[i] == 0
         cut += outer[i] == OUTSIDE
-    _sort(ranked)
+    ranked.sort()
     # The side is the median of the free points near the outermost of them.
     outermost = ranked[n - 1 - free // OUTLIERS]
     limit, low_limit = outermost - ENVELOPE * pixel, bottom + LOW_FRACTION * (top - bottom)
