@@ -1,6 +1,5 @@
 """Colour classes of obstacles and beacons, classification by a look-up table, and its files."""
 
-import zipfile
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -16,9 +15,7 @@ from vision.errors import VisionError
 Labels = NDArray[np.uint8]
 
 TABLE_SIZE = 1 << 15  # one entry for each RGB555 colour
-
 SUFFIX = ".npz"
-MAX_SIZE = 1_000_000  # of a table, unpacked; it has 34 kB [byte]
 
 
 @dataclass(frozen=True, slots=True)
@@ -183,13 +180,7 @@ def load_table(path: Path) -> ColorTable:
     Raises:
         VisionError: the file cannot be read, or is not a colour table of the present classes.
     """
-    if path.exists() and not path.is_file():
-        raise VisionError(f"{path}: not a regular file; expected a colour table")
     try:
-        with zipfile.ZipFile(path) as parts:
-            size = sum(part.file_size for part in parts.infolist())
-        if size > MAX_SIZE:
-            raise ValueError(size)
         with np.load(path, allow_pickle=False) as archive:
             labels, names = archive["labels"], archive["names"].tolist()
     except OSError as error:
