@@ -31,17 +31,19 @@ SPAN_SIGMA = 0.02  # minimum relative standard deviation of a distance from a sp
 
 
 @compiled
-def interpenetrate(a: Array, b: Array, min_separation: float) -> bool:
+def interpenetrate(a: Array, b: Array, tolerance: float, min_separation: float) -> bool:
     """Return whether two cylinders interpenetrate, so that one must be a false detection.
 
     Args:
         a: azimuth [rad], distance and radius [m] of one cylinder (3,).
         b: the same of another cylinder (3,).
+        tolerance: of the difference of their distances [m].
         min_separation: minimum distance of the axes, relative to the sum of the radii [1].
     """
-    gap2 = a[1] * a[1] + b[1] * b[1] - 2.0 * a[1] * b[1] * cos(a[0] - b[0])
+    along = max(abs(a[1] - b[1]) - tolerance, 0.0)
+    across = 2.0 * min(a[1], b[1]) * sin(0.5 * (a[0] - b[0]))
     separation = min_separation * (a[2] + b[2])
-    return bool(gap2 < separation * separation)
+    return bool(along * along + across * across < separation * separation)
 
 
 def polar_in_robot(

@@ -1,5 +1,7 @@
 """Location of the cylinders of an image: edges of blobs, candidates, segmentation, fit."""
 
+from math import sqrt
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -9,12 +11,14 @@ from vision.cylinder import interpenetrate
 from vision.cylinder_fit import fit
 from vision.outline import trace
 from vision.split import split
-from vision.tables import LEFT, OUTSIDE, RIGHT
+from vision.tables import OUTSIDE
 
 Bools = NDArray[np.bool_]
 Labels = NDArray[np.uint8]
 Rows = NDArray[np.record]
 Table = NDArray[np.int32]
+
+SIGMAS = 2.0  # tolerance of the distance between two parts of one cylinder [standard deviations]
 
 
 @compiled
@@ -100,34 +104,19 @@ def _inflate(candidate: np.record, p: np.record) -> None:
 
 
 @compiled
-def _edge_count(candidate: np.record) -> int:
-    """Return the number of usable edges."""
-    sides = candidate.sides
-    return int(candidate.rim_count + sides[LEFT].trusted + sides[RIGHT].trusted)
-
-
-@compiled
-def _better(a: np.record, b: np.record) -> bool:
-    """Return whether a part has more usable edges than another, or as many and less misfit."""
-    edges_a, edges_b = _edge_count(a), _edge_count(b)
-    return bool(edges_a > edges_b or (edges_a == edges_b and a.misfit < b.misfit))
-
-
-@compiled
 def _select(parts: Rows, p: np.record) -> None:
-    """Report the plausible parts of merged blobs; of two that interpenetrate the better one."""
+    """Report the plausible parts of merged blobs; of two that interpenetrate the more certain."""
     margin = p.radius_margin * (p.max_radius - p.min_radius)
     ranked, count = np.empty(len(parts), np.int64), 0
     for k in range(len(parts)):
-        part = parts[k]
-        radius = part.cylinder[2]
+        radius, variance = parts[k].cylinder[2], parts[k].covariance[1, 1]
         if not (
-            part.misfit < p.misfit_factor * p.max_misfit
+            _consistent(parts[k], True, p)
             and p.min_radius - margin < radius < p.max_radius + margin
         ):
             continue
         j = count
-        while j > 0 and _better(part, parts[ranked[j - 1]]):
+        while j > 0 and variance < parts[ranked[j - 1]].covariance[1, 1]:
             ranked[j] = ranked[j - 1]
             j -= 1
         ranked[j] = k
@@ -135,8 +124,11 @@ def _select(parts: Rows, p: np.record) -> None:
     for i in range(count):
         part = parts[ranked[i]]
         part.reported = True
+        tolerance = SIGMAS * sqrt(part.covariance[1, 1])
         for j in range(i):
             other = parts[ranked[j]]
-            if other.reported and interpenetrate(part.cylinder, other.cylinder, p.min_separation):
+            if other.reported and interpenetrate(
+                part.cylinder, other.cylinder, tolerance, p.min_separation
+            ):
                 part.reported = False
                 break

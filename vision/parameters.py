@@ -25,11 +25,9 @@ class PoseParameters:
 class SplitParameters:
     """Segmentation of merged blobs."""
 
-    # difference of the radii of a foot and a head that match
-    radius_tolerance: Annotated[float, "m"] = 0.04
-    side_tolerance: float = 2.5  # difference of the sides of a foot and a head that match [column]
+    # Change of distance at the step of an outline that separates two cylinders.
+    min_gap: Annotated[float, "m"] = 0.03
     side_sigma: float = 1.0  # standard deviation of an end of a piece of the outline [column]
-    misfit_factor: float = 2.0  # max_misfit of a part relative to that of a whole blob [1]
     radius_margin: float = 0.3  # excess of a part's radius, relative to the range of radii [1]
     # Distance of two axes, relative to the sum of the radii, below which two parts are one [1].
     min_separation: float = 0.85

@@ -121,13 +121,16 @@ def test_place_in_the_robot_frame_follows_the_camera() -> None:
 
 def test_cylinders_interpenetrate_when_their_axes_are_too_close() -> None:
     here = np.array([0.1, 1.0, 0.1])
-    assert interpenetrate(here, here, 0.85)
-    for step in (0.01, 0.1, 0.4):
-        there = here + step * np.eye(3)[1]
-        for shared in (0.85, 0.3):
-            near = bool(step < shared * 2.0 * here[2])
-            assert interpenetrate(here, there, shared) is near
-            assert interpenetrate(there, here, shared) is near
+    for step in (0.0, 0.01, 0.1, 0.4):
+        aside = here + 2.0 * np.arcsin(0.5 * step) * np.eye(3)[0]
+        behind = here + step * np.eye(3)[1]
+        for separation in (0.85, 0.3):
+            for tolerance in (0.0, 0.2):
+                near = step < separation * 0.2
+                assert interpenetrate(here, aside, tolerance, separation) is near
+                near = step - tolerance < separation * 0.2
+                assert interpenetrate(here, behind, tolerance, separation) is near
+                assert interpenetrate(behind, here, tolerance, separation) is near
 
 
 @pytest.mark.parametrize("unit", [0.3, 3.15])

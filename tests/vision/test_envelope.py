@@ -1,8 +1,8 @@
 import numpy as np
-import pytest
 
 from tests.vision.scene import at, pose, traced
-from vision.envelope import PIECE, add_pieces, borders, envelopes
+from vision.envelope import MAX_CELLS, add_envelopes, borders
+from vision.tables import OUTSIDE
 from vision.view import angles
 
 OBSTACLES = [
@@ -16,42 +16,37 @@ OBSTACLES = [
 def test_envelopes_bound_the_directions_of_all_pixels():
     """Lowest and highest slope of a blob near each azimuth, from the middles of its pixels."""
     image = traced(OBSTACLES, pose(pan=0.1, tilt=-0.3, roll=0.05))
-    view = image.view[0]
+    points = np.empty(2 * MAX_CELLS), np.empty(2 * MAX_CELLS), np.empty(2 * MAX_CELLS, np.uint8)
     for blob in image.blobs:
-        (start, width, size), (low, high), _ = envelopes(blob, image.runs, image.padded, view)
+        n, width, pixel = add_envelopes(points, 0, blob, image.runs, image.padded, image.view[0])
+        azimuth, (low, high) = points[0][:n], points[1][: 2 * n].reshape(2, n)
+        assert np.allclose(np.diff(azimuth), width)
+        assert np.array_equal(points[0][n : 2 * n], azimuth)
         middles = [
             (column + 0.5, row + 0.5)
             for row, first, last, _ in image.runs[blob.first_run : blob.last_run].tolist()
             for column in range(first, last)
         ]
         for u, v in middles:
-            azimuth, slope = angles(view, u, v)
-            column = int((azimuth - start) / width)
+            direction, slope = angles(image.view[0], u, v)
+            column = round((direction - azimuth[0]) / width)
             near = slice(max(column - 1, 0), column + 2)
-            assert low[near].min() - size < slope < high[near].max() + size
+            assert low[near].min() - pixel < slope < high[near].max() + pixel
 
 
-def test_a_piece_has_the_ends_and_the_distance_of_its_object():
-    """Two objects: the nearer one, on the left, occludes an end of the farther one."""
-    envelope, usable = np.repeat([-0.3, -0.6], [6, 8]), np.ones(14, bool)
-    pieces, points = np.zeros(9, PIECE), (np.empty(20), np.empty(20), np.ones(20, np.uint8))
-    count, used = add_pieces(
-        pieces, points, 3, envelope, usable, (0.1, 0.01, 0.0), 0.1, -0.6, True, (True, True)
-    )
-    assert (count, used) == (2, 15)
-    far, near = pieces[:2]
-    ends = [(p.right, p.left, p.right_true, p.left_true, p.run) for p in (far, near)]
-    assert ends[0] == pytest.approx((0.1, 0.16, True, False, 2.0))
-    assert ends[1] == pytest.approx((0.16, 0.24, True, True, 1.0))
-    assert [(p.first, p.last) for p in (far, near)] == [(3, 8), (8, 15)]
-    inner = np.r_[0:5, 7:14]
-    azimuth, slope, outer = (values[3:15] for values in points)
-    assert azimuth == pytest.approx(0.1 + 0.01 * (inner + 0.5))
-    assert np.array_equal(slope, envelope[inner])
-    assert not outer.any()
+def test_an_envelope_next_to_another_object_is_no_edge_of_a_foot():
+    """The nearer red obstacle hides the middle of the foot of the green one."""
+    image = traced(OBSTACLES[:2], pose(tilt=-0.3))
+    points = np.empty(2 * MAX_CELLS), np.empty(2 * MAX_CELLS), np.empty(2 * MAX_CELLS, np.uint8)
+    blob = image.named("green")
+    n, _, _ = add_envelopes(points, 0, blob, image.runs, image.padded, image.view[0])
+    foot, head = points[2][: 2 * n].reshape(2, n)
+    assert set(foot.tolist()) == {0, OUTSIDE}
+    assert not head.any()
 
 
 def test_an_envelope_is_cut_at_its_steps_and_nowhere_else():
     envelope = np.repeat([-0.5, -0.3, -0.6], [5, 1, 6])
-    assert borders(envelope, 0.1).tolist() == [0, 6, 12]  # one column is too narrow
-    assert borders(envelope, 1.0).tolist() == [0, 12]
+    assert borders(envelope, 0.1, 0.0).tolist() == [0, 6, 12]  # one column is too narrow
+    assert borders(envelope, 1.0, 0.0).tolist() == [0, 12]
+    assert borders(envelope, 0.1, 1.9).tolist() == [0, 12]  # the distance hardly changes

@@ -1,13 +1,15 @@
+from math import asin
+
 import numpy as np
 import pytest
 
-from tests.vision.scene import CAMERA, Cylinder, at, paint, pose, traced
+from tests.vision.scene import CAMERA, Cylinder, at, paint, pose, traced, true_polar
 from vision.detector import Detector, parameter_record
 from vision.parameters import VisionParameters
 from vision.split import split
-from vision.tables import CANDIDATE
+from vision.tables import CANDIDATE, FAR, NEAR
 
-GAZE = pose(tilt=-0.3)
+GAZE = pose(tilt=-0.4)
 
 
 def parts_of(obstacles: list[Cylinder]):
@@ -23,9 +25,23 @@ def parts_of(obstacles: list[Cylinder]):
 
 
 @pytest.mark.parametrize("offset", [-4.0, -2.0, 0.0, 2.0, 4.0])
-def test_the_nearer_of_two_is_whole_and_the_farther_is_occluded(offset: float) -> None:
-    parts = parts_of([at(0.9, 0.0, "red", 0.08), at(1.5, offset, "red", 0.07)])
-    assert sorted(part.occluded for part in parts) == [False, True]
+@pytest.mark.parametrize(("distance", "radius"), [(0.9, 0.08), (0.55, 0.12)])
+def test_a_foot_has_the_sides_of_the_nearer_obstacle_a_head_those_of_the_farther(
+    distance, radius, offset
+) -> None:
+    obstacles = at(distance, 0.0, "red", radius), at(1.5, offset, "red", 0.07)
+    whole = [part for part in parts_of([*obstacles]) if part.sides["trusted"].all()]
+    assert [part.rims[0].half for part in whole] == [NEAR, FAR]
+    assert [part.occluded for part in whole] == [False, True]
+    for part, obstacle in zip(whole, obstacles, strict=True):
+        far, bearing = true_polar(obstacle)
+        reach = asin(obstacle.radius / far)
+        sides = bearing + reach, bearing - reach
+        assert part.sides["azimuth"] == pytest.approx(sides, abs=0.012)  # two columns
+
+
+def test_a_blob_without_steps_has_no_parts() -> None:
+    assert not len(parts_of([at(1.0, 0.0, "red")]))
 
 
 def test_of_two_of_a_color_the_hidden_one_is_placed_as_well_as_it_says() -> None:
