@@ -6,11 +6,11 @@ from contextlib import ExitStack
 from pathlib import Path
 from typing import Any, SupportsIndex
 
-from hsr8.decisions import GazeController, MotionPlanner
 from hsr8.errors import UsageError
 from hsr8.evaluation.recording import Result, record, renderer_of
 from hsr8.files.writing import require_temporary
 from hsr8.loop import Simulation
+from hsr8.plugin_decisions import GazePlugin, PlannerPlugin
 from hsr8.plugin_walker import CustomWalker
 from hsr8.recorder.run.manifest import CALL
 from hsr8.recorder.run.run_folder import SCENARIO, RunFolder, new_run_folder
@@ -27,8 +27,8 @@ def run(
     settings: Sequence[str] | Mapping[str, Any] = (),
     out: str | Path | None = None,
     log: bool = False,
-    planner: MotionPlanner | None = None,
-    gaze: GazeController | None = None,
+    planner: PlannerPlugin | None = None,
+    gaze: GazePlugin | None = None,
     walker: CustomWalker | None = None,
 ) -> Result:
     """Run a scenario.

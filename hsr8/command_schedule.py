@@ -9,8 +9,8 @@ from numpy.typing import NDArray
 
 from hsr8.scenario.mission import Command as CommandSection
 from hsr8.scenario.mission import RandomCommands, Stretch
-from navigation.belief.belief import Belief
 from navigation.decision import MotionDecision, Task
+from navigation.scene import Scene
 from walking.command import Command, CommandState, VelocityCommand
 
 Array = NDArray[np.float64]
@@ -94,11 +94,16 @@ class ScheduledPlanner:
     def __init__(self, schedule: CommandSchedule) -> None:
         self._schedule = schedule
 
-    def plan(self, belief: Belief, task: Task, look: float | None = None) -> MotionDecision:
+    def begin(self) -> None:
+        """Return the memory, which is empty."""
+
+    def plan(self, memory: None, scene: Scene) -> tuple[MotionDecision, None]:
         """Return the velocity in force."""
+        belief = scene.belief
         vx, vy, wz = self._schedule.at(belief.time).velocity
-        return MotionDecision(
+        decision = MotionDecision(
             velocity=np.array([vx, vy, wz]),
             direction=float(belief.pose[2]) + atan2(vy, vx),
             speed=hypot(vx, vy),
         )
+        return decision, None

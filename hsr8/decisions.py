@@ -1,6 +1,6 @@
 """The robot's decisions at a camera frame: where to go, how to move, where to look."""
 
-from typing import Protocol
+from typing import Any, Protocol
 
 import numpy as np
 from numpy.typing import NDArray
@@ -9,8 +9,11 @@ from compilation.value import value
 from navigation.belief.belief import Belief
 from navigation.belief.estimator import predict
 from navigation.decision import GazeDecision, MotionDecision, Task
+from navigation.memory import Memory
 from navigation.motion.landmark_obstacles import LandmarkObstacles
 from navigation.observation import CameraView, Frame
+from navigation.parameters.navigation import NavigationParameters
+from navigation.scene import Scene
 from vision.detection import Detection
 
 Array = NDArray[np.float64]
@@ -82,29 +85,32 @@ class MissionPlanner(Protocol):
 
 
 class GazeController(Protocol):
-    """Gaze planner."""
+    """Gaze planner; its state between frames is a value that it takes and returns."""
 
-    def choose(self, belief: Belief, task: Task, motion: MotionDecision | None) -> GazeDecision:
-        """Return the gaze for this frame."""
+    def begin(self) -> object:
+        """Return the memory at the start, after a fall and after a relocalization."""
+
+    def choose(
+        self, memory: Any, scene: Scene, motion: MotionDecision | None
+    ) -> tuple[GazeDecision, object]:
+        """Return the gaze for this frame, and the memory."""
 
 
 class MotionPlanner(Protocol):
-    """Motion planner."""
+    """Motion planner; its state between footsteps is a value that it takes and returns."""
 
-    def plan(self, belief: Belief, task: Task, look: float | None) -> MotionDecision:
-        """Return the motion of the next footstep.
+    def begin(self) -> object:
+        """Return the memory at the start, after a fall and after a relocalization."""
 
-        Args:
-            belief: belief of the robot; its tracks include nearby landmarks.
-            task: task of the mission.
-            look: direction in W that the body turns to for a fixed camera, if any [rad].
-        """
+    def plan(self, memory: Any, scene: Scene) -> tuple[MotionDecision, object]:
+        """Return the motion of the next footstep, and the memory."""
 
 
 class Decisions:
     """Mission, motion planner and gaze planner, called in this order.
 
     Args:
+        parameters: parameters of the decisions.
         mission: sequence of destinations.
         planner: motion planner.
         gaze: gaze planner.
@@ -116,12 +122,14 @@ class Decisions:
     def __init__(
         self,
         *,
+        parameters: NavigationParameters,
         mission: MissionPlanner,
         planner: MotionPlanner,
         gaze: GazeController,
         landmarks: LandmarkObstacles,
         footstep: float,
     ) -> None:
+        self._parameters = parameters
         self._mission = mission
         self._planner = planner
         self._gaze = gaze
@@ -132,6 +140,10 @@ class Decisions:
         self._look: float | None = None
         self._planned_at = -np.inf
         self._planned_step = -1
+        self._memory = self._begin()
+
+    def _begin(self) -> Memory:
+        return Memory(self._planner.begin(), self._gaze.begin())
 
     def make(self, estimate: Belief, measured: Frame, context: DecisionContext) -> Decision:
         """Decide task, motion and gaze; arguments as of `assess`."""
@@ -172,18 +184,37 @@ class Decisions:
         """
         belief, task = situation.belief, situation.task
         fresh, self._fresh = self._fresh, False
+        memory = self._memory
+        if memory.lost and not belief.lost:
+            memory, self._look = self._begin(), None
+        scene = self._scene(belief, task)
+        of_motion, of_gaze = memory.motion, memory.gaze
         if situation.motion_due or self._motion is None:
-            avoided = self._landmarks.added_to(belief)
-            self._motion = motion or self._planner.plan(avoided, task, self._look)
+            if motion is None:
+                motion, of_motion = self._planner.plan(of_motion, scene)
+            self._motion = motion
             self._planned_at = situation.context.time
             self._planned_step = situation.context.step_count
-        gaze = gaze or self._gaze.choose(belief, task, self._motion)
+        if gaze is None:
+            gaze, of_gaze = self._gaze.choose(of_gaze, scene, self._motion)
         self._look = gaze.body_direction
+        self._memory = Memory(of_motion, of_gaze, belief.lost)
         return Decision(belief, task, self._motion, gaze, fresh)
 
     def forget(self) -> None:
-        """Decide motion again at the next frame."""
-        self._fresh, self._look = True, None
+        """Decide motion again at the next frame, as at the start: the robot fell."""
+        self._fresh, self._motion, self._look, self._memory = True, None, None, self._begin()
+
+    def _scene(self, belief: Belief, task: Task) -> Scene:
+        body = np.zeros(3) if self._motion is None else self._motion.velocity
+        return Scene.of(
+            belief,
+            task,
+            self._parameters,
+            body=body,
+            landmarks=self._landmarks.near(belief.pose[:2]),
+            look=self._look,
+        )
 
 
 @value

@@ -10,8 +10,9 @@ from typing import Self, SupportsIndex
 import cv2
 import numpy as np
 
-from hsr8.decisions import FrameRecord, GazeController, MotionPlanner, Situation
+from hsr8.decisions import FrameRecord, Situation
 from hsr8.errors import ScenarioError, SimulationDiverged
+from hsr8.plugin_decisions import GazePlugin, PlannerPlugin
 from hsr8.plugin_method import number
 from hsr8.plugin_walker import CustomWalker
 from hsr8.record import Event, EventWatch, RunOutcome, Second, Tick, TickRecord
@@ -98,8 +99,8 @@ class Simulation:
         scenario: Scenario,
         seed: SupportsIndex | None = None,
         *,
-        planner: MotionPlanner | None = None,
-        gaze: GazeController | None = None,
+        planner: PlannerPlugin | None = None,
+        gaze: GazePlugin | None = None,
         walker: CustomWalker | None = None,
     ) -> None:
         self.scenario = scenario
@@ -131,8 +132,8 @@ class Simulation:
 
     def _build_robot(
         self,
-        planner: MotionPlanner | None,
-        gaze: GazeController | None,
+        planner: PlannerPlugin | None,
+        gaze: GazePlugin | None,
         walker: CustomWalker | None,
     ) -> Robot:
         scenario = self.scenario

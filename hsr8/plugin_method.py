@@ -1,5 +1,7 @@
 """Methods of user-defined objects, and checks of the values that they return."""
 
+from collections.abc import Callable
+from inspect import signature
 from math import isfinite
 from numbers import Real
 from typing import Generic, TypeVar
@@ -19,7 +21,7 @@ class PluginMethod(Generic[Result]):
     Args:
         plugin: user-defined object.
         kind: planner, gaze or walker.
-        signature: signature of the method, for messages.
+        form: signature of the method, for messages.
         result: type of the result.
 
     Attributes:
@@ -29,25 +31,54 @@ class PluginMethod(Generic[Result]):
         UsageError: `plugin` lacks the method; from a call: the result is of another type.
     """
 
-    def __init__(self, plugin: object, kind: str, signature: str, result: type[Result]) -> None:
+    def __init__(self, plugin: object, kind: str, form: str, result: type[Result]) -> None:
         if isinstance(plugin, type):
             name = plugin.__name__
             raise UsageError(f"{kind}={name}: expected an instance, {kind}={name}(), got the class")
-        method = getattr(plugin, signature.partition("(")[0], None)
+        method = getattr(plugin, form.partition("(")[0], None)
         self.name = f"{kind} {type(plugin).__name__}"
         if not callable(method):
-            raise UsageError(f"{self.name} has no method {signature}")
-        self._method, self._signature, self._result = method, signature, result
+            raise UsageError(f"{self.name} has no method {form}")
+        self._method, self._form, self._result = method, form, result
 
     def __call__(self, *inputs: object) -> Result:
         """Call the method; it may change its inputs, so pass copies."""
-        result = self._method(*inputs)
+        return self._checked(self._method(*inputs), self._result.__name__)
+
+    def with_memory(self, memory: object, *inputs: object) -> tuple[Result, object]:
+        """Call a method that takes and returns a memory, too."""
+        expected = f"pair of {self._result.__name__} and memory"
+        match self._method(memory, *inputs):
+            case (result, kept):
+                return self._checked(result, expected), kept
+            case other:
+                raise self._refused(other, expected)
+
+    def _checked(self, result: object, expected: str) -> Result:
         if not isinstance(result, self._result):
-            raise UsageError(
-                f"{self.name}: {self._signature} must return a {self._result.__name__}, "
-                f"got {shown(result)}"
-            )
+            raise self._refused(result, expected)
         return result
+
+    def _refused(self, result: object, expected: str) -> UsageError:
+        return UsageError(
+            f"{self.name}: {self._form} must return a {expected}, got {shown(result)}"
+        )
+
+
+def takes_memory(plugin: object, method: str, names: tuple[str, ...]) -> bool:
+    """Return whether the parameters of a method begin with `names`, the first of them memory."""
+    function = getattr(plugin, method, None)
+    try:
+        parameters = tuple(signature(function).parameters) if callable(function) else ()
+    except ValueError:  # a method that is not written in Python
+        return False
+    return parameters[: len(names)] == names
+
+
+def start_of_memory(plugin: object, remembers: bool) -> Callable[[], object]:
+    """Return the method `begin` of a plugin with a memory; else a function that returns None."""
+    begin = getattr(plugin, "begin", None)
+    return begin if remembers and callable(begin) else lambda: None
 
 
 def numbers(value: object) -> Array | None:

@@ -15,7 +15,7 @@ from hsr8.command_schedule import (
 )
 from hsr8.decisions import Decisions, GazeController, MissionPlanner, MotionPlanner
 from hsr8.errors import ScenarioError, UsageError
-from hsr8.plugin_decisions import Limits, PluginGaze, PluginPlanner
+from hsr8.plugin_decisions import GazePlugin, Limits, PlannerPlugin, PluginGaze, PluginPlanner
 from hsr8.plugin_file import load_named
 from hsr8.plugin_walker import CustomWalker, PluginEngine, PluginWalker, RobotInfo
 from hsr8.robot import Robot
@@ -77,8 +77,8 @@ def build_robot(
     layout: Layout,
     seed: int,
     *,
-    planner: MotionPlanner | None = None,
-    gaze: GazeController | None = None,
+    planner: PlannerPlugin | None = None,
+    gaze: GazePlugin | None = None,
     walker: CustomWalker | None = None,
 ) -> Robot:
     """Return the robot of `scenario` in `layout`.
@@ -169,8 +169,8 @@ def build_decisions(
     seed: int,
     schedule: CommandSchedule | None,
     *,
-    planner: MotionPlanner | None = None,
-    gaze: GazeController | None = None,
+    planner: PlannerPlugin | None = None,
+    gaze: GazePlugin | None = None,
 ) -> Decisions:
     """Return mission, motion planner and gaze planner of `scenario`.
 
@@ -206,9 +206,7 @@ def build_decisions(
         else:
             motion = PluginPlanner(planner, decision_limits(scenario))
     if gaze is None:
-        gaze_planner = GazePlanner(
-            navigation, limits, beacons, field_of_view(scenario), neck(scenario)
-        )
+        gaze_planner = GazePlanner(navigation, limits, beacons, neck(scenario))
     else:
         gaze_planner = PluginGaze(gaze, decision_limits(scenario))
     return Decisions(
@@ -219,6 +217,7 @@ def build_decisions(
             beacons, scenario.vision.beacon_radius, scenario.navigation.landmarks
         ),
         footstep=limits.footstep,
+        parameters=navigation,
     )
 
 

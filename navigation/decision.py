@@ -20,8 +20,9 @@ def read_only(array: Array) -> Array:
     return view
 
 
-Situation = Literal["free", "accelerate", "brake", "escape", "path_change"]
-"""Outcome of velocity modification."""
+Situation = Literal["free", "veto", "accelerate", "brake", "escape", "path_change"]
+"""Why the motion differs from the desired one: it is free of conflicts; the safety filter replaced
+it; or the outcome of velocity modification in the method of the paper."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -122,11 +123,11 @@ class MotionDecision:
 
     Attributes:
         velocity: vx, vy, wz in R (3,) [m/s, m/s, rad/s].
-        direction: field direction u_T in W [rad].
-        speed: speed along it after velocity modification [m/s].
-        situation: outcome of velocity modification, see `Situation`, or a text of another
-            planner.
-        virtual_obstacles: active ones.
+        direction: desired direction in W [rad].
+        speed: desired speed along it, before the safety filter [m/s].
+        situation: why the motion differs from the desired one, see `Situation`; any text of a
+            custom planner.
+        virtual_obstacles: active virtual obstacles of the method of the paper.
         extended_radii: (track id, S_oe) of the obstacles in the field.
         field: vector field of the decision, for displays; None for a planner without one.
     """

@@ -68,14 +68,13 @@ def psi_local_map(
     Args:
         confidence: C of the sample points (n,).
         in_gaze: whether a point lies in the gaze region R_g (n,).
-        parameters: `lambda_cf` and `map_ratio`.
+        parameters: `lambda_cf`.
     """
     counted = ~in_gaze
     under = counted & (confidence < parameters.lambda_cf)
     n_lp = int(np.count_nonzero(under))
     n_cp = int(np.count_nonzero(counted)) - n_lp
-    divisor = n_cp if parameters.map_ratio == "printed" else n_lp + n_cp
-    return MapEvaluation(min(1.0, n_lp / max(1, divisor)), counted, under)
+    return MapEvaluation(min(1.0, n_lp / max(1, n_cp)), counted, under)
 
 
 def psi_self(pose_covariance: Array, parameters: EvaluationParameters) -> float:

@@ -6,7 +6,6 @@ from math import atan2, cos, hypot, inf, isfinite, sin
 from hsr8.decisions import FrameRecord
 from hsr8.render.walk_panels import INK
 from navigation.motion.collision_band import Encounter, free_intervals
-from navigation.motion.virtual_obstacle import PathPoint, path_point
 
 import numpy as np
 from figure_style import (
@@ -32,10 +31,7 @@ from study import STAND_INS
 Array = NDArray[np.float64]
 
 PAPER = "navigation.profile=paper"
-WITHOUT = (
-    "navigation.moving_obstacles.virtual_obstacle=off",
-    "navigation.moving_obstacles.velocity_modification=off",
-)
+WITHOUT = ("constants.navigation.planner.paper.min_speed=1.0",)  # no obstacle is a mover
 CASES = {
     "a": ("fig4a", "(a) outside the band: another speed", {"brake", "accelerate"}, 27.0),
     "b": ("fig4b", "(b) inside the band: escape", {"escape"}, 24.0),
@@ -74,11 +70,12 @@ def case(letter: str) -> Case:
         run(name, (PAPER, *STAND_INS, *WITHOUT), 0, duration),
     )
     v_max = ran[0].scenario.robot.speed.vx
+    horizon = ran[0].scenario.navigation.planner.paper.horizon
     for frame in ran[0].frames:
         if frame.motion.situation not in situations or not frame.motion.extended_radii:
             continue
         direction, encounter = _encounter(frame, straight=letter == "c")
-        if encounter.case(v_max) == letter and _telling(letter, frame, encounter):
+        if encounter.case(v_max, horizon) == letter and _telling(letter, frame, encounter):
             return Case(letter, title, frame, direction, encounter, ran)
     raise RuntimeError(f"scenario {name} never came to case ({letter})")
 
@@ -159,20 +156,22 @@ def _virtual(axes: Axes, shown: Case) -> None:
                   xytext=(-6, 46),
                   textcoords="offset points", fontsize=7.5, color=VIRTUAL,
                   arrowprops={"arrowstyle": "-", "color": VIRTUAL, "linewidth": 0.6})  # fmt: skip
-    foot = path_point(np.zeros(2), np.array([e.along, e.across]), np.array([e.forward, e.left]))
-    if foot is not None:
-        vx, vy = foot_velocity(np.array([shown.frame.motion.speed, 0.0]), foot).tolist()
-        axes.annotate("", (at[0] + 2.0 * vx, at[1] + 2.0 * vy), at,
-                      arrowprops={"arrowstyle": "-|>", "color": VIRTUAL, "lw": 1})  # fmt: skip
+    v_r = np.array([shown.frame.motion.speed, 0.0])
+    vx, vy = foot_velocity(v_r, np.subtract(at, (e.along, e.across))).tolist()
+    axes.annotate("", (at[0] + 2.0 * vx, at[1] + 2.0 * vy), at,
+                  arrowprops={"arrowstyle": "-|>", "color": VIRTUAL, "lw": 1})  # fmt: skip
 
 
-def foot_velocity(robot_velocity: Array, foot: PathPoint) -> Array:
-    """v_r_perp_op = (v_r . q) q/|q|², q = p_vo - p_o: how the foot moves (2,) [m/s].
+def foot_velocity(robot_velocity: Array, q: Array) -> Array:
+    """Return v_r_perp_op = (v_r . q) q/|q|², the velocity of a virtual obstacle (2,) [m/s].
 
     The projection divides by the squared norm, else its unit would be m²/s (eq. (11)).
+
+    Args:
+        robot_velocity: velocity of the robot (2,) [m/s].
+        q: p_vo - p_o, from the mover to its virtual obstacle (2,) [m].
     """
-    u = np.array([foot.ux, foot.uy])
-    velocity: Array = (robot_velocity @ u) * u
+    velocity: Array = (robot_velocity @ q) * q / (q @ q)
     return velocity
 
 

@@ -1,14 +1,11 @@
 """Fig. 3: the univector field, its parts, and the paths that follow it."""
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from math import cos, pi, sin
 
-from navigation.belief.belief import Motion, Track
-from navigation.belief.tracks import Tracks
-from navigation.motion.avoid_obstacle import avoid_obstacle
-from navigation.motion.motion_field import FieldScene, MotionField
-from navigation.motion.move_to_goal import move_to_goal, muf
-from navigation.motion.univector import extended_radius, normalized, physical_radius
+from navigation import paper
+from navigation.motion.univector import UnivectorField, normalized, shrunk_for_goal, unit_vectors
 from navigation.parameters.navigation import NavigationParameters
 
 import numpy as np
@@ -32,7 +29,7 @@ class FieldPanel:
 
     Attributes:
         name: title of the panel.
-        parameters: parameters that make it.
+        circles: S_oe, d_e and d_b of the obstacle [m].
         arrows: unit vectors or zeros at the points of the grid (n, 2).
         paths: one from each start (m, steps, 2) [m].
         arrived: whether each path ends at the goal (m,).
@@ -40,30 +37,11 @@ class FieldPanel:
     """
 
     name: str
-    parameters: NavigationParameters
+    circles: tuple[float, float, float]
     arrows: Array
     paths: Array
     arrived: NDArray[np.bool_]
     clearance: Array
-
-
-def obstacle() -> Tracks:
-    """The obstacle of the figure."""
-    still = Track(
-        id=0,
-        label="red",
-        position=np.array(OBSTACLE),
-        velocity=np.zeros(2),
-        covariance=np.eye(4) * 1e-8,
-        radius=RADIUS,
-        radius_sigma=0.0,
-        motion=Motion.STATIC,
-        hits=99,
-        age=0.0,
-        last_seen=np.array(OBSTACLE),
-        visible=True,
-    )
-    return Tracks.of([still])
 
 
 def grid() -> Array:
@@ -74,34 +52,42 @@ def grid() -> Array:
 
 def panels() -> list[FieldPanel]:
     """Move-to-goal alone, avoid-obstacle alone, their sum as printed, and the default blend."""
-    paper, extended = NavigationParameters.paper(), NavigationParameters.extended()
-    made = []
-    for name, p in (
-        ("printed sum, 0.75 and 0.25", paper),
-        ("blend by distance (default)", extended),
-    ):
-        u, obstacles = p.univector, obstacle()
-        s_oe = extended_radius(obstacles, 0.0, np.zeros(1), u)
-        scene = FieldScene(obstacles, s_oe, np.zeros(1), TARGET, GOAL_HEADING)
-        field = MotionField(u, p.moving_obstacles)
-        if p is paper:
-            made.append(
-                _panel(
-                    "move-to-goal, eq. (8)",
-                    p,
-                    lambda x: muf(
-                        x, TARGET, move_to_goal(x, 0.0, TARGET, GOAL_HEADING, paper.univector)
-                    ),
-                )
-            )
-            made.append(_panel("avoid-obstacle, eq. (9)", p, lambda x, s=s_oe: avoid_obstacle(
-                x, TARGET, np.array([OBSTACLE]), s, paper.univector,
-            )[..., 0, :]))  # fmt: skip
-        made.append(_panel(name, p, lambda x, f=field, s=scene: f.at(x, 0.0, s, ())))
-    return made
+    printed, extended = NavigationParameters.paper(), NavigationParameters.extended()
+    p, centres = printed.planner.paper, np.array([OBSTACLE])
+    s_oe = RADIUS + printed.univector.s_robot + printed.univector.margin
+    circles = (s_oe, p.d_e, p.d_b)
+    discs = paper.Discs(centres, np.array([s_oe]), np.zeros(1), np.zeros(1, np.bool_))
+    total = paper.PaperField(TARGET, GOAL_HEADING, discs, p)
+    return [
+        _panel(
+            "move-to-goal, eq. (8)",
+            circles,
+            lambda x: unit_vectors(paper.move_to_goal(x, TARGET, GOAL_HEADING, p)),
+        ),
+        _panel(
+            "avoid-obstacle, eq. (9)",
+            circles,
+            lambda x: paper.avoid_obstacle(x, TARGET, discs, p)[..., 0, :],
+        ),
+        _panel("printed sum, 0.75 and 0.25", circles, total.at),
+        _default(extended, centres),
+    ]
 
 
-def _panel(name, parameters, at) -> FieldPanel:
+def _default(parameters: NavigationParameters, centres: Array) -> FieldPanel:
+    """Blend by distance of the default planner."""
+    u = parameters.univector
+    distance = np.hypot(*(TARGET - centres).T)
+    s_oe = np.array([RADIUS + u.s_robot + u.margin])
+    radii, offsets = shrunk_for_goal(s_oe, np.array([RADIUS + u.s_robot]), distance, u)
+    field = UnivectorField(centres, radii, offsets, TARGET, GOAL_HEADING, 0, u)
+    circles = (float(radii[0]), float(offsets[0]), u.d_b)
+    return _panel("blend by distance (default)", circles, field.at)
+
+
+def _panel(
+    name: str, circles: tuple[float, float, float], at: Callable[[Array], Array]
+) -> FieldPanel:
     point, trace = STARTS.copy(), [STARTS.copy()]
     arrived = np.zeros(len(point), bool)
     for _ in range(round(5.0 / STEP)):
@@ -109,9 +95,9 @@ def _panel(name, parameters, at) -> FieldPanel:
         arrived |= np.hypot(*(point - TARGET).T) < REACH
         trace.append(point.copy())
     paths = np.stack(trace, axis=1)
-    reach = physical_radius(obstacle(), parameters.univector)[0]
+    reach = RADIUS + NavigationParameters().univector.s_robot
     gap = np.hypot(*(paths - np.array(OBSTACLE)).transpose(2, 0, 1)).min(axis=1) - reach
-    return FieldPanel(name, parameters, normalized(at(grid())), paths, arrived, gap)
+    return FieldPanel(name, circles, normalized(at(grid())), paths, arrived, gap)
 
 
 def draw() -> Figure:
@@ -120,7 +106,6 @@ def draw() -> Figure:
         made = figure(11.0, 7.6, "Fig. 3  Univector field, arrival heading π/6")
         points = grid()
         for axes, panel in zip(made.subplots(2, 2).ravel(), panels(), strict=True):
-            p = panel.parameters.univector
             axes.set_title(panel.name)
             u = panel.arrows
             acts = np.abs(u).sum(axis=1) > 0.0
@@ -133,8 +118,7 @@ def draw() -> Figure:
                 axes.plot(*STARTS.T, "o", color=ROBOT, markersize=2.5)
             disc(axes, OBSTACLE, RADIUS, facecolor=STILL, edgecolor="none")
             if "move" not in panel.name:
-                s_oe = RADIUS + p.s_robot + p.margin
-                for r, style in ((s_oe, "-"), (s_oe + p.d_e, "--"), (s_oe + p.d_e + p.d_b, ":")):
+                for r, style in zip(np.cumsum(panel.circles), ("-", "--", ":"), strict=True):
                     disc(
                         axes,
                         OBSTACLE,

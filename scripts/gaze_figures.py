@@ -5,10 +5,10 @@ from math import cos, degrees, sin
 
 from hsr8.decisions import FrameRecord
 from hsr8.render.walk_panels import INK
-from navigation.gaze.scene import GazeScene, gaze_scene
-from navigation.motion.univector import extended_radius
+from navigation.gaze.scene import GazeScene
 from navigation.parameters.navigation import NavigationParameters
 from navigation.partial_evaluation import SamplePoints
+from navigation.scene import Scene
 from navigation.transform import points_to_world
 
 import numpy as np
@@ -73,8 +73,9 @@ def looks(ran: RecordedRun) -> list[Look]:
         after = _settled(ran.frames[k : k + 10])
         if moved < JUMP or after is None or len(frame.belief.tracks) < 4:
             continue
-        scene = gaze_scene(frame.belief, frame.motion, samples, np.zeros((0, 2)), p)
-        looks.append(Look(frame, scene, after, p))
+        scene = Scene.of(frame.belief, frame.task, p, body=before.motion.velocity)
+        gaze_scene = GazeScene.of(scene, frame.motion, samples, np.zeros((0, 2)), p)
+        looks.append(Look(frame, gaze_scene, after, p))
     return sorted(
         looks, key=lambda x: -float(x.scene.psi_ob[x.scene.attended].sum()) - x.scene.map.psi
     )
@@ -216,7 +217,7 @@ def draw_choice(look: Look) -> Figure:
 
 
 def _draw_scene(axes: Axes, look: Look) -> None:
-    frame, scene, u = look.frame, look.scene, look.parameters.univector
+    frame, scene = look.frame, look.scene
     pose = frame.belief.pose
     axes.add_patch(
         Polygon(_window(frame), closed=True, facecolor=VIEW, alpha=0.25, label="gaze window now")
@@ -236,7 +237,7 @@ def _draw_scene(axes: Axes, look: Look) -> None:
     axes.plot(*scene.samples.points.T, ".", color=MOVER, markersize=2.0, label="sample points")
     c, s = cos(pose[2]), sin(pose[2])
     turn = np.array([[c, s], [-s, c]])
-    s_oe = extended_radius(scene.obstacles, scene.psi_sf, scene.psi_ob, u)
+    s_oe = scene.scene.s_oe
     for k, track in enumerate(frame.belief.tracks):
         at = turn @ (track.position - pose[:2])
         color = INK if scene.attended[k] else "#AAAAAA"

@@ -1,11 +1,11 @@
 """The figures of Yoo and Kim (2010), drawn from the running code, for docs/figures.md.
 
-    hsr8 run paper --out runs/figures/extended
-    hsr8 run paper --out runs/figures/paper --set navigation.profile=paper
-    python scripts/paper_figures.py --tours runs/figures/extended runs/figures/paper
+    hsr8 run paper --out runs/a
+    hsr8 run paper --out runs/b --set navigation.profile=paper camera.source=omnidirectional
+    python scripts/paper_figures.py --tours runs/a runs/b
 
 Figs. 1, 4 and 7 come from short runs of the real loop that the script makes itself, with the
-kinematic body; Fig. 3 from the field; Fig. 9 from the two run folders, whose walk is not
+kinematic body; Fig. 3 from the field; Fig. 9 from run folders, whose walk is not
 repeated. Without `--tours` Fig. 9 is left as it is.
 """
 
@@ -43,7 +43,7 @@ def main(
 
     Args:
         only: their numbers.
-        tours: run folders of `paper`, one row of Fig. 9 each; a row is named by its profile.
+        tours: run folders of `paper`, one row of Fig. 9 each, named by conditions and results.
         out: folder to write to.
     """
     out.mkdir(parents=True, exist_ok=True)

@@ -19,8 +19,8 @@ from hsr8.world.field.generator import draw_layout
 from hsr8.world.field.layout import Layout
 from navigation.belief.belief import Motion, Track
 from navigation.belief.tracks import Tracks
-from navigation.motion.univector import extended_radius
 from navigation.partial_evaluation import psi_obstacle
+from navigation.scene import extended_radius
 from walking.body.robot_model import RobotModel
 
 import numpy as np
@@ -79,12 +79,12 @@ class Tour:
 
 
 def tour(path: Path) -> Tour:
-    """Read a run folder; the row is named by its profile."""
+    """Read a run folder; the row is named by its conditions and results."""
     run: Run = open_run(path)
     scenario = load_scenario(str(run.scenario_file), [])
     layout = draw_layout(scenario, run.seed)
     return Tour(
-        f"profile {scenario.navigation.profile}",
+        title(scenario, run),
         scenario,
         layout,
         shown_frames(run, run.frames["time"]),
@@ -93,6 +93,22 @@ def tour(path: Path) -> Tour:
         float(run.frames["capture_position"][0, 2]),
         run.events["time"][run.events["kind"] == "collision"],
     )
+
+
+def title(scenario: Scenario, run: Run) -> str:
+    """Name of the row: profile, weights and camera; via points, collisions and falls of the run."""
+    navigation, camera = scenario.navigation, scenario.camera.source
+    name = f"profile {navigation.profile}"
+    if navigation.planner.method == "paper":
+        name += f", {navigation.planner.paper.weights} weights"
+    kinds = run.events["kind"]
+    counts = [
+        f"{int(run.frames['via_points'][-1])} via points",
+        f"{int(np.count_nonzero(kinds == 'collision'))} collisions",
+        f"{int(np.count_nonzero(kinds == 'fall'))} falls",
+        f"{float(run.records['time'][-1]):.1f} s",
+    ]
+    return "\n".join((name, f"{camera} camera", ", ".join(counts)))
 
 
 def moments(shown: Tour) -> list[SimpleNamespace]:

@@ -1,4 +1,4 @@
-"""Tune the baseline planners, or the constants that Yoo & Kim do not print.
+"""Tune the planners, or the constants that Yoo & Kim do not print.
 
     python scripts/tune.py baselines --out runs/baselines
     python scripts/tune.py paper --out runs/paper
@@ -6,11 +6,12 @@
 Every arm gets the same effort: `--candidates` parameter sets, the first by hand and the others
 drawn, on `--seeds` worlds; the best `--finalists` get `--more` worlds, and the best over all of
 them wins. A run has the kinematic body and ends at the first collision; its score is the fraction
-of its legs until then, 1 for a success. The baselines see with the analytic camera, in worlds with
-twice as many movers; the constants of the paper, for both readings of its eq. (10), with the
-omnidirectional one. Runs are kept in the folder, and the same command continues.
+of its legs until then, 1 for a success. The study `baselines`, which includes the default planner,
+uses the analytic camera and worlds with twice as many movers. The study `paper` uses the
+omnidirectional camera and has one arm per row of weights of eq. (10), printed and exchanged. Runs
+are kept in the folder, and the same command continues.
 
-The shipped values were found with a planar body instead, see docs/notes.md.
+The shipped values of the baselines were found with a planar body instead, see docs/notes.md.
 """
 
 import argparse
@@ -30,11 +31,21 @@ Ranges = Mapping[str, tuple[float, float, float]]
 Values = dict[str, float]
 Row = dict[str, object]
 
+PLANNERS = "constants.navigation.planner"
 # Parameter: minimum, value by hand, maximum; drawn uniformly in the logarithm.
 BASELINES: dict[str, Ranges] = {
-    "univector-plain": {
-        "margin": (0.02, 0.05, 0.1), "eta_vo": (0.1, 0.5, 1.5), "d_e": (0.08, 0.2, 0.4),
-        "d_b": (0.1, 0.25, 0.6), "k_r": (0.1, 0.3, 0.5),
+    "univector": {
+        "navigation.univector.margin": (0.02, 0.05, 0.1),
+        "navigation.univector.eta_vo": (0.1, 0.5, 1.5),
+        "navigation.univector.eta_imp": (0.01, 0.05, 0.2),
+        "navigation.univector.d_e": (0.05, 0.2, 0.4),
+        "navigation.univector.d_b": (0.1, 0.25, 0.6),
+        "navigation.univector.k_r": (0.05, 0.3, 0.5),
+        "constants.navigation.safety_filter.moving_horizon": (1.5, 3.5, 6.0),
+        "constants.navigation.safety_filter.particle_weight": (0.1, 0.5, 2.0),
+        "constants.navigation.safety_filter.urgent_loss": (20.0, 70.0, 200.0),
+        "constants.navigation.safety_filter.collision_loss": (5.0, 20.0, 60.0),
+        "constants.navigation.safety_filter.change_loss": (0.1, 0.5, 2.0),
     },
     "n-posture": {
         "margin": (0.02, 0.05, 0.1), "gain": (1.0, 2.0, 8.0), "offset": (0.05, 0.25, 0.4),
@@ -64,16 +75,14 @@ PAPER: Ranges = {
     "navigation.univector.margin": (0.01, 0.03, 0.1),
     "navigation.univector.eta_vo": (0.1, 0.5, 1.5),
     "navigation.univector.eta_imp": (0.01, 0.05, 0.2),
-    "navigation.univector.d_con": (0.3, 0.8, 1.5),
-    "navigation.univector.d_e": (0.1, 0.4, 0.8),
-    "navigation.univector.d_b": (0.1, 0.8, 1.6),
-    "navigation.univector.k_r": (0.05, 0.3, 1.0),
-    "navigation.moving_obstacles.margin": (0.02, 0.05, 0.1),
-    "navigation.moving_obstacles.horizon": (2.0, 6.0, 10.0),
-    "constants.navigation.moving_obstacles.omega_dist": (2.0, 12.0, 24.0),
+    "constants.navigation.planner.paper.d_con": (0.3, 0.8, 1.5),
+    "constants.navigation.planner.paper.d_e": (0.05, 0.15, 0.8),
+    "constants.navigation.planner.paper.d_b": (0.1, 0.3, 1.6),
+    "constants.navigation.planner.paper.k_r": (0.05, 0.3, 1.0),
+    "constants.navigation.planner.paper.omega_dist": (2.0, 12.0, 24.0),
+    "constants.navigation.planner.paper.horizon": (2.0, 6.0, 10.0),
 }
 PROFILE = ("navigation.profile=paper", "camera.source=omnidirectional")
-EXCHANGED = ("navigation.univector.w_muf=0.25", "navigation.univector.w_auf=0.75")
 
 
 @dataclass(frozen=True)
@@ -83,7 +92,7 @@ class Arm:
     Attributes:
         name: name in the table.
         settings: settings of every run.
-        prefix: prefix of the keys of its parameters.
+        prefix: common beginning of the keys of its parameters.
         ranges: minimum, value by hand and maximum of each parameter.
     """
 
@@ -108,15 +117,16 @@ class Arm:
 
 
 def arms(study: str) -> list[Arm]:
-    """Return the arms of a study: all baselines, or both readings of eq. (10)."""
+    """Return the arms of a study: the planners, or both rows of weights of eq. (10)."""
     if study == "paper":
-        readings = {"printed": (), "exchanged": EXCHANGED}
-        return [Arm(name, (*PROFILE, *more), "", PAPER) for name, more in readings.items()]
+        rows = ("printed", "exchanged")
+        weights = "navigation.planner.paper.weights"
+        return [Arm(row, (*PROFILE, f"{weights}={row}"), "", PAPER) for row in rows]
     return [
         Arm(
             name,
             (f"navigation.planner.method={name}", "world.n_moving=8"),
-            f"constants.navigation.planner.{name.replace('-', '_')}.",
+            "" if name == "univector" else f"{PLANNERS}.{name.replace('-', '_')}.",
             ranges,
         )
         for name, ranges in BASELINES.items()

@@ -54,7 +54,7 @@ run = hsr8.open_run("runs/quick")
 tables = run.to_pandas()
 frames = tables["frames"].set_index("time")
 print(frames.speed.rolling(10).mean().max(), run.unit("frames.speed"))
-print(frames.situation.value_counts(normalize=True))
+print(frames.lost.mean())  # fraction of the frames in which the robot was lost
 tracks = pandas.DataFrame(frames.tracks.explode().dropna().tolist())
 print(tracks.groupby("label").age.max())
 ```

@@ -64,6 +64,6 @@ def test_docstrings_bear_the_number_of_their_equation(number):
 def test_keys_in_the_tables_are_keys_of_a_scenario():
     known = {*public_keys(), *constant_names()}
     for section, key in set(
-        re.findall(r"\(`(evaluation|univector|gaze|moving_obstacles)\.(\w+)`", TEXT)
+        re.findall(r"\(`(evaluation|univector|gaze|planner\.paper)\.(\w+)`", TEXT)
     ):
         assert f"navigation.{section}.{key}" in known

@@ -9,11 +9,10 @@ import numpy as np
 from gymnasium import spaces
 from numpy.typing import NDArray
 
-from hsr8.decisions import GazeController, MotionPlanner
 from hsr8.errors import UsageError
 from hsr8.gym.action import ActionMap, Part, clipped
 from hsr8.gym.observation import MAX_TRACKS, Observation, Observer
-from hsr8.plugin_decisions import Limits
+from hsr8.plugin_decisions import GazePlugin, Limits, PlannerPlugin
 from hsr8.plugin_method import shown
 from navigation.belief.belief import Belief
 from navigation.decision import GazeDecision, MotionDecision, Task
@@ -27,7 +26,7 @@ def as_gaze(
     observe: Sequence[str] = (),
     max_tracks: int = MAX_TRACKS,
     normalized: bool = True,
-) -> type[GazeController]:
+) -> type[GazePlugin]:
     """Return the gaze plugin of a policy, decided from the observations of ``hsr8/Gaze-v0``.
 
     Args:
@@ -64,7 +63,7 @@ def as_planner(
     observe: Sequence[str] = (),
     max_tracks: int = MAX_TRACKS,
     normalized: bool = True,
-) -> type[MotionPlanner]:
+) -> type[PlannerPlugin]:
     """Return the planner plugin of a policy, decided from the observations of ``hsr8/Navigate-v0``.
 
     Args:

@@ -185,9 +185,17 @@ FRAME = Row(
     ),
     Column(f"{MOTION}.velocity", "decided velocity vx, vy, wz in R", VELOCITY, (3,)),
     Column(f"{MOTION}.direction", "direction of motion in W", "rad"),
-    Column(f"{MOTION}.speed", "speed along `direction`", "m/s"),
-    Column(f"{MOTION}.situation", "outcome of velocity modification", type=TEXT),
-    Column(f"{MOTION}.virtual_obstacles", "virtual obstacles in the field", items=VIRTUAL_OBSTACLE),
+    Column(f"{MOTION}.speed", "speed that the planner desires along `direction`", "m/s"),
+    Column(
+        f"{MOTION}.situation",
+        "free; veto of the safety filter; or outcome of the paper's velocity modification",
+        type=TEXT,
+    ),
+    Column(
+        f"{MOTION}.virtual_obstacles",
+        "virtual obstacles in the field of the method of the paper",
+        items=VIRTUAL_OBSTACLE,
+    ),
     Column((f"{GAZE}.pan", f"{GAZE}.tilt"), "decided pan and tilt", "rad", (2,), name="gaze"),
     Column(
         f"{GAZE}.stabilized",

@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 from hsr8.recorder import palette
 from hsr8.recorder.table import Table
 from hsr8.rerun_log.stream import LogStream
+from navigation.gaze.grid import GazeGrid
 from navigation.parameters.gaze import GazeParameters
 from vision.camera import PinholeCamera
 
@@ -71,18 +72,17 @@ def log_camera(log: LogStream, shown: Table, images: Table | None) -> None:
         log.rows(f"{CAMERA}/image", rr.EncodedImage, images["time"], blob=blobs)
 
 
-def log_gaze_window(log: LogStream, shown: Table, box: float, camera: PinholeCamera) -> None:
+def log_gaze_window(log: LogStream, shown: Table, camera: PinholeCamera) -> None:
     """Log the gaze window in the image.
 
     Args:
         log: recording.
         shown: camera frames at the rate of the log.
-        box: side of the window as a fraction of the field of view [1].
         camera: intrinsics.
     """
     outlines = [
         image_points((pan, tilt), window, camera)
-        for (pan, tilt), window in zip(shown["head"].tolist(), _windows(shown, box), strict=True)
+        for (pan, tilt), window in zip(shown["head"].tolist(), _windows(shown), strict=True)
     ]
     log.rows(
         f"{CAMERA}/gaze_window",
@@ -94,54 +94,45 @@ def log_gaze_window(log: LogStream, shown: Table, box: float, camera: PinholeCam
 
 
 def log_gaze(log: LogStream, frames: Table, gaze: GazeParameters) -> None:
-    """Log new gaze maps with the chosen gaze and its window."""
+    """Log new gaze maps, and the chosen gaze and its window in every frame."""
+    grid, times = GazeGrid.of(gaze), frames["time"]
     rows, maps = frames.present("gaze_map")
-    if not len(rows):
-        return
-    new = frames.take(rows)
-    times, shape = new["time"], maps.shape[1:]
     # A table, because OpenCV computes it at every call.
     heat = cv2.applyColorMap(np.arange(256, dtype=np.uint8)[:, None], cv2.COLORMAP_MAGMA)[:, 0]
     # Rows and columns of the map run up and left.
     blobs = [cv2.imencode(".png", heat[shades[::-1, ::-1]])[1].ravel() for shades in maps]
-    log.rows("/gaze/map", rr.EncodedImage, times, blob=blobs)
+    log.rows("/gaze/map", rr.EncodedImage, times[rows], blob=blobs)
     log.rows(
         "/gaze/choice",
         rr.Points2D,
         times,
-        positions=map_points(new["gaze"], shape, gaze),
-        colors=palette.packed_all([palette.BELIEF] * len(rows)),
+        positions=map_points(frames["gaze"], grid),
+        colors=palette.packed_all([palette.BELIEF] * len(times)),
     )
-    windows = [map_points(window, shape, gaze) for window in _windows(new, gaze.box_fraction)]
+    windows = [map_points(window, grid) for window in _windows(frames)]
     log.rows("/gaze/window", rr.LineStrips2D, times, strips=windows)
 
 
-def _windows(frames: Table, box: float) -> Array:
-    """Return the outlines of the chosen gaze windows, pan and tilt (n, m, 2) [rad].
-
-    Args:
-        frames: camera frames.
-        box: side of the window as a fraction of the field of view [1].
-    """
+def _windows(frames: Table) -> Array:
+    """Return the outlines of the chosen gaze windows, pan and tilt (n, m, 2) [rad]."""
     fov = np.minimum(frames["fov"], pi)
-    outlines: Array = OUTLINE * (box * fov)[:, None] + frames["gaze"][:, None]
+    outlines: Array = OUTLINE * (0.5 * fov)[:, None] + frames["gaze"][:, None]
     return outlines
 
 
-def map_points(angles: Array, shape: tuple[int, ...], gaze: GazeParameters) -> Array:
+def map_points(angles: Array, grid: GazeGrid) -> Array:
     """Return the pixels of directions in the image of the gaze map, clipped to its border.
 
     Args:
         angles: pan and tilt of n directions (n, 2) [rad].
-        shape: cells of the map, tilts and pans.
-        gaze: range of the map.
+        grid: cells of the map.
 
     Returns:
         Pixels (n, 2); cells are at their centres.
     """
-    rows, columns = shape
-    u = 0.5 * columns - angles[:, 0] / gaze.step
-    v = rows - 0.5 - (angles[:, 1] - gaze.min_tilt) / gaze.step
+    rows, columns = len(grid.tilt), len(grid.pan)
+    u = 0.5 * columns - angles[:, 0] / grid.step
+    v = rows - 0.5 - (angles[:, 1] - grid.tilt[0]) / grid.step
     return np.column_stack([np.clip(u, 0.0, columns), np.clip(v, 0.0, rows)])
 
 

@@ -19,6 +19,7 @@ BLUE, ORANGE, GREEN, GREY = (52, 112, 206), (240, 140, 20), (76, 168, 78), (130,
 RED, VIOLET, SAND = (206, 60, 56), (146, 84, 196), (196, 178, 130)
 SITUATIONS = {
     "free": GREEN,
+    "veto": SAND,
     "accelerate": BLUE,
     "brake": ORANGE,
     "escape": RED,

@@ -152,7 +152,7 @@ class RunLog:
         log = self.stream
         shown = frames.take(log.due("frames", frames["time"], self._frame_period))
         log_camera(log, shown, images)
-        log_gaze_window(log, shown, self._gaze.box_fraction, self._camera)
+        log_gaze_window(log, shown, self._camera)
         log_gaze(log, frames, self._gaze)
         log_belief(log, frames, shown, self._scale)
         if not len(shown):

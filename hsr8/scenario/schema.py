@@ -30,7 +30,7 @@ class Navigation(NavigationParameters):
 
     profile: Annotated[
         Literal["extended", "paper"],
-        doc("extended: all improvements; paper: the printed equations with minimal corrections."),
+        doc("extended: the default planner and gaze; paper: the method and gaze of the paper."),
     ] = "extended"
 
 

@@ -2,19 +2,21 @@
 
 import numpy as np
 
-from navigation.baselines.baseline_planner import Avoidance, BaselinePlanner
-from navigation.baselines.fields import PlainUnivector, PotentialField
+from navigation.baselines.fields import PotentialField
 from navigation.baselines.n_posture import NPosture
 from navigation.baselines.orca import Orca
 from navigation.baselines.sampling import DynamicWindow, PathIntegral
 from navigation.decision import SpeedLimits
 from navigation.motion.planner import Planner
+from navigation.motion.planning_scene import Method
+from navigation.motion.univector import Univector
+from navigation.paper import PaperMethod
 from navigation.parameters.navigation import NavigationParameters
 
 
 def build_planner(
     parameters: NavigationParameters, limits: SpeedLimits, rng: np.random.Generator
-) -> Planner | BaselinePlanner:
+) -> Planner:
     """Build the planner of `parameters.planner.method`.
 
     Args:
@@ -23,20 +25,21 @@ def build_planner(
         rng: generator of the samples of `mppi`.
     """
     p = parameters.planner
-    avoidance: Avoidance
+    method: Method
+    filtered = False
     match p.method:
         case "univector":
-            return Planner(parameters, limits)
-        case "univector-plain":
-            avoidance = PlainUnivector(parameters)
+            method, filtered = Univector(), parameters.safety_filter.enabled
+        case "paper":
+            method = PaperMethod(p.paper)
         case "n-posture":
-            avoidance = NPosture(p.n_posture)
+            method = NPosture(p.n_posture)
         case "apf":
-            avoidance = PotentialField(p.apf)
+            method = PotentialField(p.apf)
         case "orca":
-            avoidance = Orca(p.orca)
+            method = Orca(p.orca)
         case "dwa":
-            avoidance = DynamicWindow(p.dwa)
+            method = DynamicWindow(p.dwa)
         case "mppi":
-            avoidance = PathIntegral(p.mppi, rng)
-    return BaselinePlanner(parameters, limits, avoidance)
+            method = PathIntegral(p.mppi, rng)
+    return Planner(parameters, limits, method, filtered=filtered)

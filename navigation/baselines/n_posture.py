@@ -14,28 +14,26 @@ import numpy as np
 from numpy.typing import NDArray
 
 from navigation.angles import wrap
-from navigation.baselines.baseline_planner import Avoidance
-from navigation.baselines.planning_scene import PlanningScene
+from navigation.motion.planning_scene import Desired, PlanningScene
 from navigation.motion.univector import normalized
 from navigation.parameters.planner import NPostureParameters
 
 Array = NDArray[np.float64]
 
 
-class NPosture(Avoidance):
+class NPosture:
     """Posture field with the obstacle field of the nearest obstacle."""
 
     def __init__(self, parameters: NPostureParameters) -> None:
-        self.margin = parameters.margin
         self._parameters = parameters
 
-    def decide(self, scene: PlanningScene) -> Array:
+    def desired(self, scene: PlanningScene) -> Desired:
         s = scene.predicted()
-        if s.speed == 0.0:
-            return s.walk(np.zeros(2))
-        phi = self._posture(s)
-        u_goal = np.array([np.cos(phi), np.sin(phi)])
-        return s.walk(s.speed * self._mixed(s, u_goal))
+        velocity = np.zeros(2)
+        if s.speed > 0.0:
+            phi = self._posture(s)
+            velocity = s.speed * self._mixed(s, np.array([np.cos(phi), np.sin(phi)]))
+        return Desired.towards(velocity, s, s.radii(self._parameters.margin))
 
     def _posture(self, s: PlanningScene) -> float:
         """Return the direction of Kim's field at the robot [rad]."""
@@ -62,8 +60,8 @@ class NPosture(Avoidance):
         reach = np.hypot(*(shifted - s.obstacles.position).T)
         scale = np.minimum(1.0, 0.5 * distance / np.maximum(reach, 1e-9))[:, None]
         shifted = s.obstacles.position + scale * (shifted - s.obstacles.position)
-        gap = np.hypot(*(s.pose[:2] - shifted).T) - s.s_robot - s.radii(self.margin)
-        gap = np.minimum(gap, distance - s.s_robot - s.radii(self.margin))
+        gap = np.hypot(*(s.pose[:2] - shifted).T) - s.radii(p.margin)
+        gap = np.minimum(gap, distance - s.radii(p.margin))
         nearest = int(np.argmin(gap))
         over = max(0.0, float(gap[nearest]) - p.d_min)
         weight = float(np.exp(-(over**2) / (2.0 * p.delta**2)) * s.yielding(gap)[nearest])

@@ -11,8 +11,7 @@ from math import cos, hypot, sin, sqrt
 import numpy as np
 from numpy.typing import NDArray
 
-from navigation.baselines.baseline_planner import Avoidance
-from navigation.baselines.planning_scene import PlanningScene
+from navigation.motion.planning_scene import Desired, PlanningScene
 from navigation.parameters.planner import OrcaParameters
 
 Array = NDArray[np.float64]
@@ -40,7 +39,7 @@ class HalfPlane:
         return self.dx * (self.y - v[1]) - self.dy * (self.x - v[0])
 
 
-class Orca(Avoidance):
+class Orca:
     """ORCA with full responsibility, within the speed limits of the body at its heading.
 
     The published method splits the avoidance between both agents and lets a disc move in any
@@ -49,23 +48,23 @@ class Orca(Avoidance):
     """
 
     def __init__(self, parameters: OrcaParameters) -> None:
-        self.margin = parameters.margin
         self._parameters = parameters
 
-    def decide(self, scene: PlanningScene) -> Array:
+    def desired(self, scene: PlanningScene) -> Desired:
         s = scene.predicted()
         box = self._box(s)
-        wanted, own = s.wanted().tolist(), s.velocity().tolist()
+        desired, own = s.to_goal().tolist(), s.velocity().tolist()
         planes = [*box, *self._planes(s, (own[0], own[1]))]
         v_max = s.limits.max_speed
-        return s.walk(np.array(solve(planes, len(box), (wanted[0], wanted[1]), v_max)))
+        velocity = np.array(solve(planes, len(box), (desired[0], desired[1]), v_max))
+        return Desired.towards(velocity, s, s.radii(self._parameters.margin))
 
     def _planes(self, s: PlanningScene, own: tuple[float, float]) -> list[HalfPlane]:
         """Return the half-planes of the obstacles within reach, the nearest first."""
         p = self._parameters
         x, y, _ = s.pose.tolist()
         planes = []
-        radii = s.s_robot + s.radii(self.margin)
+        radii = s.radii(p.margin)
         for (ox, oy), (u, w), radius, static in zip(
             s.obstacles.position.tolist(),
             s.obstacles.velocity.tolist(),
@@ -132,7 +131,7 @@ def orca_plane(
     norm = hypot(wx, wy)
     if not apart or (along < 0.0 and along * along > radius * radius * norm * norm):
         # The cut-off arc of the cone is nearest.
-        nx, ny = (wx / norm, wy / norm) if norm > _PARALLEL else (-px, -py)
+        nx, ny = (wx / norm, wy / norm) if norm > _PARALLEL else _away(px, py)
         dx, dy = ny, -nx
         change = radius / time - norm
         ux, uy = change * nx, change * ny
@@ -147,8 +146,14 @@ def orca_plane(
     return HalfPlane(own[0] + responsibility * ux, own[1] + responsibility * uy, dx, dy)
 
 
-def solve(planes: list[HalfPlane], hard: int, wanted: Velocity, v_max: float) -> Velocity:
-    """Return the velocity nearest to `wanted` in all half-planes and the disc of radius `v_max`.
+def _away(px: float, py: float) -> Velocity:
+    """Return the unit vector away from a disc at (px, py), any for its centre."""
+    norm = hypot(px, py)
+    return (-px / norm, -py / norm) if norm > _PARALLEL else (-1.0, 0.0)
+
+
+def solve(planes: list[HalfPlane], hard: int, desired: Velocity, v_max: float) -> Velocity:
+    """Return the velocity nearest to `desired` in all half-planes and the disc of radius `v_max`.
 
     If there is none, the first `hard` half-planes hold and the maximum violation of the others
     is minimized.
@@ -156,17 +161,17 @@ def solve(planes: list[HalfPlane], hard: int, wanted: Velocity, v_max: float) ->
     Args:
         planes: half-planes.
         hard: number of hard half-planes, which must have a common velocity.
-        wanted: desired velocity [m/s].
+        desired: desired velocity [m/s].
         v_max: maximum speed [m/s].
     """
-    best, failed = _nearest(planes, wanted, v_max)
+    best, failed = _nearest(planes, desired, v_max)
     if failed == len(planes):
         return best
     return _min_violation(planes, hard, failed, best, v_max)
 
 
 def _on_line(
-    planes: list[HalfPlane], index: int, wanted: Velocity, v_max: float, *, extreme: bool
+    planes: list[HalfPlane], index: int, desired: Velocity, v_max: float, *, extreme: bool
 ) -> Velocity | None:
     """Return the best velocity on the line of one half-plane allowed by those before it."""
     p = planes[index]
@@ -191,29 +196,29 @@ def _on_line(
         if low > high:
             return None
     if extreme:
-        t = high if wanted[0] * p.dx + wanted[1] * p.dy > 0.0 else low
+        t = high if desired[0] * p.dx + desired[1] * p.dy > 0.0 else low
     else:
-        t = min(high, max(low, p.dx * (wanted[0] - p.x) + p.dy * (wanted[1] - p.y)))
+        t = min(high, max(low, p.dx * (desired[0] - p.x) + p.dy * (desired[1] - p.y)))
     return p.x + t * p.dx, p.y + t * p.dy
 
 
 def _nearest(
-    planes: list[HalfPlane], wanted: Velocity, v_max: float, *, extreme: bool = False
+    planes: list[HalfPlane], desired: Velocity, v_max: float, *, extreme: bool = False
 ) -> tuple[Velocity, int]:
     """Return the best velocity and the index of the first half-plane it cannot satisfy.
 
-    With `extreme`, the best velocity is the farthest along the unit vector `wanted`.
+    With `extreme`, the best velocity is the farthest along the unit vector `desired`.
     """
-    speed = hypot(*wanted)
+    speed = hypot(*desired)
     if extreme:
-        best = (wanted[0] * v_max, wanted[1] * v_max)
+        best = (desired[0] * v_max, desired[1] * v_max)
     elif speed > v_max:
-        best = (wanted[0] * v_max / speed, wanted[1] * v_max / speed)
+        best = (desired[0] * v_max / speed, desired[1] * v_max / speed)
     else:
-        best = wanted
+        best = desired
     for index, plane in enumerate(planes):
         if plane.depth(best) > 0.0:
-            on_line = _on_line(planes, index, wanted, v_max, extreme=extreme)
+            on_line = _on_line(planes, index, desired, v_max, extreme=extreme)
             if on_line is None:
                 return best, index
             best = on_line

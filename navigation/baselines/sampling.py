@@ -8,37 +8,39 @@ theory to parallel computation", J. Guidance, Control and Dynamics 40(2), 2017. 
 predicted at constant velocity; the sampled sequences obey the acceleration limits of the body.
 """
 
+from dataclasses import replace
+
 import numpy as np
 from numpy.typing import NDArray
 
 from navigation.angles import wrap_array
-from navigation.baselines.baseline_planner import Avoidance
-from navigation.baselines.planning_scene import PlanningScene
+from navigation.motion.planning_scene import Desired, PlanningScene
+from navigation.motion.rollout import walked
 from navigation.parameters.planner import DwaParameters, MppiParameters
+from navigation.transform import velocity_in_world
 
 Array = NDArray[np.float64]
 
 _MIRROR = np.array([1.0, -1.0, -1.0])
 
 
-class DynamicWindow(Avoidance):
+class DynamicWindow:
     """Best body velocity among those within reach of the next footstep."""
 
     def __init__(self, parameters: DwaParameters) -> None:
-        self.margin = parameters.margin
         self._parameters = parameters
 
-    def decide(self, scene: PlanningScene) -> Array:
+    def desired(self, scene: PlanningScene) -> Desired:
         s, p = scene, self._parameters
         limits = s.limits
         window = self._window(s)
         steps = max(1, round(p.horizon / limits.footstep))
-        constant = np.broadcast_to(window[:, None], (len(window), steps, 3))
+        constant = np.repeat(window[:, None], steps, axis=1)
         position, heading = rollout(s.pose, constant, limits.footstep)
         horizon = steps * limits.footstep
         # A point ahead at the desired speed: the horizon may reach beyond the destination.
-        error = position[:, -1] - (s.pose[:2] + horizon * s.wanted())
-        gap = gaps(position, s, s.s_robot + s.radii(p.margin), p.clearance)
+        error = position[:, -1] - (s.pose[:2] + horizon * s.to_goal())
+        gap = gaps(position, s, s.radii(p.margin), p.clearance)
         facing = s.course if s.facing is None else s.facing
         wz = window[:, 2]
         stopping = 0.5 * wz * np.abs(wz) / s.turn_change * limits.footstep
@@ -49,8 +51,7 @@ class DynamicWindow(Avoidance):
             + p.clearance_weight * np.maximum(0.0, 1.0 - gap.min(axis=1) / p.clearance)
             + p.contact_weight * contact_cost(gap)
         )
-        best: Array = window[int(np.argmin(cost))]
-        return best
+        return _turning(window[int(np.argmin(cost))], s, p.margin)
 
     def _window(self, s: PlanningScene) -> Array:
         """Return velocities within reach (n, 3), with zero components where possible."""
@@ -66,40 +67,37 @@ class DynamicWindow(Avoidance):
         return window
 
 
-class PathIntegral(Avoidance):
+class PathIntegral:
     """Mean of sampled sequences of footsteps, weighted by the exponential of their cost."""
 
     def __init__(self, parameters: MppiParameters, rng: np.random.Generator) -> None:
-        """Start with a plan of zeros; `rng` draws the samples."""
-        self.margin = parameters.margin
+        """Take the generator `rng` of the samples."""
         self._parameters = parameters
         self._rng = rng
-        self._plan = np.zeros((parameters.steps, 3))
         lag = np.arange(parameters.steps)
         rho = parameters.persistence
         power = rho ** np.maximum(0, lag[:, None] - lag)
         drive = np.where(lag == 0, 1.0, np.sqrt(1.0 - rho**2))
         self._correlation = np.tril(power) * drive
 
-    def decide(self, scene: PlanningScene) -> Array:
-        s = scene
-        body = self._samples(s)
+    def desired(self, scene: PlanningScene) -> Desired:
+        s, p = scene, self._parameters
+        plan = s.plan if isinstance(s.plan, np.ndarray) else np.zeros((p.steps, 3))
+        body = self._samples(s, plan)
         cost = self._cost(s, body)
-        weight = np.exp(-(cost - cost.min()) / self._parameters.temperature)
-        plan = np.einsum("k,kti->ti", weight / weight.sum(), body)
-        self._plan = np.concatenate([plan[1:], plan[-1:]])
-        first: Array = plan[0]
-        return first
+        weight = np.exp(-(cost - cost.min()) / p.temperature)
+        mean = np.einsum("k,kti->ti", weight / weight.sum(), body)
+        return _turning(mean[0], s, p.margin, np.concatenate([mean[1:], mean[-1:]]))
 
-    def _samples(self, s: PlanningScene) -> Array:
+    def _samples(self, s: PlanningScene, plan: Array) -> Array:
         """Return samples around the plan (k, t, 3), mirrored in pairs, the plan and zeros."""
         p = self._parameters
         low, high, change = s.low(), s.high(), s.change()
         white = self._rng.standard_normal((p.samples // 2, p.steps, 3))
         noise = p.spread * high * np.einsum("ts,ksi->kti", self._correlation, white)
         zeros = np.zeros((1, p.steps, 3))
-        mirrored = self._plan + _MIRROR * noise
-        samples = np.concatenate([self._plan + noise, mirrored, self._plan[None], zeros])
+        mirrored = plan + _MIRROR * noise
+        samples = np.concatenate([plan + noise, mirrored, plan[None], zeros])
         samples = np.clip(samples, low, high)
         start = np.broadcast_to(s.body, (len(samples), 1, 3))
         steps = np.diff(samples, axis=1, prepend=start)
@@ -119,7 +117,7 @@ class PathIntegral(Avoidance):
         heading_error = np.abs(wrap_array(facing - heading))
         if s.facing is None:
             heading_error = heading_error * np.minimum(1.0, distance / 0.2)
-        gap = gaps(position, s, s.s_robot + s.radii(p.margin), p.clearance)
+        gap = gaps(position, s, s.radii(p.margin), p.clearance)
         cost: Array = (
             distance.mean(axis=1) / walked
             + p.heading_weight * heading_error.mean(axis=1) / np.pi
@@ -127,6 +125,13 @@ class PathIntegral(Avoidance):
             + p.contact_weight * contact_cost(gap)
         )
         return cost
+
+
+def _turning(body: Array, s: PlanningScene, margin: float, plan: Array | None = None) -> Desired:
+    """Return the motion of a method that decides the turn rate, too."""
+    velocity = velocity_in_world(s.pose, np.clip(body, s.low(), s.high()))
+    towards = Desired.towards(velocity, s, s.radii(margin))
+    return replace(towards, body=body, plan=plan)
 
 
 def rollout(pose: Array, body: Array, footstep: float) -> tuple[Array, Array]:
@@ -140,12 +145,8 @@ def rollout(pose: Array, body: Array, footstep: float) -> tuple[Array, Array]:
     Returns:
         Positions after each footstep (k, t, 2) [m] and headings (k, t) [rad].
     """
-    turned = footstep * np.cumsum(body[..., 2], axis=1)
-    heading = pose[2] + turned
-    middle = heading - 0.5 * footstep * body[..., 2]
-    c, s = np.cos(middle), np.sin(middle)
-    step = np.stack([c * body[..., 0] - s * body[..., 1], s * body[..., 0] + c * body[..., 1]], -1)
-    position: Array = pose[:2] + footstep * np.cumsum(step, axis=1)
+    velocity, heading = walked(body, float(pose[2]), footstep)
+    position: Array = pose[:2] + footstep * np.cumsum(velocity, axis=1)
     return position, heading
 
 

@@ -1,27 +1,43 @@
-"""Gaze planner: applies the policy of the parameters, a steady one after saccade and dwell.
+"""Gaze planner: applies the policy of the mode, a steady one after saccade and dwell.
 
 The body of a robot whose camera is fixed turns instead of its head.
 """
 
 from collections.abc import Mapping
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from navigation.angles import wrap
 from navigation.belief.belief import Belief
-from navigation.decision import GazeDecision, MotionDecision, SpeedLimits, Task
-from navigation.gaze.choice import gaze_policy, search_policy
-from navigation.gaze.gaze_map import GazeGrid
-from navigation.gaze.policy import GazeContext
-from navigation.gaze.scene import gaze_scene
+from navigation.decision import GazeDecision, MotionDecision, SpeedLimits
+from navigation.gaze.blind import BlindGaze, StepSweep, TriangleSweep
+from navigation.gaze.grid import GazeGrid
+from navigation.gaze.integrated import IntegratedGaze
+from navigation.gaze.memory import Fixation, GazeMemory
+from navigation.gaze.policy import Gaze, GazePolicy
+from navigation.gaze.risk import RiskGaze
+from navigation.gaze.scene import GazeScene
 from navigation.parameters.gaze import GazeParameters
 from navigation.parameters.navigation import NavigationParameters
 from navigation.partial_evaluation import SamplePoints
+from navigation.scene import Scene
+
+Array = NDArray[np.float64]
 
 
 class GazePlanner:
     """Gaze control of Yoo & Kim, section II, and alternatives.
+
+    The planner does not change: all that lives from frame to frame is a `GazeMemory`.
+
+    Args:
+        parameters: profile.
+        limits: speed limits of the walking layer.
+        beacons: positions in W by name [m].
+        neck: maximum rate [rad/s] and acceleration [rad/s²] of the camera.
 
     Attributes:
         grid: cells of the gaze map.
@@ -32,101 +48,103 @@ class GazePlanner:
         parameters: NavigationParameters,
         limits: SpeedLimits,
         beacons: Mapping[str, tuple[float, float]],
-        fov: tuple[float, float],
         neck: tuple[float, float],
     ) -> None:
-        """Initialize with the gaze straight ahead.
-
-        Args:
-            parameters: profile.
-            limits: speed limits of the walking layer.
-            beacons: positions in W by name [m].
-            fov: horizontal and vertical field of view of the camera [rad].
-            neck: maximum rate [rad/s] and acceleration [rad/s²] of the camera.
-        """
         p = parameters.gaze
         self._parameters = parameters
         self._beacons = np.array([beacons[name] for name in sorted(beacons)]).reshape(-1, 2)
         self._samples = SamplePoints.polar(parameters.evaluation, p.max_pan)
-        self.grid = GazeGrid(p, *fov)
-        self._policy = gaze_policy(parameters, limits, self.grid, self._beacons, neck)
-        self._search = search_policy(parameters, self.grid)
-        self._timing = GazeTiming(p)
-        self._pan, self._tilt = 0.0, p.fixed_tilt
-        self._direction: float | None = None
-        self._last: GazeDecision | None = None
+        self.grid = GazeGrid.of(p)
+        self._policy: GazePolicy[Any]
+        if p.mode == "risk":
+            self._policy = RiskGaze(parameters, limits, self.grid, self._beacons, neck)
+        elif p.mode == "integrated":
+            self._policy = IntegratedGaze(parameters, self.grid)
+        else:
+            self._policy = blind_policy(p, self.grid)
+        self._search = search_policy(p, self.grid)
 
-    def choose(self, belief: Belief, task: Task, motion: MotionDecision | None) -> GazeDecision:
+    def begin(self) -> GazeMemory:
+        """Return the memory of the start, also after a relocalization or a fall."""
+        return GazeMemory(None, self._policy.begin(), self._search.begin())
+
+    def choose(
+        self, memory: GazeMemory, scene: Scene, motion: MotionDecision | None
+    ) -> tuple[GazeDecision, GazeMemory]:
         """Choose the gaze; call at every frame.
 
         Args:
-            belief: belief of the robot.
-            task: task of the mission.
-            motion: decision of the planner, None before the first.
+            memory: memory that the former frame returned.
+            scene: scene of the frame.
+            motion: decision of the motion planner; None before the first.
 
         Returns:
-            The decision in force; of a steady policy a new one after arrival and dwell.
+            The decision in force, of a steady policy a new one after arrival and dwell, and the
+            memory for the next frame.
         """
-        self._policy.observe(belief)
+        belief, p, fixation = scene.belief, self._parameters.gaze, memory.fixation
+        memory = replace(memory, policy=self._policy.observe(memory.policy, belief))
         policy = self._search if belief.lost else self._policy
-        by_body = self._parameters.gaze.moved_by == "body"
-        now = self._now(belief, policy.stabilized or by_body)
-        if by_body:
-            error = abs(now[0])
-        else:
-            error = max(abs(belief.view.pan - now[0]), abs(belief.view.tilt - now[1]))
-        ready = not policy.steady or self._timing.ready(belief.time, error)
-        if self._last is not None and not ready:
-            return replace(self._last, pan=now[0])
-        scene = gaze_scene(belief, motion, self._samples, self._beacons, self._parameters)
-        gaze_map, (self._pan, self._tilt) = policy.look(GazeContext(task, motion, scene), now)
-        self._direction = wrap(float(belief.pose[2]) + self._pan)
+        by_body = p.moved_by == "body"
         held = by_body or policy.stabilized
-        self._timing.decided(belief.time, (self._direction if held else self._pan, self._tilt))
-        self._last = GazeDecision(
-            pan=self._pan,
-            tilt=self._tilt,
-            psi_lm=scene.map.psi,
-            psi_sf=scene.psi_sf,
-            psi_ob=scene.psi_ob_max,
-            psi_way=scene.psi_way,
+        now = self._present(fixation, belief, held)
+        if policy.steady and fixation is not None:
+            fixation = fixation.observed(belief.time, self._error(belief, now), p)
+            if not fixation.is_over(belief.time, p):
+                memory = replace(memory, fixation=fixation)
+                return replace(fixation.decision, pan=now[0]), memory
+        gaze_scene = GazeScene.of(scene, motion, self._samples, self._beacons, self._parameters)
+        former = memory.search if belief.lost else memory.policy
+        (pan, tilt), gaze_map, later = policy.look(former, gaze_scene, now)
+        direction = wrap(float(belief.pose[2]) + pan)
+        decision = GazeDecision(
+            pan=pan,
+            tilt=tilt,
+            psi_lm=gaze_scene.map.psi,
+            psi_sf=gaze_scene.psi_sf,
+            psi_ob=gaze_scene.psi_ob_max,
+            psi_way=gaze_scene.psi_way,
             gaze_map=gaze_map,
             stabilized=policy.stabilized,
-            body_direction=self._direction if by_body else None,
+            body_direction=direction if by_body else None,
         )
-        return self._last
+        kept = fixation is not None and fixation.is_kept_by(decision, direction, held)
+        arrived = fixation.arrived if fixation is not None and kept else None
+        fixation = Fixation(decision, direction, belief.time, arrived)
+        if belief.lost:
+            return decision, GazeMemory(fixation, memory.policy, later)
+        return decision, GazeMemory(fixation, later, memory.search)
 
-    def _now(self, belief: Belief, held: bool) -> tuple[float, float]:
+    def _present(self, fixation: Fixation | None, belief: Belief, held: bool) -> Gaze:
         """Return the gaze that was chosen [rad]; one that is `held` keeps its direction in W."""
-        if self._direction is None or not held:
-            return self._pan, self._tilt
-        pan, limit = wrap(self._direction - float(belief.pose[2])), self._parameters.gaze.max_pan
-        return min(max(pan, -limit), limit), self._tilt
+        if fixation is None:
+            return 0.0, self._parameters.gaze.fixed_tilt
+        if not held:
+            return fixation.decision.pan, fixation.decision.tilt
+        limit = self._parameters.gaze.max_pan
+        pan = wrap(fixation.direction - float(belief.pose[2]))
+        return min(max(pan, -limit), limit), fixation.decision.tilt
+
+    def _error(self, belief: Belief, now: Gaze) -> float:
+        """Return the angle between the camera and the chosen gaze [rad]."""
+        if self._parameters.gaze.moved_by == "body":
+            return abs(now[0])
+        return max(abs(belief.view.pan - now[0]), abs(belief.view.tilt - now[1]))
 
 
-class GazeTiming:
-    """Timing of decisions: the gaze arrives and dwells before the next one."""
+def blind_policy(parameters: GazeParameters, grid: GazeGrid) -> GazePolicy[Any]:
+    """Return the policy of a mode that depends on time alone."""
+    if parameters.mode == "steps":
+        return StepSweep(parameters, grid)
+    if parameters.mode == "triangle":
+        return TriangleSweep(parameters, grid)
+    return BlindGaze(parameters, grid)
 
-    def __init__(self, parameters: GazeParameters) -> None:
-        self._parameters = parameters
-        self._target = (0.0, 0.0)
-        self._decided: float | None = None
-        self._arrived: float | None = None
 
-    def ready(self, time: float, error: float) -> bool:
-        """Whether to decide at `time` [s] with the camera `error` [rad] from its target."""
-        if self._decided is None:
-            return True
-        p = self._parameters
-        if self._arrived is None and error <= p.arrival_tolerance:
-            self._arrived = time
-        dwelled = self._arrived is not None and time - self._arrived >= p.dwell - 1e-9
-        most = p.max_saccade_time if p.moved_by == "head" else p.max_turn_time
-        return dwelled or time - self._decided >= most
-
-    def decided(self, time: float, target: tuple[float, float]) -> None:
-        """Record a decision at `time` [s] for a target."""
-        if self._decided is None or target != self._target:
-            self._arrived = None
-        self._target = target
-        self._decided = time
+def search_policy(parameters: GazeParameters, grid: GazeGrid) -> GazePolicy[Any]:
+    """Return the policy of a lost robot, whose map does not show where the beacons are."""
+    p = parameters
+    if p.mode == "fixed" or p.moved_by == "body":
+        return BlindGaze(p, grid)
+    search = replace(p, sweep_amplitude=p.max_pan, sweep_stops=4, sweep_frames=2)
+    return StepSweep(search, grid)

@@ -1,50 +1,23 @@
-"""Protocol of gaze policies, and the inputs of their decisions."""
+"""Protocol of gaze policies."""
 
-from math import atan2, hypot
-from typing import Protocol
+from typing import Protocol, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
 
-from compilation.value import value
-from navigation.angles import wrap
 from navigation.belief.belief import Belief
-from navigation.decision import MotionDecision, Task
 from navigation.gaze.scene import GazeScene
 
 Array = NDArray[np.float64]
+Memory = TypeVar("Memory")
 Gaze = tuple[float, float]
 """Pan and tilt [rad]."""
 
 
-@value
-class GazeContext:
-    """Inputs of a gaze decision.
-
-    Attributes:
-        task: task of the mission.
-        motion: decision of the planner, None before the first.
-        scene: belief and partial evaluations.
-    """
-
-    task: Task
-    motion: MotionDecision | None
-    scene: GazeScene
-
-    @property
-    def path(self) -> float:
-        """Bearing of the planned velocity in R, of the destination if that is zero [rad]."""
-        if self.motion is not None:
-            vx, vy, _ = self.motion.velocity.tolist()
-            if hypot(vx, vy) > 1e-3:
-                return atan2(vy, vx)
-        pose = self.scene.belief.pose
-        dx, dy = (self.task.target - pose[:2]).tolist()
-        return wrap(atan2(dy, dx) - float(pose[2]))
-
-
-class GazePolicy(Protocol):
+class GazePolicy(Protocol[Memory]):
     """Choice of the gaze.
+
+    A policy does not change; its memory is a value that every call takes and returns.
 
     Attributes:
         steady: whether the camera arrives and dwells before the next decision.
@@ -54,9 +27,18 @@ class GazePolicy(Protocol):
     steady: bool
     stabilized: bool
 
-    def observe(self, belief: Belief) -> None:
-        """Update what the policy remembers; called at every frame before `look`."""
-        return None  # a policy without a memory
+    def begin(self) -> Memory:
+        """Return the memory of the start."""
 
-    def look(self, context: GazeContext, now: Gaze) -> tuple[Array, Gaze]:
-        """Return the gaze map (tilts, pans) and the next gaze; `now` is the present one."""
+    def observe(self, memory: Memory, belief: Belief) -> Memory:
+        """Return the memory after a frame; called at every frame before `look`."""
+        return memory
+
+    def look(self, memory: Memory, scene: GazeScene, now: Gaze) -> tuple[Gaze, Array, Memory]:
+        """Return the next gaze, the gaze map (tilts, pans) and the memory.
+
+        Args:
+            memory: memory of the policy.
+            scene: belief, motion and partial evaluations.
+            now: present gaze.
+        """

@@ -7,34 +7,52 @@ all that its image shows, over the time of the saccade and the look.
 """
 
 from dataclasses import replace
+from functools import cache
 from math import hypot, inf, tan
 
 import numpy as np
 from numpy.typing import NDArray
 
 from compilation.record import record
+from compilation.value import value
 from navigation.belief.belief import Belief
-from navigation.belief.tracks import Tracks
 from navigation.decision import SpeedLimits
-from navigation.gaze.gaze_map import GazeGrid
+from navigation.gaze.grid import GazeGrid
 from navigation.gaze.looks import looks_of
-from navigation.gaze.policy import Gaze, GazeContext, GazePolicy
-from navigation.gaze.undetected import Undetected
+from navigation.gaze.policy import Gaze, GazePolicy
+from navigation.gaze.scene import GazeScene
+from navigation.gaze.undetected import Undetected, risk_limits
 from navigation.gaze.views import view_values
-from navigation.motion.unseen_ground import ground_points
 from navigation.observation import CameraView
+from navigation.parameters.gaze import GroundAheadParameters
 from navigation.parameters.navigation import NavigationParameters
 from navigation.partial_evaluation import psi_self
-from navigation.transform import velocity_in_world
+from navigation.transform import SE2, velocity_in_world
 
 Array = NDArray[np.float64]
+Rows = NDArray[np.record]
 
 ARRIVED = 0.1  # distance from the chosen gaze at which a fixation begins [rad]
 PAN_TOLERANCE = 0.1  # beyond the maximum pan, of a view that a turn moves there [rad]
 MAX_HALF_FOV = 1.5  # of a panoramic camera, as a pinhole camera [rad]
 
 
-class RiskGaze(GazePolicy):
+@value
+class RiskMemory:
+    """Memory of the risk gaze.
+
+    Attributes:
+        undetected: densities of undetected obstacles; None before the first frame.
+        beacon: time of the latest beacon; at first 0, the start of the run [s].
+        saccade: time of the latest frame of a saccade [s].
+    """
+
+    undetected: Undetected | None = None
+    beacon: float = 0.0
+    saccade: float = -inf
+
+
+class RiskGaze(GazePolicy[RiskMemory]):
     """Gaze at the view of the highest value per time, decided at every frame.
 
     Args:
@@ -66,83 +84,81 @@ class RiskGaze(GazePolicy):
             "attention_range": evaluation.attention_range,
             "beacon_range": evaluation.beacon_range,
         }
-        self._limits: tuple[tuple[float, float], NDArray[np.record]] | None = None
-        self._undetected: Undetected | None = None
-        self._beacon_seen = 0.0  # time of the latest beacon [s]
-        self._fixated = -inf  # time of the latest frame of a saccade [s]
+        self._undetected_limits = risk_limits(gaze.undetected, gaze.risk)
+        self._limits: tuple[tuple[float, float], Rows] | None = None  # of the latest camera
 
-    def observe(self, belief: Belief) -> None:
-        if self._undetected is None:
-            gaze = self._parameters.gaze
-            self._undetected = Undetected(gaze.undetected, gaze.risk, belief.local_map, belief.time)
-        self._undetected.update(belief.local_map, belief.time)
-        if belief.seen_beacons:
-            self._beacon_seen = belief.time
+    def begin(self) -> RiskMemory:
+        return RiskMemory()
 
-    def look(self, context: GazeContext, now: Gaze) -> tuple[Array, Gaze]:
-        p, view = self._parameters.gaze.risk, context.scene.belief.view
+    def observe(self, memory: RiskMemory, belief: Belief) -> RiskMemory:
+        undetected, p = memory.undetected, self._parameters.gaze.undetected
+        if undetected is None:
+            undetected = Undetected.unseen(p, belief.local_map, belief.time)
+        return RiskMemory(
+            undetected.updated(belief.local_map, belief.time),
+            belief.time if belief.seen_beacons else memory.beacon,
+            memory.saccade,
+        )
+
+    def look(
+        self, memory: RiskMemory, scene: GazeScene, now: Gaze
+    ) -> tuple[Gaze, Array, RiskMemory]:
+        p, belief, view = self._parameters.gaze.risk, scene.belief, scene.belief.view
         half_fov = (0.5 * view.horizontal_fov, 0.5 * view.vertical_fov)
         lens = np.array([tan(min(half, MAX_HALF_FOV) - p.border) for half in half_fov])
         seen_from = (
-            self._looks(context),
+            self._looks(memory, scene),
             np.array([hypot(*view.position[:2].tolist()), float(view.position[2])]),
             lens,
             np.array([view.pan, view.pan_rate, view.tilt, view.tilt_rate, *self._neck]),
             p.look_time,
             p.max_urgency,
-            self._turn(context),
+            self._turn(scene),
         )
         values = view_values(self._grid.pan, self._grid.tilt, *seen_from)
-        if self._fixates(context.scene.belief, now):
-            return values, now
-        present = view_values(np.array([now[0]]), np.array([now[1]]), *seen_from)
-        if present[0, 0] * p.switch_ratio >= values.max():
-            return values, now
-        row, column = np.unravel_index(int(np.argmax(values)), values.shape)
-        return values, (float(self._grid.pan[column]), float(self._grid.tilt[row]))
-
-    def _fixates(self, belief: Belief, now: Gaze) -> bool:
-        """Return whether the present fixation is younger than a dwell."""
-        view = belief.view
         arrived = max(abs(view.pan - now[0]), abs(view.tilt - now[1])) < ARRIVED
         if view.blind or not arrived:
-            self._fixated = belief.time
-            return False
-        return belief.time - self._fixated < self._parameters.gaze.dwell
+            memory = replace(memory, saccade=belief.time)
+        elif belief.time - memory.saccade < self._parameters.gaze.dwell:
+            return now, values, memory
+        present = view_values(np.array([now[0]]), np.array([now[1]]), *seen_from)
+        if present[0, 0] * p.switch_ratio >= values.max():
+            return now, values, memory
+        row, column = np.unravel_index(int(np.argmax(values)), values.shape)
+        return (float(self._grid.pan[column]), float(self._grid.tilt[row])), values, memory
 
-    def _turn(self, context: GazeContext) -> Array:
+    def _turn(self, scene: GazeScene) -> Array:
         """Return turn rate of the body, 0 without a neck [rad/s], and maximum pan [rad] (2,)."""
-        rate = 0.0 if context.motion is None or self.steady else float(context.motion.velocity[2])
+        rate = 0.0 if scene.motion is None or self.steady else float(scene.motion.velocity[2])
         return np.array([rate, self._parameters.gaze.max_pan + PAN_TOLERANCE])
 
-    def _looks(self, context: GazeContext) -> NDArray[np.record]:
+    def _looks(self, memory: RiskMemory, scene: GazeScene) -> Rows:
         """Return all looks, records of type `LOOK`."""
-        assert self._undetected is not None
-        belief, motion = context.scene.belief, context.motion
-        pose, tracks = belief.pose, Tracks.of(belief.tracks)
-        twist = np.zeros(3) if motion is None else motion.velocity
-        velocity = velocity_in_world(pose, twist)[:2]
-        course = context.path
-        ground = ground_points(pose, float(pose[2]) + course, self._parameters.unseen_ground)
+        assert memory.undetected is not None
+        belief, tracks, course = scene.belief, scene.obstacles, scene.course
+        pose = belief.pose
+        twist = np.zeros(3) if scene.motion is None else scene.motion.velocity
+        velocity = velocity_in_world(pose, twist)
+        ground = ground_points(pose, float(pose[2]) + course, self._parameters.gaze.ground)
         return looks_of(
             tracks.rows,
             tracks.clouds,
-            self._undetected.risks(pose[:2], velocity),
+            memory.undetected.risks(pose[:2], velocity, self._undetected_limits),
             (ground, belief.local_map.age_at(ground)),
-            (self._beacons, self._beacon_weight(belief)),
+            (self._beacons, self._beacon_weight(memory, belief)),
             (pose, course),
             belief.view.model.shadow,
             self._limits_of(belief.view),
         )
 
-    def _beacon_weight(self, belief: Belief) -> float:
+    def _beacon_weight(self, memory: RiskMemory, belief: Belief) -> float:
         """Return the weight of all beacons together [1]."""
         p = self._parameters.gaze.risk
         psi = psi_self(belief.pose_covariance, self._evaluation)
-        psi = max(psi, min(1.0, (belief.time - self._beacon_seen) / p.beacon_time))
+        psi = max(psi, min(1.0, (belief.time - memory.beacon) / p.beacon_time))
         return p.beacon_weight * max(0.0, psi - p.min_self_uncertainty)
 
-    def _limits_of(self, view: CameraView) -> NDArray[np.record]:
+    def _limits_of(self, view: CameraView) -> Rows:
         """Return the parameters of the looks for a camera, kept until the camera changes."""
         top = view.model.top if view.model.top < view.position[2] else 0.0
         camera = (top, self._parameters.gaze.max_pan + 0.5 * view.horizontal_fov)
@@ -150,3 +166,24 @@ class RiskGaze(GazePolicy):
             numbers = self._numbers | {"obstacle_height": top, "reach": camera[1]}
             self._limits = camera, record(self._parameters.gaze.risk, **numbers)
         return self._limits[1]
+
+
+def ground_points(pose: Array, direction: float, parameters: GroundAheadParameters) -> Array:
+    """Return the checked points in W, three columns ahead of the robot (3 rows, 2) [m].
+
+    Args:
+        pose: pose of the robot (3,) [m, m, rad].
+        direction: direction of its motion in W [rad].
+        parameters: extent of the ground.
+    """
+    p = parameters
+    along, across = _ground(p.near, p.far, p.half_width, p.rows)
+    x, y, _ = pose.tolist()
+    return np.stack(SE2(x, y, direction) @ (along, across), axis=1)
+
+
+@cache
+def _ground(near: float, far: float, half_width: float, rows: int) -> tuple[Array, Array]:
+    """Return coordinates along and across the motion (3 rows,), (3 rows,) [m]."""
+    along, across = np.meshgrid(np.linspace(near, far, rows), (-half_width, 0.0, half_width))
+    return along.ravel(), across.ravel()

@@ -1,17 +1,17 @@
-"""Scene of one gaze decision: obstacles, beacons and partial evaluations."""
+"""Scene of one gaze decision: scene of the frame, directions, and equations (1) and (4)."""
 
-from math import atan2, sqrt
+from math import atan2, hypot, sqrt
 
 import numpy as np
 from numpy.typing import NDArray
 
 from compilation import compiled
 from compilation.value import value
-from navigation.angles import wrap_array
+from navigation.angles import wrap, wrap_array
 from navigation.belief.belief import Belief
 from navigation.belief.tracks import Tracks
-from navigation.decision import MotionDecision
-from navigation.motion.univector import extended_radius
+from navigation.decision import MotionDecision, Task
+from navigation.observation import CameraView
 from navigation.parameters.navigation import NavigationParameters
 from navigation.partial_evaluation import (
     MapEvaluation,
@@ -19,10 +19,9 @@ from navigation.partial_evaluation import (
     attended,
     obstacle_free_distance,
     psi_local_map,
-    psi_obstacle,
-    psi_self,
     psi_way,
 )
+from navigation.scene import Scene
 from navigation.transform import in_robot, points_to_world
 
 Array = NDArray[np.float64]
@@ -33,49 +32,115 @@ Mask = NDArray[np.bool_]
 class GazeScene:
     """Scene of one gaze decision.
 
+    Its obstacles are the tracks of the belief, without the landmarks of the scene.
+
     Attributes:
-        belief: belief of the robot.
+        scene: scene of the frame.
+        motion: decision of the motion planner; None before the first.
         obstacles: all tracks (n).
         bearing: bearings of the obstacles in R (n,) [rad].
         distance: distances of the obstacles (n,) [m].
         attended: the set O (n,).
         reachable: whether each is within pan and half a field of view (n,).
         psi_ob: eq. (3) (n,).
-        psi_sf: eq. (2).
         psi_way: eq. (4).
         map: eq. (1).
         samples: its sample points.
         beacon_bearing: bearings of the beacons within reach and range, in R (m,) [rad].
-        beacon_distance: distances of these beacons (m,) [m].
         camera_height: above the floor [m].
     """
 
-    belief: Belief
+    scene: Scene
+    motion: MotionDecision | None
     obstacles: Tracks
     bearing: Array
     distance: Array
     attended: Mask
     reachable: Mask
     psi_ob: Array
-    psi_sf: float
     psi_way: float
     map: MapEvaluation
     samples: SamplePoints
     beacon_bearing: Array
-    beacon_distance: Array
     camera_height: float
+
+    @classmethod
+    def of(
+        cls,
+        scene: Scene,
+        motion: MotionDecision | None,
+        samples: SamplePoints,
+        beacons: Array,
+        parameters: NavigationParameters,
+    ) -> "GazeScene":
+        """Evaluate (1) and (4), and the directions of obstacles and beacons.
+
+        Args:
+            scene: scene of the frame.
+            motion: decision of the motion planner; None before the first.
+            samples: sample points of (1).
+            beacons: known positions of beacons in W (m, 2) [m].
+            parameters: parameters of the decisions.
+        """
+        e, belief, tracks = parameters.evaluation, scene.belief, slice(scene.landmarks, None)
+        view, pose, obstacles = belief.view, belief.pose, scene.obstacles[tracks]
+        reach = parameters.gaze.max_pan + 0.5 * view.horizontal_fov
+        bearing, distance = relative(np.ascontiguousarray(obstacles.position), pose)
+        members = attended(obstacles.rows, pose, scene.velocity, e.attention_range)
+        beacon_bearing, beacon_distance = relative(beacons, pose)
+        near = (beacon_distance <= e.beacon_range) & (np.abs(beacon_bearing) <= reach)
+        confidence = belief.local_map.confidence_at(points_to_world(pose, samples.points))
+        centres, radii = obstacles.position[members], scene.s_oe[tracks][members]
+        if motion is not None and motion.virtual_obstacles:
+            centres = np.concatenate([centres, [v.position for v in motion.virtual_obstacles]])
+            radii = np.concatenate([radii, [v.radius for v in motion.virtual_obstacles]])
+        free = obstacle_free_distance(pose[:2], centres, radii, e.d_n_thres)
+        return cls(
+            scene=scene,
+            motion=motion,
+            obstacles=obstacles,
+            bearing=bearing,
+            distance=distance,
+            attended=members,
+            reachable=np.abs(bearing) <= reach,
+            psi_ob=scene.psi_ob[tracks],
+            psi_way=psi_way(free, e),
+            map=psi_local_map(confidence, shown_by(view, samples), e),
+            samples=samples,
+            beacon_bearing=beacon_bearing[near],
+            camera_height=float(view.position[2]),
+        )
+
+    @property
+    def belief(self) -> Belief:
+        """Belief of the robot."""
+        return self.scene.belief
+
+    @property
+    def task(self) -> Task:
+        """Task of the mission."""
+        return self.scene.task
+
+    @property
+    def psi_sf(self) -> float:
+        """Eq. (2)."""
+        return self.scene.psi_sf
 
     @property
     def psi_ob_max(self) -> float:
         """Maximum psi_ob over the set O."""
         return float(self.psi_ob[self.attended].max(initial=0.0))
 
-    def aims(self, parameters: NavigationParameters) -> tuple[Mask, Array, Array]:
-        """Return the obstacles of O within reach (n,), pan and tilt to each (k,), (k,) [rad]."""
-        limit, height = parameters.gaze.max_pan, parameters.evaluation.aim_height
-        members = self.attended & self.reachable
-        pan = np.clip(self.bearing[members], -limit, limit)
-        return members, pan, np.arctan2(height - self.camera_height, self.distance[members])
+    @property
+    def course(self) -> float:
+        """Bearing of the planned velocity in R, of the destination if that is zero [rad]."""
+        if self.motion is not None:
+            vx, vy, _ = self.motion.velocity.tolist()
+            if hypot(vx, vy) > 1e-3:
+                return atan2(vy, vx)
+        pose = self.belief.pose
+        dx, dy = (self.task.target - pose[:2]).tolist()
+        return wrap(atan2(dy, dx) - float(pose[2]))
 
 
 @compiled
@@ -88,59 +153,9 @@ def relative(points: Array, pose: Array) -> tuple[Array, Array]:
     return bearing, distance
 
 
-def gaze_scene(
-    belief: Belief,
-    motion: MotionDecision | None,
-    samples: SamplePoints,
-    beacons: Array,
-    parameters: NavigationParameters,
-) -> GazeScene:
-    """Evaluate (1)-(4) in the present belief.
-
-    Args:
-        belief: belief of the robot.
-        motion: latest decision of the planner, None before the first.
-        samples: sample points of (1).
-        beacons: known positions of beacons in W (m, 2) [m].
-        parameters: parameters of the decisions.
-    """
-    e, g = parameters.evaluation, parameters.gaze
-    view, pose = belief.view, belief.pose
-    reach = g.max_pan + 0.5 * view.horizontal_fov
-    obstacles = Tracks.of(belief.tracks)
-    bearing, distance = relative(np.ascontiguousarray(obstacles.position), pose)
-    body = np.zeros(2) if motion is None else motion.velocity[:2]
-    velocity = points_to_world(pose, body[None])[0] - pose[:2]
-    psi_sf = psi_self(belief.pose_covariance, e)
-    psi_ob = psi_obstacle(obstacles, pose[:2], velocity, e)
-    members = attended(obstacles.rows, pose, velocity, e.attention_range)
-    height = float(view.position[2])
+def shown_by(view: CameraView, samples: SamplePoints) -> Mask:
+    """Return which sample points lie in the gaze region R_g of eq. (1); none in a blind frame."""
     aside = np.abs(wrap_array(samples.bearing - view.pan))
-    above = np.abs(-np.arctan2(height, samples.distance) - view.tilt)
-    in_gaze = (aside <= 0.5 * view.horizontal_fov) & (above <= 0.5 * view.vertical_fov)
-    in_gaze &= not view.blind
-    confidence = belief.local_map.confidence_at(points_to_world(pose, samples.points))
-    radii = extended_radius(obstacles, psi_sf, psi_ob, parameters.univector)
-    centres, radii = obstacles.position[members], radii[members]
-    if motion is not None and motion.virtual_obstacles:
-        centres = np.concatenate([centres, [v.position for v in motion.virtual_obstacles]])
-        radii = np.concatenate([radii, [v.radius for v in motion.virtual_obstacles]])
-    free = obstacle_free_distance(pose[:2], centres, radii, e.d_n_thres)
-    beacon_bearing, beacon_distance = relative(beacons, pose)
-    near = (beacon_distance <= e.beacon_range) & (np.abs(beacon_bearing) <= reach)
-    return GazeScene(
-        belief=belief,
-        obstacles=obstacles,
-        bearing=bearing,
-        distance=distance,
-        attended=members,
-        reachable=np.abs(bearing) <= reach,
-        psi_ob=psi_ob,
-        psi_sf=psi_sf,
-        psi_way=psi_way(free, e),
-        map=psi_local_map(confidence, in_gaze, e),
-        samples=samples,
-        beacon_bearing=beacon_bearing[near],
-        beacon_distance=beacon_distance[near],
-        camera_height=height,
-    )
+    above = np.abs(-np.arctan2(float(view.position[2]), samples.distance) - view.tilt)
+    inside: Mask = (aside <= 0.5 * view.horizontal_fov) & (above <= 0.5 * view.vertical_fov)
+    return inside & (not view.blind)

@@ -4,6 +4,7 @@ Movers that were never detected drift through the ground that the robot does not
 density by cell and direction of motion moves with them and falls where a frame shows the ground.
 """
 
+from dataclasses import replace
 from math import pi, sqrt
 
 import numpy as np
@@ -11,95 +12,128 @@ from numpy.typing import NDArray
 
 from compilation import compiled
 from compilation.record import record
-from navigation.belief.local_map import LocalMap, shifted
+from compilation.value import value
+from navigation.belief.local_map import LocalMap
 from navigation.motion.rollout import contact_time
 from navigation.parameters.gaze import RiskParameters, UndetectedParameters
 
 Array = NDArray[np.float64]
+Cells = NDArray[np.int64]
 Rows = NDArray[np.record]
 
 MIN_DENSITY = 1e-5  # density below which a cell counts as empty [1/m²]
 
 
+@value
 class Undetected:
     """Densities on the cells of the local map.
 
-    Args:
+    Attributes:
         parameters: densities, speed and headings.
-        risk: maximum urgency.
-        local_map: map whose cells the densities share.
-        time: time of the start [s].
+        time: time of the densities [s].
+        cell: side of a cell [m].
+        corner: index of the first column and row, counted from the origin of W (2,).
+        velocities: velocities of the headings (k, 2) [m/s].
+        drift: motion by each heading that is not yet a whole cell (k, 2) [cells].
+        movers: density by heading (k, n, n) [1/m²].
+        static: density (n, n) [1/m²].
     """
 
-    def __init__(
-        self,
-        parameters: UndetectedParameters,
-        risk: RiskParameters,
-        local_map: LocalMap,
-        time: float,
-    ) -> None:
-        p = self._parameters = parameters
-        self._limits = record(parameters, max_urgency=risk.max_urgency)
+    parameters: UndetectedParameters
+    time: float
+    cell: float
+    corner: Cells
+    velocities: Array
+    drift: Array
+    movers: Array
+    static: Array
+
+    @classmethod
+    def unseen(
+        cls, parameters: UndetectedParameters, local_map: LocalMap, time: float
+    ) -> "Undetected":
+        """Return the densities of ground that was never seen.
+
+        Args:
+            parameters: densities, speed and headings.
+            local_map: map whose cells the densities share.
+            time: time of the start [s].
+        """
+        p, shape = parameters, local_map.age.shape
         angles = 2.0 * pi * np.arange(p.headings) / p.headings
-        self._velocities = p.speed * np.stack([np.cos(angles), np.sin(angles)], axis=1)
-        self._cell = local_map.cell
-        self._corner = _corner(local_map)
-        shape = local_map.age.shape
-        self._new = p.movers / p.headings
-        self._movers = np.full((p.headings, *shape), self._new)
-        self._static = np.full(shape, p.static)
-        self._drift = np.zeros((p.headings, 2))  # not yet a whole cell [cells]
-        self._time = time
+        velocities = p.speed * np.stack([np.cos(angles), np.sin(angles)], axis=1)
+        return cls(
+            parameters,
+            time,
+            local_map.cell,
+            corner_of(local_map),
+            velocities,
+            drift=np.zeros((p.headings, 2)),
+            movers=np.full((p.headings, *shape), p.movers / p.headings),
+            static=np.full(shape, p.static),
+        )
 
-    def update(self, local_map: LocalMap, time: float) -> None:
-        """Move the densities to `time` [s] and reduce them in the cells of the latest frame."""
-        corner = _corner(local_map)
-        self._drift += self._velocities * ((time - self._time) / self._cell)
-        whole = np.round(self._drift).astype(int)
-        self._drift -= whole
-        self._time = time
-        scroll, self._corner = corner - self._corner, corner
-        for k, (columns, rows) in enumerate((scroll - whole).tolist()):
-            if columns or rows:
-                self._movers[k] = shifted(self._movers[k], rows, columns, self._new)
-        columns, rows = scroll.tolist()
-        self._static = shifted(self._static, rows, columns, self._parameters.static)
-        see(self._movers, self._static, local_map.age, self._parameters.missed)
+    def updated(self, local_map: LocalMap, time: float) -> "Undetected":
+        """Return the densities at `time` [s], reduced in the cells of the latest frame."""
+        p, corner = self.parameters, corner_of(local_map)
+        drift = self.drift + self.velocities * ((time - self.time) / self.cell)
+        whole = np.round(drift).astype(np.int64)
+        scroll = corner - self.corner
+        left = np.where(local_map.age <= 0.0, p.missed, 1.0)
+        static = shifted_and_seen(self.static[None], scroll[None], p.static, left)[0]
+        movers = shifted_and_seen(self.movers, scroll - whole, p.movers / p.headings, left)
+        return replace(
+            self, time=time, corner=corner, drift=drift - whole, movers=movers, static=static
+        )
 
-    def risks(self, position: Array, velocity: Array) -> Array:
+    def risks(self, position: Array, velocity: Array, limits: Rows) -> Array:
         """Return position in W [m] and risk of the cells around the robot (m, 3).
 
         Args:
             position: position of the robot in W (2,) [m].
             velocity: velocity of the robot in W (2,) [m/s].
+            limits: record of `risk_limits`.
         """
         return risks(
-            self._movers,
-            self._static,
-            self._velocities,
-            np.array([*(self._corner * self._cell), self._cell]),
+            self.movers,
+            self.static,
+            self.velocities,
+            np.array([*(self.corner * self.cell), self.cell]),
             np.concatenate([position, velocity]),
-            self._limits,
+            limits,
         )
 
 
+def risk_limits(parameters: UndetectedParameters, risk: RiskParameters) -> Rows:
+    """Return the parameters of the risk of a cell, and the maximum urgency (1,)."""
+    return record(parameters, max_urgency=risk.max_urgency)
+
+
+def corner_of(local_map: LocalMap) -> Cells:
+    """Return the index of the first column and row, counted from the origin of W (2,)."""
+    return np.round(np.array(local_map.origin) / local_map.cell).astype(np.int64)
+
+
 @compiled
-def see(movers: Array, static: Array, age: Array, missed: float) -> None:
-    """Reduce the densities in the cells that a frame shows, in place.
+def shifted_and_seen(density: Array, shift: Cells, new: float, left: Array) -> Array:
+    """Return densities (k, n, n) in a window that moved, reduced by a frame.
 
     Args:
-        movers: density by heading (k, n, n) [1/m²].
-        static: density (n, n) [1/m²].
-        age: time since each cell was seen (n, n) [s].
-        missed: fraction that remains [1].
+        density: densities before (k, n, n) [1/m²].
+        shift: motion of the window over each, columns and rows (k, 2).
+        new: density of new cells [1/m²].
+        left: fraction that the frame leaves in each cell (n, n) [1].
     """
-    count = len(static)
-    for row in range(count):
-        for column in range(count):
-            if age[row, column] <= 0.0:
-                static[row, column] *= missed
-                for k in range(len(movers)):
-                    movers[k, row, column] *= missed
+    layers, size = len(density), len(left)
+    result = np.empty_like(density)
+    for k in range(layers):
+        columns, rows = shift[k, 0], shift[k, 1]
+        for row in range(size):
+            for column in range(size):
+                i, j = row + rows, column + columns
+                before = density[k, i, j] if 0 <= i < size and 0 <= j < size else new
+                result[k, row, column] = before * left[row, column]
+    return result
 
 
 @compiled
@@ -163,8 +197,3 @@ def risks(
                 cells[count, 2] = risk * cell * cell
                 count += 1
     return cells[:count]
-
-
-def _corner(local_map: LocalMap) -> NDArray[np.int64]:
-    """Return the index of the first column and row, counted from the origin of W (2,)."""
-    return np.round(np.array(local_map.origin) / local_map.cell).astype(np.int64)

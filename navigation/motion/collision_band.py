@@ -128,14 +128,18 @@ class Encounter:
                 points += [(along - sqrt(reach)) / horizon, (along + sqrt(reach)) / horizon]
         return tuple(points)
 
-    def case(self, v_max: float) -> CollisionCase | None:
-        """Return the letter of Fig. 4 for speeds up to `v_max` [m/s]; None if no speed collides.
+    def case(self, v_max: float, horizon: float) -> CollisionCase | None:
+        """Return the letter of Fig. 4; None if no speed collides.
+
+        Args:
+            v_max: maximum speed of the robot [m/s].
+            horizon: maximum time to collision [s].
 
         Case (c) of the paper contains slower movers from behind, for which some speeds are
         free; they are case (b) here.
         """
         meets_line = abs(self.across) < self.radius
-        free = free_intervals((self,), v_max, inf)
+        free = free_intervals((self,), v_max, horizon)
         if self.in_band():
             return CollisionCase.ESCAPE if free or not meets_line else CollisionCase.DEFINITE
         if free == [(0.0, v_max)]:

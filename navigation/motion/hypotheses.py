@@ -58,25 +58,7 @@ def set_disc(
 
 
 @compiled
-def is_reachable_set(track: np.record, seen_age: float, p: np.record) -> bool:
-    """Return whether an unseen mover counts as its reachable set.
-
-    The set is a static disc at its latest detection. It lasts until its centre is seen or it is
-    too old.
-
-    Args:
-        track: record of type `TRACK`.
-        seen_age: time since the place of its latest detection was seen [s].
-        p: parameters.
-    """
-    moving, unseen = track.motion == MOVING, track.age - seen_age < p.reachable_delay
-    return bool(moving and unseen and p.reachable_delay < track.age <= p.reachable_age)
-
-
-@compiled
-def collision_discs(
-    tracks: Rows, clouds: Array, seen_ages: Array, s_robot: float, parameters: Rows
-) -> Rows:
+def collision_discs(tracks: Rows, clouds: Array, s_robot: float, parameters: Rows) -> Rows:
     """Return the hypotheses of all tracks, records of type `DISC`.
 
     A lost mover counts as its particles; a visible one also as its reversal. A turning mover
@@ -85,12 +67,11 @@ def collision_discs(
     Args:
         tracks: records of type `TRACK` (n,).
         clouds: particles of the lost tracks (k, 6, m).
-        seen_ages: time since the places of their latest detections were seen (n,) [s].
         s_robot: radius of the robot [m].
         parameters: record of the parameters of the safety filter (1,).
     """
     p = parameters[0]
-    discs, count = np.empty(3 * len(tracks) + clouds.shape[0] * clouds.shape[2], DISC), 0
+    discs, count = np.empty(2 * len(tracks) + clouds.shape[0] * clouds.shape[2], DISC), 0
     for reversed_ in (False, True):
         for i in range(len(tracks)):
             track = tracks[i]
@@ -121,15 +102,6 @@ def collision_discs(
             position, weight = (cloud[X, k], cloud[Y, k]), p.particle_weight * cloud[WEIGHT, k]
             set_disc(discs[count], position, velocity, radius, p.moving_horizon, weight)
             count += 1
-    for i in range(len(tracks)):
-        track = tracks[i]
-        if p.reachable == 0.0 or not is_reachable_set(track, seen_ages[i], p):
-            continue
-        grown = min(p.reachable_radius, track.speed * (track.age - p.reachable_delay))
-        radius = s_robot + track.radius + track.radius_sigma + p.margin + grown
-        position = track.last_seen[0], track.last_seen[1]
-        set_disc(discs[count], position, (0.0, 0.0), radius, p.static_horizon, 1.0)
-        count += 1
     return discs[:count]
 
 

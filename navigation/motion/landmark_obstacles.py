@@ -1,14 +1,15 @@
 """Known landmarks as static obstacles."""
 
 from collections.abc import Mapping
-from dataclasses import replace
-from math import hypot
 
 import numpy as np
+from numpy.typing import NDArray
 
-from navigation.belief.belief import Belief, Motion, Track
-from navigation.belief.tracks import join
+from navigation.belief.belief import Motion, Track
+from navigation.belief.tracks import Tracks
 from navigation.parameters.motion import LandmarkParameters
+
+Array = NDArray[np.float64]
 
 
 class LandmarkObstacles:
@@ -29,19 +30,17 @@ class LandmarkObstacles:
         parameters: LandmarkParameters,
     ) -> None:
         self._range = parameters.attention_range
-        self._tracks = tuple(
-            _static_track(number - len(known), name, position, radius, parameters)
-            for number, (name, position) in enumerate(known.items())
+        self._tracks = Tracks.of(
+            [
+                _static_track(number - len(known), name, position, radius, parameters)
+                for number, (name, position) in enumerate(known.items())
+            ]
         )
 
-    def added_to(self, belief: Belief) -> Belief:
-        """Return `belief` with a static track of every landmark in range."""
-        near = tuple(
-            track
-            for track in self._tracks
-            if hypot(*(track.position - belief.pose[:2]).tolist()) < self._range
-        )
-        return replace(belief, tracks=join(near, belief.tracks)) if near else belief
+    def near(self, position: Array) -> Tracks:
+        """Return a static track of every landmark in range of `position` in W (2,) [m]."""
+        offset = self._tracks.position - position
+        return self._tracks.where(np.hypot(offset[:, 0], offset[:, 1]) < self._range)
 
 
 def _static_track(

@@ -1,251 +1,162 @@
-"""Motion planner: univector field, velocity modification, safety filter, velocity mapping."""
+"""Motion planner: one pipeline for the default method, that of the paper and all baselines.
+
+A method decides the desired velocity; the safety filter, where it is used, vetoes it; the velocity
+mapping turns direction and speed into a velocity of the body within its limits.
+"""
 
 from dataclasses import replace
-from math import atan2, cos, hypot, sin
+from math import atan2, hypot
 
 import numpy as np
 from numpy.typing import NDArray
 
 from compilation.record import record
 from compilation.value import value
-from navigation.belief.belief import Belief
-from navigation.belief.tracks import Tracks
-from navigation.decision import (
-    DirectionField,
-    MotionDecision,
-    Situation,
-    SpeedLimits,
-    Task,
-    VirtualObstacle,
-    read_only,
-)
-from navigation.motion.collision_band import CollisionCase, Encounter
+from navigation.angles import wrap
+from navigation.decision import MotionDecision, SpeedLimits, read_only
 from navigation.motion.hypotheses import collision_discs
-from navigation.motion.motion_field import ActiveVirtualObstacles, FieldScene, MotionField
-from navigation.motion.move_to_goal import ArrivalSide, arrival_gain
-from navigation.motion.passing_side import PassingSides
+from navigation.motion.move_to_goal import arrival_gain, arrival_side, move_to_goal
+from navigation.motion.planning_scene import Desired, Method, PlanningScene
 from navigation.motion.safety_filter import RolloutStart, SafetyFilter
-from navigation.motion.univector import extended_radius, physical_radius
-from navigation.motion.unseen_ground import ground_seen
-from navigation.motion.velocity_mapping import body_velocity, idle_velocity, target_heading
-from navigation.motion.velocity_modification import ModifiedSpeed, modify_speed, sample_speed
-from navigation.motion.waypoint_search import search_waypoint
+from navigation.motion.velocity_mapping import idle_velocity, target_heading
 from navigation.parameters.navigation import NavigationParameters
-from navigation.partial_evaluation import psi_obstacle, psi_self
-from navigation.transform import velocity_in_world
+from navigation.scene import Scene
 
 Array = NDArray[np.float64]
 
-_NO_DIRECTION = 1e-9
-
 
 @value
-class _Wanted:
-    """Result of field and velocity modification, before the safety filter.
+class MotionMemory:
+    """State of the motion planner between two decisions.
 
     Attributes:
-        direction: direction in W [rad].
-        speed: speed along it [m/s].
-        situation: outcome of velocity modification.
-        virtual: active virtual obstacles.
-        field: vector field; None for a turn on the spot.
+        course: latest direction of motion in W; None at the start [rad].
+        leg: number of via points passed.
+        side: side of the arrival of this leg, see `arrival_side`.
+        plan: state of the method.
     """
 
-    direction: float
-    speed: float = 0.0
-    situation: Situation = "free"
-    virtual: tuple[VirtualObstacle, ...] = ()
-    field: DirectionField | None = None
+    course: float | None = None
+    leg: int = 0
+    side: int = 0
+    plan: object = None
 
 
 class Planner:
-    """Modified univector field with velocity modification (Yoo & Kim, section III).
+    """Motion planner.
 
-    The profile `extended` adds a speed limit towards unseen ground, a safety filter and a rear
-    check.
+    Args:
+        parameters: profile.
+        limits: speed limits of the walking layer.
+        method: decides the desired velocity.
+        filtered: whether the safety filter vetoes it.
     """
 
-    def __init__(self, parameters: NavigationParameters, limits: SpeedLimits) -> None:
-        """Start standing.
-
-        Args:
-            parameters: profile.
-            limits: speed limits of the walking layer.
-        """
+    def __init__(
+        self,
+        parameters: NavigationParameters,
+        limits: SpeedLimits,
+        method: Method,
+        *,
+        filtered: bool = False,
+    ) -> None:
         self._parameters = parameters
         self._limits = limits
-        self._field = MotionField(parameters.univector, parameters.moving_obstacles)
-        self._safety_filter = SafetyFilter(
-            parameters.safety_filter, parameters.velocity_mapping, limits
-        )
-        self._limits_of_filter = record(parameters.safety_filter)
-        self._sides = PassingSides(parameters.univector)
-        self._arrival = ArrivalSide(parameters.univector)
-        self._path: tuple[float, float] | None = None
-        self._body = np.zeros(3)
-        self._direction: float | None = None
+        self._method = method
+        self._filter = None
+        if filtered:
+            self._filter = SafetyFilter(
+                parameters.safety_filter, parameters.velocity_mapping, limits
+            )
+        self._discs = record(parameters.safety_filter)
 
-    def plan(self, belief: Belief, task: Task, look: float | None = None) -> MotionDecision:
+    def begin(self) -> MotionMemory:
+        """Return the memory at the start, after a fall and after a relocalization."""
+        return MotionMemory()
+
+    def plan(self, memory: MotionMemory, scene: Scene) -> tuple[MotionDecision, MotionMemory]:
         """Decide the motion of the next footstep; call once per footstep.
 
         Args:
-            belief: belief of the robot.
-            task: task of the mission.
-            look: direction in W that the body turns to for a fixed camera, if any [rad].
+            memory: result of the call before, or of `begin`.
+            scene: belief, task and obstacles.
         """
-        heading = float(belief.pose[2])
-        if self._direction is None:
-            self._direction = heading
-        if task.done or belief.lost:
+        task, heading = scene.task, float(scene.belief.pose[2])
+        if task.done or scene.belief.lost:
             turn_rate = self._parameters.velocity_mapping.lost_turn_rate
-            self._body = idle_velocity(not task.done, turn_rate, self._limits)
-            return MotionDecision(read_only(self._body), self._direction)
-        obstacles = Tracks.of(belief.tracks)
-        task = self._search_waypoint(belief, task, obstacles)
-        scene, radii = self._scene(belief, task, obstacles)
-        wanted = self._wanted(belief, task, scene)
-        last = wanted.direction if self._path is None else self._path[0]
-        facing = target_heading(belief.pose[:2], task, look, last, self._parameters)
-        course, speed = self._filtered(belief, wanted, facing, obstacles)
-        self._path = course, speed
-        self._body = body_velocity(
-            course,
-            speed,
-            heading,
-            course if facing is None else facing,
-            limits=self._limits,
-            turn_gain=self._parameters.velocity_mapping.turn_gain,
+            body = read_only(idle_velocity(not task.done, turn_rate, self._limits))
+            return MotionDecision(body, heading), MotionMemory()
+        planning = self._planning_scene(memory, scene)
+        desired = self._method.desired(planning)
+        motion = desired if self._filter is None else self._filtered(desired, planning, scene)
+        body, course = _body(motion, planning)
+        decision = MotionDecision(
+            body,
+            desired.direction,
+            hypot(*desired.velocity.tolist()),
+            motion.situation,
+            desired.virtual,
+            extended_radii=_by_track(planning, desired.radii),
+            field=desired.field,
         )
-        return MotionDecision(
-            read_only(self._body),
-            wanted.direction,
-            wanted.speed,
-            wanted.situation,
-            wanted.virtual,
-            extended_radii=radii,
-            field=wanted.field,
-        )
+        return decision, MotionMemory(course, task.index, planning.side, desired.plan)
 
-    def _search_waypoint(self, belief: Belief, task: Task, obstacles: Tracks) -> Task:
-        """Return `task`, or one with a waypoint around static obstacles that block the path."""
-        p = self._parameters
-        if not p.waypoint_search.enabled or task.aligning:
-            return task
-        static = obstacles.where(obstacles.static)
-        radii = physical_radius(static, p.univector) + p.univector.margin
-        waypoint = search_waypoint(
-            belief.pose[:2], task.target, static.position, radii, p.waypoint_search
-        )
-        if waypoint is task.target:
-            return task
-        dx, dy = (task.target - waypoint).tolist()
-        return replace(task, target=waypoint, heading=atan2(dy, dx), is_goal=False)
-
-    def _filtered(
-        self, belief: Belief, wanted: _Wanted, facing: float | None, obstacles: Tracks
-    ) -> tuple[float, float]:
-        """Return direction [rad] and speed [m/s] after the safety filter."""
-        p = self._parameters
-        if not p.safety_filter.enabled:
-            return wanted.direction, wanted.speed
-        rows, s_robot = obstacles.rows, p.univector.s_robot
-        ages = belief.local_map.age_at(rows["last_seen"])
-        discs = collision_discs(rows, obstacles.clouds, ages, s_robot, self._limits_of_filter)
-        start = RolloutStart(belief.pose, self._body, wanted.direction, facing)
-        velocity = wanted.speed * np.array([cos(wanted.direction), sin(wanted.direction)])
-        return self._safety_filter.choose(start, velocity, discs)
-
-    def _scene(
-        self, belief: Belief, task: Task, obstacles: Tracks
-    ) -> tuple[FieldScene, tuple[tuple[int, float], ...]]:
-        """Return the inputs of the field, and (track id, S_oe) of its obstacles."""
-        p = self._parameters
-        obstacles = obstacles.where(~obstacles.lost | (obstacles.age <= p.univector.memory))
-        psi_sf = psi_self(belief.pose_covariance, p.evaluation)
-        velocity = velocity_in_world(belief.pose, self._body)
-        psi_ob = psi_obstacle(obstacles, belief.pose[:2], velocity, p.evaluation)
-        s_oe = extended_radius(obstacles, psi_sf, psi_ob, p.univector)
-        side = self._arrival.update(belief.pose[:2], task)
-        signs = None
-        if p.univector.grouping or p.univector.side_memory:
-            signs = self._sides.signs(belief.pose[:2], task.target, obstacles, s_oe)
-        scene = FieldScene(obstacles, s_oe, psi_sf + psi_ob, task.target, task.heading, side, signs)
-        return scene, tuple(zip(obstacles.ids.tolist(), s_oe.tolist(), strict=True))
-
-    def _wanted(self, belief: Belief, task: Task, scene: FieldScene) -> _Wanted:
-        """Return direction of the field and speed, before the safety filter."""
-        p = self._parameters
-        pose = belief.pose
-        if task.aligning:
-            return _Wanted(float(pose[2]))
-        velocity = velocity_in_world(pose, self._body)
-        virtual: ActiveVirtualObstacles = ()
-        if p.moving_obstacles.virtual_obstacle == "uncapped":
-            virtual = self._field.uncapped_obstacles(pose, velocity, scene)
-        direction = self._steer(pose, scene, virtual)
-        distance = hypot(*(task.target - pose[:2]).tolist())
-        desired = self._limits.vx * arrival_gain(distance, task.is_goal, p.univector)
-        encounters = self._encounters(pose, direction, scene)
-        speed = self._modified_speed(encounters, direction, velocity, desired)
-        if p.moving_obstacles.virtual_obstacle == "printed":
-            blocked = self._blocking(encounters, speed)
-            virtual = self._field.printed_obstacles(pose, velocity, scene, blocked)
-            if virtual:
-                direction = self._steer(pose, scene, virtual)
-        self._direction = direction
-        allowed = min(speed.speed, self._max_speed(belief, direction))
-        return _Wanted(
-            direction,
-            allowed,
-            speed.situation,
-            tuple(f.obstacle for f in virtual),
-            field=self._field.planned(float(pose[2]), scene, virtual),
-        )
-
-    def _steer(self, pose: Array, scene: FieldScene, virtual: ActiveVirtualObstacles) -> float:
-        u_x, u_y = self._field.at(pose[:2], float(pose[2]), scene, virtual).tolist()
-        if hypot(u_x, u_y) < _NO_DIRECTION:
-            return float(pose[2]) if self._direction is None else self._direction
-        return atan2(u_y, u_x)
-
-    def _encounters(self, pose: Array, direction: float, scene: FieldScene) -> dict[int, Encounter]:
-        """Return the movers in axes of the line of motion, by their index in the scene."""
-        p = self._parameters
-        radii = scene.s_oe
-        if p.moving_obstacles.radius == "physical":
-            radii = physical_radius(scene.obstacles, p.univector) + p.moving_obstacles.margin
-        o = scene.obstacles
-        return {
-            index: Encounter.on_line(
-                direction, o.position[index] - pose[:2], o.velocity[index], float(radii[index])
+    def _planning_scene(self, memory: MotionMemory, scene: Scene) -> PlanningScene:
+        """Return the obstacles that the method avoids, and the motion without them."""
+        p, pose, task = self._parameters, scene.belief.pose, scene.task
+        known = ~scene.obstacles.lost | (scene.obstacles.age <= p.univector.memory)
+        side, course, speed = 0, float(pose[2]), 0.0
+        if not task.aligning:
+            before = memory.side if memory.leg == task.index else 0
+            side = arrival_side(pose[:2], task, before, p.univector)
+            course = float(
+                move_to_goal(pose[:2], task.target, task.heading, p.univector, side=side)
             )
-            for index in np.nonzero(o.speed >= p.moving_obstacles.min_speed)[0].tolist()
-        }
+            distance = hypot(*(task.target - pose[:2]).tolist())
+            speed = self._limits.vx * arrival_gain(distance, task.is_goal, p.univector)
+        last = course if memory.course is None else memory.course
+        return PlanningScene(
+            pose=pose,
+            body=scene.body,
+            obstacles=scene.obstacles.where(known),
+            psi=scene.psi_sf + scene.psi_ob[known],
+            s_oe=scene.s_oe[known],
+            task=task,
+            course=course,
+            speed=speed,
+            facing=target_heading(pose[:2], task, scene.look, last, p),
+            side=side,
+            limits=self._limits,
+            parameters=p,
+            plan=memory.plan,
+        )
 
-    def _modified_speed(
-        self, encounters: dict[int, Encounter], direction: float, velocity: Array, desired: float
-    ) -> ModifiedSpeed:
-        p = self._parameters.moving_obstacles
-        now = max(0.0, float(velocity[0]) * cos(direction) + float(velocity[1]) * sin(direction))
-        if p.velocity_modification == "off" or not encounters:
-            return ModifiedSpeed(desired, "free")
-        modify = modify_speed if p.velocity_modification == "closed" else sample_speed
-        return modify(tuple(encounters.values()), desired, now, self._limits, p)
+    def _filtered(self, desired: Desired, planning: PlanningScene, scene: Scene) -> Desired:
+        """Return `desired`, or another motion if the safety filter vetoes it."""
+        assert self._filter is not None
+        s_robot = self._parameters.univector.s_robot
+        obstacles = scene.obstacles
+        discs = collision_discs(obstacles.rows, obstacles.clouds, s_robot, self._discs)
+        start = RolloutStart(planning.pose, planning.body, desired.direction, planning.facing)
+        velocity, direction = self._filter.choose(start, desired.velocity, discs)
+        if velocity is desired.velocity:
+            return desired
+        return replace(desired, velocity=velocity, direction=direction, situation="veto")
 
-    def _blocking(self, encounters: dict[int, Encounter], speed: ModifiedSpeed) -> tuple[int, ...]:
-        """Return movers that no speed avoids: case (c), and (b) without a reachable escape."""
-        definite = {
-            index
-            for index, e in encounters.items()
-            if e.case(self._limits.vx) is CollisionCase.DEFINITE
-        }
-        if speed.situation == "path_change":
-            definite |= {i for i, e in encounters.items() if e.in_band()}
-        return tuple(sorted(definite))
 
-    def _max_speed(self, belief: Belief, direction: float) -> float:
-        """Return the maximum speed in `direction`, less towards unseen ground [m/s]."""
-        p = self._parameters.unseen_ground
-        if not p.enabled or ground_seen(belief, direction, p):
-            return self._limits.vx
-        return p.speed
+def _body(motion: Desired, planning: PlanningScene) -> tuple[Array, float]:
+    """Return velocity in R (3,) [m/s, m/s, rad/s] and direction of motion in W [rad]."""
+    if motion.body is None:
+        speed = hypot(*motion.velocity.tolist())
+        return read_only(planning.walk(motion.direction, speed)), motion.direction
+    body = np.clip(motion.body, planning.low(), planning.high())
+    vx, vy, _ = body.tolist()
+    course = wrap(float(planning.pose[2]) + atan2(vy, vx))
+    return read_only(body), course if hypot(vx, vy) > 1e-9 else planning.course
+
+
+def _by_track(planning: PlanningScene, radii: Array | None) -> tuple[tuple[int, float], ...]:
+    """Return (track id, radius [m]) of the obstacles."""
+    if radii is None:
+        return ()
+    return tuple(zip(planning.obstacles.ids.tolist(), radii.tolist(), strict=True))

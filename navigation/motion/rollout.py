@@ -1,10 +1,10 @@
-"""Compiled rollout of the safety filter: paths of candidate velocities, times to collision.
+"""Compiled rollout of footsteps, and the collisions of the rolled-out paths.
 
 An envelope is (vx, vx_backward, vy, wz, turn gain): the maximum speeds [m/s, rad/s] and the
 turn rate per heading error [1/s].
 """
 
-from math import atan2, cos, inf, isfinite, isnan, sin, sqrt
+from math import atan2, cos, inf, isnan, sin, sqrt
 
 import numpy as np
 from numpy.typing import NDArray
@@ -40,17 +40,17 @@ def body_velocity(error: float, speed: float, turn: float, envelope: Envelope) -
 
 
 @compiled
-def rollout(
+def followed(
     candidates: Array,
     heading: float,
     course: float,
     facing: float,
     body_now: Array,
     envelope: Envelope,
-    gait: tuple[float, float, float, float, float],
+    gait: Velocity,
     steps: int,
-) -> tuple[Array, Array]:
-    """Roll out every candidate velocity footstep by footstep.
+) -> Array:
+    """Return the body velocities with which a robot follows candidate velocities.
 
     Args:
         candidates: velocities in W (n, 2) [m/s].
@@ -60,17 +60,14 @@ def rollout(
         body_now: present velocity of the body in R (3,) [m/s, m/s, rad/s].
         envelope: speed envelope of the walking layer.
         gait: duration of a footstep [s], maximum change between footsteps of velocity [m/s]
-            and of turn rate [rad/s], heading error above which a fast path starts with a turn
-            [rad], and the speed of a fast path [m/s].
-        steps: number of footsteps before the straight path.
+            and of turn rate [rad/s].
+        steps: number of footsteps.
 
     Returns:
-        Velocities (steps + 2, n, 2) [m/s] and durations (steps + 2, n) [s] of the segments: the
-        footsteps, the turn, and the infinite straight path.
+        vx, vy, wz in R of every footstep (n, steps, 3) [m/s, m/s, rad/s].
     """
-    footstep, change, turn_change, turn_first_angle, fast = gait
-    velocity = np.zeros((steps + 2, len(candidates), 2))
-    duration = np.empty((steps + 2, len(candidates)))
+    footstep, change, turn_change = gait
+    body = np.empty((len(candidates), steps, 3))
     for i in range(len(candidates)):
         u, w = candidates[i, 0], candidates[i, 1]
         speed = sqrt(u * u + w * w)
@@ -84,17 +81,32 @@ def rollout(
             vx += scale * dx
             vy += scale * dy
             wz += min(max(goal[2] - wz, -turn_change), turn_change)
+            body[i, step, 0], body[i, step, 1], body[i, step, 2] = vx, vy, wz
+            now += wz * footstep
+    return body
+
+
+@compiled
+def walked(body: Array, heading: float, footstep: float) -> tuple[Array, Array]:
+    """Return velocities in W (n, steps, 2) [m/s] and final headings of footsteps (n, steps) [rad].
+
+    Args:
+        body: vx, vy, wz in R of n sequences of footsteps (n, steps, 3) [m/s, m/s, rad/s].
+        heading: heading at the start [rad].
+        footstep: duration of a footstep [s].
+    """
+    n, steps, _ = body.shape
+    velocity, headings = np.empty((n, steps, 2)), np.empty((n, steps))
+    for i in range(n):
+        now = heading
+        for step in range(steps):
+            vx, vy, wz = body[i, step, 0], body[i, step, 1], body[i, step, 2]
             middle = now + 0.5 * wz * footstep
             c, s = cos(middle), sin(middle)
-            velocity[step, i, 0] = c * vx - s * vy
-            velocity[step, i, 1] = s * vx + c * vy
-            duration[step, i] = footstep
+            velocity[i, step, 0], velocity[i, step, 1] = c * vx - s * vy, s * vx + c * vy
             now += wz * footstep
-        wait = max(0.0, abs(wrap(direction - now)) - turn_first_angle) / envelope[3]
-        duration[steps, i] = wait if speed > fast else 0.0
-        velocity[steps + 1, i, 0], velocity[steps + 1, i, 1] = u, w
-        duration[steps + 1, i] = inf
-    return velocity, duration
+            headings[i, step] = now
+    return velocity, headings
 
 
 @compiled
@@ -114,81 +126,69 @@ def contact_time(rate: float, square: float, outside: float) -> float:
 
 @compiled
 def contact_times(
-    velocity: Array, duration: Array, position: Array, discs: Rows
-) -> tuple[Array, Array]:
-    """Return time to collision and closing speed of every path with every disc.
+    velocity: Array, footstep: float, position: Array, discs: Rows
+) -> tuple[Array, Array, Array]:
+    """Return time to collision, minimum gap and closing speed of every path with every disc.
 
     Inside a disc the time is zero if closing, and infinite if leaving.
 
     Args:
-        velocity: velocities of the segments of n paths (k, n, 2) [m/s].
-        duration: durations of the segments (k, n) [s].
+        velocity: velocities of the footsteps of n paths (n, steps, 2) [m/s].
+        footstep: duration of a footstep [s].
         position: start of the paths (2,) [m].
         discs: records of type `DISC` (m,).
 
     Returns:
-        Time to collision (n, m) [s], infinite for none; closing speed at the start (n, m), zero
-        for discs out of reach of the first segment [m/s].
+        Time to collision (n, m) [s], infinite for none; minimum distance of the centre from the
+        disc until then (n, m) [m]; closing speed at the start, zero if leaving (n, m) [m/s].
     """
-    k, n = duration.shape
+    n, steps, _ = velocity.shape
     m = len(discs)
-    first, closing = np.empty((n, m)), np.zeros((n, m))
-    first[:] = inf
-    # Latest end of each segment, and maximum speed of all paths until then.
-    latest, fastest = np.zeros(k), np.zeros(k)
-    start, moved = np.zeros((k + 1, n)), np.zeros((k, n, 2))
-    for segment in range(k):
-        fastest[segment] = fastest[max(segment - 1, 0)]
-        for i in range(n):
-            u, w = velocity[segment, i, 0], velocity[segment, i, 1]
-            start[segment + 1, i] = start[segment, i] + duration[segment, i]
-            latest[segment] = max(latest[segment], start[segment + 1, i])
-            fastest[segment] = max(fastest[segment], sqrt(u * u + w * w))
-            if segment < k - 1:
-                moved[segment + 1, i, 0] = moved[segment, i, 0] + duration[segment, i] * u
-                moved[segment + 1, i, 1] = moved[segment, i, 1] + duration[segment, i] * w
+    first, gap, closing = np.full((n, m), inf), np.empty((n, m)), np.zeros((n, m))
     for j in range(m):
         disc = discs[j]
-        ox, oy = disc.position[0] - position[0], disc.position[1] - position[1]
         mx, my, radius2 = disc.velocity[0], disc.velocity[1], disc.radius * disc.radius
-        distance, speed = sqrt(ox * ox + oy * oy), sqrt(mx * mx + my * my)
-        for segment in range(k):
-            # Skip discs out of reach.
-            within = (speed + fastest[segment]) * latest[segment]
-            if isfinite(latest[segment]) and distance - disc.radius > within:
-                continue
-            for i in range(n):
-                if first[i, j] < inf:
-                    continue
-                begin = start[segment, i]
-                u, w = mx - velocity[segment, i, 0], my - velocity[segment, i, 1]
-                dx = ox + begin * mx - moved[segment, i, 0]
-                dy = oy + begin * my - moved[segment, i, 1]
-                rate = dx * u + dy * w
-                if rate >= 0.0:
-                    continue
-                if segment == 0:
-                    closing[i, j] = -rate / max(distance, 1e-6)
-                time = contact_time(rate, u * u + w * w, dx * dx + dy * dy - radius2)
-                if time <= duration[segment, i] and time < inf:
-                    first[i, j] = begin + time
-    return first, closing
+        for i in range(n):
+            dx, dy = disc.position[0] - position[0], disc.position[1] - position[1]
+            nearest = dx * dx + dy * dy
+            for step in range(steps):
+                u, w = mx - velocity[i, step, 0], my - velocity[i, step, 1]
+                rate, square = dx * u + dy * w, u * u + w * w
+                if rate < 0.0:
+                    if step == 0:
+                        closing[i, j] = -rate / max(sqrt(dx * dx + dy * dy), 1e-6)
+                    time = contact_time(rate, square, dx * dx + dy * dy - radius2)
+                    if time <= footstep:
+                        first[i, j], nearest = step * footstep + time, radius2
+                        break
+                    passed = min(footstep, -rate / max(square, 1e-12))
+                    x, y = dx + passed * u, dy + passed * w
+                    nearest = min(nearest, x * x + y * y)
+                dx += footstep * u
+                dy += footstep * w
+            gap[i, j] = sqrt(nearest) - disc.radius
+    return first, gap, closing
 
 
 @compiled
-def penalties(
-    first: Array, closing: Array, position: Array, discs: Rows, parameters: Rows
+def losses(
+    contacts: tuple[Array, Array, Array],
+    position: Array,
+    discs: Rows,
+    speed: float,
+    parameters: Rows,
 ) -> Array:
-    """Return the collision penalty of every path (n,).
+    """Return the losses of every path by collisions and close passages (n,) [s].
 
     Args:
-        first: times to collision (n, m) [s].
-        closing: speeds (n, m) [m/s].
+        contacts: result of `contact_times` for n paths and m discs.
         position: start of the paths (2,) [m].
         discs: records of type `DISC` (m,).
+        speed: maximum speed of the robot [m/s].
         parameters: record of the parameters of the safety filter (1,).
     """
     p = parameters[0]
+    first, gap, closing = contacts
     n, m = first.shape
     total = np.zeros(n)
     for j in range(m):
@@ -196,12 +196,14 @@ def penalties(
         dx, dy = disc.position[0] - position[0], disc.position[1] - position[1]
         depth = 1.0 - sqrt(dx * dx + dy * dy) / disc.radius  # as a fraction of the radius
         for i in range(n):
-            time = first[i, j]
+            time, loss = first[i, j], 0.0
             if time < disc.horizon:
-                each = p.urgent_weight if time < p.urgent_time else p.weight
-                cost = (1.0 - time / disc.horizon) * each
+                each = p.urgent_loss if time < p.urgent_time else p.collision_loss
+                loss = (1.0 - time / disc.horizon) * each
                 if depth > 0.0:
-                    cost += p.inside_weight + p.inside_depth * depth
-                    cost += p.inside_closing * closing[i, j]
-                total[i] += cost * disc.weight
+                    loss += p.inside_loss + p.depth_loss * depth
+                    loss += p.closing_loss * closing[i, j] / speed
+            elif gap[i, j] < p.comfort:
+                loss = p.close_loss * (1.0 - max(0.0, gap[i, j]) / p.comfort)
+            total[i] += loss * disc.weight
     return total

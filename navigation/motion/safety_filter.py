@@ -1,7 +1,9 @@
-"""Safety filter: the best of many candidate velocities by the time to collision of a rollout.
+"""Safety filter: a veto on velocities that lead to a collision.
 
-The rollout of a candidate starts with some footsteps within the acceleration limits of the body,
-then turns towards the direction of motion if necessary, then continues straight.
+The desired velocity passes if it is safe. If not, the best of a fan of velocities replaces it: all
+are rolled out as footsteps within the limits of the body, and their losses are added, all in
+seconds: the delay, collisions by time and probability, close passages, and changes of
+velocity.
 """
 
 from math import atan2, hypot, nan, pi
@@ -39,10 +41,10 @@ class RolloutStart:
 
 
 class SafetyFilter:
-    """Choice of the candidate velocity with minimum cost.
+    """Veto of velocities that lead to a collision, and the choice of another one.
 
     Args:
-        parameters: horizons and penalties.
+        parameters: horizons and losses.
         mapping: velocity mapping.
         limits: speed limits of the walking layer.
     """
@@ -54,59 +56,68 @@ class SafetyFilter:
         limits: SpeedLimits,
     ) -> None:
         p = self._parameters = parameters
-        self._penalties = record(parameters)
+        self._record = record(parameters)
         self._limits = limits
         self._envelope = envelope(limits, mapping.turn_gain)
-        self._gait = (
-            limits.footstep,
-            limits.acceleration * limits.footstep,
-            p.turn_change,
-            mapping.turn_first_angle,
-            mapping.sidestep_ratio * limits.vy,
-        )
+        self._gait = (limits.footstep, limits.acceleration * limits.footstep, p.turn_change)
+        self._steps = round(p.moving_horizon / limits.footstep)
         self._turns = np.repeat(2.0 * pi * np.arange(p.headings) / p.headings, p.speeds)
         self._speeds = np.tile(limits.vx * np.arange(1, p.speeds + 1) / p.speeds, p.headings)
 
     def choose(
-        self, start: RolloutStart, wanted: Array, discs: NDArray[np.record]
-    ) -> tuple[float, float]:
-        """Return direction in W [rad] and speed [m/s] of the best candidate.
+        self, start: RolloutStart, desired: Array, discs: NDArray[np.record]
+    ) -> tuple[Array, float]:
+        """Return the best velocity in W (2,) [m/s], `desired` if safe, and its direction [rad].
 
         Args:
             start: start of the rollout.
-            wanted: desired velocity in W (2,) [m/s].
+            desired: desired velocity in W (2,) [m/s].
             discs: collision hypotheses, records of type `DISC` (m,).
         """
         near = within_reach(discs, start.pose[:2], self._limits.vx)
-        best = wanted
-        if len(near) > 0:
-            candidates = self.candidates(wanted, start.course)
-            error = candidates - wanted
-            change = candidates - velocity_in_world(start.pose, start.body)
-            cost = (
-                np.hypot(error[:, 0], error[:, 1])
-                + self._parameters.change_weight * np.hypot(change[:, 0], change[:, 1])
-            ) / self._limits.vx + self.penalty(start, candidates, near)
-            best = candidates[int(np.argmin(cost))]
-        vx, vy = best.tolist()
-        speed = hypot(vx, vy)
-        return (atan2(vy, vx) if speed > 1e-9 else start.course), speed
+        if len(near) == 0 or self.risk(start, desired[None], near)[0] == 0.0:
+            return desired, start.course
+        candidates = self.candidates(desired, start.course)
+        loss = self.risk(start, candidates, near) + self.delay(start, candidates)
+        best = int(np.argmin(loss))
+        if best == 0:
+            return desired, start.course
+        vx, vy = candidates[best].tolist()
+        return candidates[best], atan2(vy, vx) if hypot(vx, vy) > 1e-9 else start.course
 
-    def candidates(self, wanted: Array, course: float) -> Array:
-        """Return `wanted`, zero, and a fan of directions and speeds (n, 2) [m/s]."""
+    def candidates(self, desired: Array, course: float) -> Array:
+        """Return `desired`, zero, and a fan of directions and speeds (n, 2) [m/s]."""
         angles = course + self._turns
         fan = self._speeds[:, None] * np.stack([np.cos(angles), np.sin(angles)], axis=1)
-        return np.concatenate([wanted[None], np.zeros((1, 2)), fan])
+        return np.concatenate([desired[None], np.zeros((1, 2)), fan])
 
-    def penalty(self, start: RolloutStart, candidates: Array, discs: NDArray[np.record]) -> Array:
-        """Return the collision penalty of every candidate (n,)."""
-        paths, position = self.rollout(start, candidates), start.pose[:2]
-        contacts = rollout.contact_times(*paths, position, discs)
-        return rollout.penalties(*contacts, position, discs, self._penalties)
+    def delay(self, start: RolloutStart, candidates: Array) -> Array:
+        """Return the losses by delay and by change of velocity (n,) [s].
 
-    def rollout(self, start: RolloutStart, candidates: Array) -> tuple[Array, Array]:
-        """Return velocities (k, n, 2) [m/s] and durations (k, n) [s] of the path segments."""
-        return rollout.rollout(
+        The delay is the distance from the point that the first candidate reaches within the
+        horizon, over the maximum speed.
+        """
+        p, limits = self._parameters, self._limits
+        horizon = self._steps * limits.footstep
+        error = candidates - candidates[0]
+        change = candidates - velocity_in_world(start.pose, start.body)
+        lost = horizon * np.hypot(error[:, 0], error[:, 1])
+        lost += p.change_loss * np.hypot(change[:, 0], change[:, 1])
+        delay: Array = lost / limits.vx
+        return delay
+
+    def risk(self, start: RolloutStart, candidates: Array, discs: NDArray[np.record]) -> Array:
+        """Return the losses by collisions and close passages of every candidate (n,) [s]."""
+        position, footstep = start.pose[:2], self._limits.footstep
+        velocity, _ = rollout.walked(
+            self.rollout(start, candidates), float(start.pose[2]), footstep
+        )
+        contacts = rollout.contact_times(velocity, footstep, position, discs)
+        return rollout.losses(contacts, position, discs, self._limits.vx, self._record)
+
+    def rollout(self, start: RolloutStart, candidates: Array) -> Array:
+        """Return the body velocities of every candidate (n, steps, 3) [m/s, m/s, rad/s]."""
+        return rollout.followed(
             candidates,
             float(start.pose[2]),
             start.course,
@@ -114,5 +125,5 @@ class SafetyFilter:
             start.body,
             self._envelope,
             self._gait,
-            self._parameters.steps,
+            self._steps,
         )

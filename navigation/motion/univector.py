@@ -1,9 +1,20 @@
-"""Extended radius and sum of the univector fields, Yoo & Kim, eqs. (7) and (10)."""
+"""Univector field of the default planner, Yoo & Kim, eqs. (7)-(10), with weights by distance.
+
+It differs from the printed field, which is in `navigation.paper`, in three respects: inside the
+extended radius it points outward, where the printed one is zero; the nearness of the obstacles
+replaces the weights of (10); and an obstacle fades out abeam of the robot, where the printed one is
+switched off.
+"""
+
+from math import atan2, cos, hypot, sin
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from navigation.belief.tracks import Tracks
+from compilation.value import value
+from navigation.motion.avoid_obstacle import spiral_turn, turning_sign
+from navigation.motion.move_to_goal import move_to_goal
+from navigation.motion.planning_scene import Desired, PlanningScene
 from navigation.parameters.motion import UnivectorParameters
 
 Array = NDArray[np.float64]
@@ -18,20 +29,9 @@ def normalized(v: Array) -> Array:
     return unit
 
 
-def weighted_sum(u_muf: Array, u_auf: Array, w_muf: float, w_auf: float) -> Array:
-    """Return u_T = w_muf u_muf + w_auf N(sum u_auf) (Yoo & Kim, eq. (10)), as printed.
-
-    Args:
-        u_muf: unit vectors (..., 2).
-        u_auf: unit vectors u_auf of n obstacles (..., n, 2).
-        w_muf: weight of move-to-goal.
-        w_auf: weight of avoid-obstacle.
-
-    Returns:
-        (..., 2); its norm is not a speed.
-    """
-    total: Array = w_muf * u_muf + w_auf * normalized(u_auf.sum(axis=-2))
-    return total
+def unit_vectors(angle: Array) -> Array:
+    """Return the unit vectors (..., 2) of angles (...) [rad]."""
+    return np.stack([np.cos(angle), np.sin(angle)], axis=-1)
 
 
 def nearness(rho: Array, s_oe: Array, d_e: ArrayLike, d_b: float) -> Array:
@@ -41,15 +41,7 @@ def nearness(rho: Array, s_oe: Array, d_e: ArrayLike, d_b: float) -> Array:
     return ramp
 
 
-def blended_sum(
-    u_muf: Array,
-    u_auf: Array,
-    ramp: Array,
-    u_virtual: Array,
-    weight: Array,
-    *,
-    virtual_weight: float,
-) -> Array:
+def blended_sum(u_muf: Array, u_auf: Array, ramp: Array) -> Array:
     """Return the sum weighted by distance: 0 far from the nearest obstacle, 1 at the obstacle.
 
     Fixed weights limit the turn of the field from the direction of the destination to
@@ -59,18 +51,13 @@ def blended_sum(
         u_muf: unit vectors (..., 2).
         u_auf: unit vectors u_auf of n obstacles (..., n, 2).
         ramp: nearness of the obstacles (..., n).
-        u_virtual: directions at m dynamic virtual obstacles (..., m, 2), or (m, 2) for all.
-        weight: f of the virtual obstacles in [0, 1] (..., m), or (m,) for all.
-        virtual_weight: weight of virtual obstacles relative to real ones.
 
     Returns:
         (..., 2).
     """
-    active = ramp * (np.abs(u_auf).sum(axis=-1) > 0.0)
-    avoid = (active[..., None] ** 2 * u_auf).sum(axis=-2)
-    avoid = avoid + virtual_weight * (weight[..., None] ** 2 * u_virtual).sum(axis=-2)
-    w_auf = np.maximum(active.max(axis=-1, initial=0.0), weight.max(axis=-1, initial=0.0))
-    total: Array = (1.0 - w_auf)[..., None] * u_muf + w_auf[..., None] * normalized(avoid)
+    avoid = normalized((ramp[..., None] ** 2 * u_auf).sum(axis=-2))
+    w_auf = ramp.max(axis=-1, initial=0.0)[..., None]
+    total: Array = (1.0 - w_auf) * u_muf + w_auf * avoid
     vanishing = np.hypot(total[..., 0], total[..., 1])[..., None] < _ZERO
     return np.where(vanishing, u_muf, total)
 
@@ -99,28 +86,78 @@ def shrunk_for_goal(
     return radius, offset
 
 
-def extended_radius(
-    obstacles: Tracks, psi_sf: float, psi_ob: Array, parameters: UnivectorParameters
-) -> Array:
-    """Return S_oe = S_r + S_o + omega (eta_vo |v_o| + eta_imp (psi_sf + psi_ob)), eq. (7).
+@value
+class UnivectorField:
+    """Vector field u_T of one decision.
 
-    |v_o| is the speed over ground: a speed relative to the walking robot would inflate every
-    static obstacle and close the gaps.
-
-    Args:
-        obstacles: n obstacles.
-        psi_sf: eq. (2).
-        psi_ob: eq. (3) of each (n,).
-        parameters: radii and gains.
-
-    Returns:
-        (n,) [m].
+    Attributes:
+        centres: positions of n obstacles (n, 2) [m].
+        radii: extended radii S_oe (n,) [m].
+        offsets: radius offsets d_e (n,) [m].
+        target: destination (2,) [m].
+        heading: arrival heading [rad].
+        side: remembered side of the arrival, see `move_to_goal`.
+        parameters: constants of (8)-(10).
     """
-    inflation = parameters.eta_vo * obstacles.speed + parameters.eta_imp * (psi_sf + psi_ob)
-    s_phys = physical_radius(obstacles, parameters)
-    return s_phys + parameters.margin + parameters.omega_soe * inflation
+
+    centres: Array
+    radii: Array
+    offsets: Array
+    target: Array
+    heading: float
+    side: int
+    parameters: UnivectorParameters
+
+    @classmethod
+    def of(cls, s: PlanningScene) -> "UnivectorField":
+        """Return the field of a scene; radii leave the destination reachable."""
+        p, target = s.parameters.univector, s.task.target
+        offset = target - s.obstacles.position
+        distance = np.hypot(offset[:, 0], offset[:, 1])
+        radii, offsets = shrunk_for_goal(s.s_oe, s.touching, distance, p)
+        centres = s.obstacles.position
+        return cls(centres, radii, offsets, target, s.task.heading, s.side, p)
+
+    def at(self, points: Array) -> Array:
+        """Return u_T at `points` (..., 2) in W [m]: (..., 2)."""
+        p, points = self.parameters, np.asarray(points, dtype=np.float64)
+        phi = move_to_goal(points, self.target, self.heading, p, side=self.side)
+        arrived = np.all(points == self.target, axis=-1)[..., None]
+        u_muf = np.where(arrived, 0.0, unit_vectors(phi))
+        p_or = points[..., None, :] - self.centres
+        rho = np.hypot(p_or[..., 0], p_or[..., 1])
+        sign = turning_sign(self.target - self.centres, p_or)
+        turn = spiral_turn(rho - self.radii, self.radii, self.offsets, p.k_r)
+        outward = np.arctan2(p_or[..., 1], p_or[..., 0])
+        ramp = nearness(rho, self.radii, self.offsets, p.d_b) * self._in_the_way(points, p_or, rho)
+        return blended_sum(u_muf, unit_vectors(outward + sign * turn), ramp)
+
+    def _in_the_way(self, points: Array, p_or: Array, rho: Array) -> Array:
+        """Return from 1 to 0 whether obstacles are ahead and before the destination (..., n).
+
+        These are the second and third condition of (9), faded. Inside the extended radius they do
+        not count.
+        """
+        p, p_rd = self.parameters, (self.target - points)[..., None, :]
+        rho_rd = np.hypot(p_rd[..., 0], p_rd[..., 1])
+        p_od = self.target - self.centres
+        cosine = -np.sum(p_or * p_rd, axis=-1) / np.maximum(rho * rho_rd, _ZERO)
+        beyond = np.hypot(p_od[..., 0], p_od[..., 1]) - self.radii - rho_rd
+        ahead = np.clip(cosine / p.fade, 0.0, 1.0)
+        before = np.clip(1.0 - beyond / self.offsets, 0.0, 1.0)
+        inside: Array = np.clip((self.radii - rho) / p.inside, 0.0, 1.0)
+        weight: Array = np.maximum(ahead * before, inside)
+        return weight
 
 
-def physical_radius(obstacles: Tracks, parameters: UnivectorParameters) -> Array:
-    """Return S_phys = S_robot + S_o, the distance at which the bodies touch (n,) [m]."""
-    return parameters.s_robot + obstacles.radius
+class Univector:
+    """Motion along the univector field at constant speed."""
+
+    def desired(self, scene: PlanningScene) -> Desired:
+        """Return the desired velocity one footstep ahead, when it takes effect."""
+        s = scene.predicted()
+        field = UnivectorField.of(s)
+        u_x, u_y = field.at(s.pose[:2]).tolist()
+        direction = s.course if hypot(u_x, u_y) < _ZERO else atan2(u_y, u_x)
+        velocity = s.speed * np.array([cos(direction), sin(direction)])
+        return Desired(velocity, direction, radii=s.s_oe, field=field)

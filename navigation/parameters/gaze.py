@@ -7,23 +7,11 @@ from dataclasses import dataclass, field
 from math import pi
 from typing import Annotated, Literal
 
-from annotated_types import Ge, Gt, Interval, Le, Lt, doc
+from annotated_types import Ge, Interval, Le, Lt, doc
 
 from navigation.parameters.bounds import NonNegative, Positive
 
-GazeMode = Literal[
-    "risk",
-    "integrated",
-    "psi-lm",
-    "psi-sf",
-    "psi-ob",
-    "psi-way",
-    "info",
-    "sweep",
-    "triangle",
-    "steps",
-    "fixed",
-]
+GazeMode = Literal["risk", "integrated", "steps", "triangle", "fixed"]
 
 
 @dataclass(frozen=True)
@@ -40,10 +28,6 @@ class EvaluationParameters:
         "m",
         doc("Maximum distance of the sample points of the local map [m]."),
     ] = 1.30
-    map_ratio: Annotated[
-        Literal["printed", "fraction"],
-        doc("Experimental. psi_lm: N_lp/N_cp as printed, or the fraction N_lp/(N_lp + N_cp)."),
-    ] = "fraction"
 
     ring_step: Annotated[float, "m"] = 0.20  # distance of the sample points along a ray
     ray_step: float = pi / 18.0  # angle between the rays of sample points [rad]
@@ -58,16 +42,6 @@ class EvaluationParameters:
     d_n_thres: Annotated[float, "m"] = 0.80  # obstacle-free distance at which psi_way is one
     attention_range: Annotated[float, "m"] = 2.5  # maximum distance of obstacles in the set O
     beacon_range: Annotated[float, "m"] = 4.5  # maximum distance of beacons that get votes
-
-
-@dataclass(frozen=True)
-class InformationParameters:
-    """Greedy information gain: expected accuracy of one detection."""
-
-    # standard deviation of a detected position at distance 0
-    sight_sigma: Annotated[float, "m"] = 0.01
-    sight_rate: float = 0.015  # increase of the standard deviation with distance [1]
-    presence: float = 0.02  # probability of an obstacle at a sample point never seen [1]
 
 
 @dataclass(frozen=True)
@@ -87,6 +61,17 @@ class UndetectedParameters:
     min_time: Annotated[float, "s"] = 0.25  # lower bound of the time to collision
     # weight of collisions of the robot that walks on; the others are those of one that stops [1]
     walking_weight: float = 0.5
+
+
+@dataclass(frozen=True)
+class GroundAheadParameters:
+    """Points of the ground ahead of the robot that the gaze keeps seen."""
+
+    # nearest ground checked; a look 20 deg down shows none nearer
+    near: Annotated[float, "m"] = 0.36
+    far: Annotated[float, "m"] = 0.60  # farthest ground checked
+    half_width: Annotated[float, "m"] = 0.10  # half width of the ground checked
+    rows: int = 4  # rows of points from the nearest to the farthest [1]
 
 
 @dataclass(frozen=True)
@@ -128,10 +113,8 @@ class GazeParameters:
     mode: Annotated[
         GazeMode,
         doc(
-            "risk: most risk removed per time, the default; integrated: (1)-(6); psi-lm, psi-sf, "
-            "psi-ob, psi-way: one evaluation alone; info: greedy information gain. Blind: sweep: "
-            "sinusoidal pan; triangle: pan at a constant rate; steps: stops from side to side; "
-            "fixed: straight ahead."
+            "risk: most risk removed per time, the default; integrated: (1)-(6). Blind: steps: "
+            "stops from side to side; triangle: pan at a constant rate; fixed: straight ahead."
         ),
     ] = "risk"
     moved_by: Annotated[
@@ -143,41 +126,6 @@ class GazeParameters:
     w_sf: Annotated[NonNegative, doc("Weight of self-localization in (6) [1].")] = 0.23
     w_ob: Annotated[NonNegative, doc("Weight of obstacles in (6) [1].")] = 0.45
     step: Annotated[float, Ge(0.01), Le(7.0), doc("Resolution of the gaze map [rad].")] = pi / 18.0
-    box_fraction: Annotated[
-        float,
-        Gt(0.0),
-        Le(0.5),
-        doc(
-            "Experimental. Half width of the box of a vote as a fraction of the field of view [1]."
-        ),
-    ] = 0.45
-    obstacle_votes: Annotated[
-        Literal["mean", "sum"],
-        doc(
-            "Experimental. Votes of the obstacles in (6): divided by their number as printed, or "
-            "summed."
-        ),
-    ] = "sum"
-    map_votes: Annotated[
-        Literal["mean", "each"],
-        doc(
-            "Experimental. Vote of the local map: at the mean under-confident point as printed, "
-            "or at each."
-        ),
-    ] = "each"
-    candidates: Annotated[
-        Literal["obstacles", "beacons"],
-        doc(
-            "Experimental. Candidates for self-localization: obstacles and beacons, or beacons "
-            "alone."
-        ),
-    ] = "beacons"
-    switch_ratio: Annotated[
-        float,
-        Ge(1.0),
-        Le(100.0),
-        doc("Gain in the gaze map that moves the gaze of a mode with votes [1]."),
-    ] = 1.1
     max_pan: Annotated[float, Ge(0.01), Le(7.0), doc("Maximum pan to either side [rad].")] = (
         pi / 2.0
     )
@@ -188,11 +136,11 @@ class GazeParameters:
         doc("Dwell: minimum time between the arrival of the head and the next gaze [s]."),
     ] = 0.1
     fixed_tilt: Annotated[float, Ge(-2.0), Le(2.0), doc("Tilt of the blind gazes [rad].")] = -0.45
-    sweep_amplitude: Annotated[NonNegative, doc("Pan amplitude of the sweeps [rad].")] = 1.2
-    sweep_period: Annotated[Positive, "s", doc("Period of sine and triangle sweep [s].")] = 4.0
-    sweep_stops: Annotated[
-        int, Interval(ge=2, le=100), doc("Number of stops of the step sweep [1].")
-    ] = 4
+    sweep_amplitude: Annotated[
+        NonNegative, doc("Pan amplitude of `steps` and `triangle` [rad].")
+    ] = 1.2
+    sweep_period: Annotated[Positive, "s", doc("Period of `triangle` [s].")] = 4.0
+    sweep_stops: Annotated[int, Interval(ge=2, le=100), doc("Number of stops of `steps` [1].")] = 4
     sweep_frames: Annotated[
         int, Interval(ge=1, le=100), doc("Number of sharp frames at each of its stops [1].")
     ] = 2
@@ -202,4 +150,4 @@ class GazeParameters:
     max_turn_time: float = 1.5  # the same time if the body does not arrive [s]
     risk: RiskParameters = field(default_factory=RiskParameters)
     undetected: UndetectedParameters = field(default_factory=UndetectedParameters)
-    information: InformationParameters = field(default_factory=InformationParameters)
+    ground: GroundAheadParameters = field(default_factory=GroundAheadParameters)

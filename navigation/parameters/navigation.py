@@ -14,12 +14,9 @@ from navigation.parameters.bounds import Positive
 from navigation.parameters.gaze import EvaluationParameters, GazeParameters
 from navigation.parameters.motion import (
     LandmarkParameters,
-    MovingObstacleParameters,
     SafetyFilterParameters,
     UnivectorParameters,
-    UnseenGroundParameters,
     VelocityMappingParameters,
-    WaypointSearchParameters,
 )
 from navigation.parameters.planner import PlannerParameters
 
@@ -51,11 +48,8 @@ class NavigationParameters:
     gaze: GazeParameters = field(default_factory=GazeParameters)
     planner: PlannerParameters = field(default_factory=PlannerParameters)
     univector: UnivectorParameters = field(default_factory=UnivectorParameters)
-    moving_obstacles: MovingObstacleParameters = field(default_factory=MovingObstacleParameters)
-    unseen_ground: UnseenGroundParameters = field(default_factory=UnseenGroundParameters)
     safety_filter: SafetyFilterParameters = field(default_factory=SafetyFilterParameters)
     landmarks: LandmarkParameters = field(default_factory=LandmarkParameters)
-    waypoint_search: WaypointSearchParameters = field(default_factory=WaypointSearchParameters)
     velocity_mapping: VelocityMappingParameters = field(default_factory=VelocityMappingParameters)
 
     @classmethod
@@ -67,7 +61,7 @@ class NavigationParameters:
     def paper(cls) -> "NavigationParameters":
         """Profile `paper`: printed structure and constants with the minimum of repairs."""
         return cls(
-            evaluation=EvaluationParameters(map_ratio="printed", t_heading=0.0),
+            evaluation=EvaluationParameters(t_heading=0.0),
             gaze=GazeParameters(
                 mode="integrated",
                 step=pi / 36.0,
@@ -75,28 +69,7 @@ class NavigationParameters:
                 w_way=0.17,
                 w_sf=0.29,
                 w_ob=0.33,
-                box_fraction=0.5,
-                obstacle_votes="mean",
-                map_votes="mean",
-                candidates="obstacles",
-                switch_ratio=1.0,
             ),
-            univector=UnivectorParameters(
-                arrival="hard",
-                k_beta=-0.5,
-                holonomic_distance=0.0,
-                d_e=0.40,
-                d_b=0.80,
-                inside="zero",
-                blend="weights",
-                memory=25.0,
-            ),
-            moving_obstacles=MovingObstacleParameters(
-                virtual_obstacle="printed",
-                velocity_modification="closed",
-                radius="extended",
-                wait_in_band=False,
-            ),
-            unseen_ground=UnseenGroundParameters(enabled=False),
-            safety_filter=SafetyFilterParameters(enabled=False),
+            planner=PlannerParameters(method="paper"),
+            univector=UnivectorParameters(margin=0.03, eta_vo=0.5, holonomic_distance=0.0),
         )

@@ -6,22 +6,32 @@ The constants of the baselines were tuned with equal effort; `scripts/tune.py` t
 from dataclasses import dataclass, field
 from typing import Annotated, Literal
 
-from annotated_types import doc
+from annotated_types import Gt, Lt, doc
 
-from navigation.parameters.bounds import Positive
-
-Method = Literal["univector", "univector-plain", "n-posture", "apf", "orca", "dwa", "mppi"]
+Method = Literal["univector", "paper", "n-posture", "apf", "orca", "dwa", "mppi"]
 
 
 @dataclass(frozen=True)
-class PlainUnivectorParameters:
-    """Univector field of static discs: no virtual obstacle, speed change or safety filter."""
+class PaperParameters:
+    """Motion of Yoo & Kim, section III, where it differs from the default planner."""
 
-    margin: Annotated[float, "m"] = 0.0508  # distance to the bodies of obstacles
-    eta_vo: Annotated[float, "s"] = 0.31  # gain of the radius of a mover on its speed
-    d_e: Annotated[float, "m"] = 0.125  # radius offset of the spiral (9)
-    d_b: Annotated[float, "m"] = 0.341  # width of the outer band of (9)
-    k_r: Annotated[float, "m"] = 0.105  # curvature of the outer spiral (9)
+    weights: Annotated[
+        Literal["printed", "exchanged"],
+        doc("Weights of (10): 0.75 for move-to-goal and 0.25 for avoid-obstacle, or exchanged."),
+    ] = "printed"
+    xi: Annotated[
+        float, Gt(0.0), Lt(1.0), doc("Convexity of the dynamic virtual obstacle [1].")
+    ] = 0.6
+
+    d_con: Annotated[float, "m"] = 0.8  # distance within which (8) arrives with a heading
+    k_beta: float = -0.5  # arrival gain on the remaining heading error, negative [1]
+    d_e: Annotated[float, "m"] = 0.15  # radius offset of the spiral (9)
+    d_b: Annotated[float, "m"] = 0.30  # width of the outer band of (9)
+    k_r: Annotated[float, "m"] = 0.30  # curvature of the outer spiral (9)
+    omega_dist: float = 12.0  # length of the virtual path in (11) [1]
+    horizon: Annotated[float, "s"] = 6.0  # maximum time to collision in velocity modification
+    min_speed: Annotated[float, "m/s"] = 0.015  # speed below which an obstacle has no virtual path
+    nominal: float = 0.75  # desired speed of a free path, ratio to the maximum [1]
 
 
 @dataclass(frozen=True)
@@ -94,15 +104,9 @@ class PlannerParameters:
     """Planner: the method, and the parameters of the baselines."""
 
     method: Annotated[
-        Method, doc("Planner: the modified univector field of the profile, or a baseline.")
+        Method, doc("Planner: the default one, the method of the paper, or a baseline.")
     ] = "univector"
-    memory: Annotated[
-        Positive, "s", doc("Time unseen after which a baseline forgets a mover [s].")
-    ] = 4.0
-
-    # maximum position uncertainty a baseline adds to a radius
-    max_sigma: Annotated[float, "m"] = 0.06
-    univector_plain: PlainUnivectorParameters = field(default_factory=PlainUnivectorParameters)
+    paper: PaperParameters = field(default_factory=PaperParameters)
     n_posture: NPostureParameters = field(default_factory=NPostureParameters)
     apf: ApfParameters = field(default_factory=ApfParameters)
     orca: OrcaParameters = field(default_factory=OrcaParameters)

@@ -11,13 +11,21 @@ from hsr8.command_schedule import (
 )
 from hsr8.scenario.loader import load_scenario
 from hsr8.scenario.mission import Command, RandomCommands
+from navigation.parameters.navigation import NavigationParameters
+from navigation.scene import Scene
 from walking.command import CommandState, VelocityCommand
 
 
-class At:
-    def __init__(self, time):
-        self.time = time
-        self.pose = np.array([0.3, -0.2, 0.5])
+@pytest.fixture
+def scene_at(fake):
+    """Builds the scene of a time."""
+
+    def scene_at(time):
+        belief = fake.frame(time, (0.3, -0.2, 0.5)).belief
+        task = ScheduledMission().update(belief.pose)
+        return Scene.of(belief, task, NavigationParameters(), body=np.zeros(3))
+
+    return scene_at
 
 
 def schedule_of(*overrides, duration=10.0, seed=0):
@@ -38,12 +46,13 @@ STRETCHES = "command.stretch=[{duration = 2.0, vx = 0.1}, {duration = 1.0, vy = 
         (3.0, (0.0, 0.0, 0.0)),
     ],
 )
-def test_stretches_follow_each_other_and_then_the_robot_stands(time, expected):
+def test_stretches_follow_each_other_and_then_the_robot_stands(time, expected, scene_at):
     schedule = schedule_of(STRETCHES)
     assert schedule.at(time) == VelocityCommand(*expected)
     planner = ScheduledPlanner(schedule)
-    task = ScheduledMission().update(At(time).pose)
-    assert planner.plan(At(time), task).velocity.tolist() == list(expected)
+    decision, memory = planner.plan(planner.begin(), scene_at(time))
+    assert decision.velocity.tolist() == list(expected)
+    assert memory is None
 
 
 def test_a_change_is_in_its_tick_despite_rounding():

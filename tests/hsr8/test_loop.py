@@ -3,9 +3,9 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from hsr8.decisions import GazeController, MotionPlanner
 from hsr8.errors import RenderingUnavailable, ScenarioError
 from hsr8.loop import Simulation
+from hsr8.plugin_decisions import GazePlugin, PlannerPlugin
 from hsr8.record import EventWatch
 from hsr8.robot_builder import MARGINS, walking_parameters
 from hsr8.robots.loaded import load_robot
@@ -77,8 +77,8 @@ def test_steps_outside_a_run_are_an_error():
 
 
 def test_a_given_planner_and_gaze_replace_those_of_the_scenario():
-    spin: MotionPlanner = Spin()
-    stare: GazeController = Stare()
+    spin: PlannerPlugin = Spin()
+    stare: GazePlugin = Stare()
     record = None
     with Simulation(quick(4.0), 4, planner=spin, gaze=stare) as simulation:
         for tick in simulation:

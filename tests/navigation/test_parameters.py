@@ -1,5 +1,8 @@
+from dataclasses import replace
+
 import pytest
 
+from navigation.paper import WEIGHTS
 from navigation.parameters.navigation import NavigationParameters
 
 EXTENDED, PAPER = NavigationParameters.extended(), NavigationParameters.paper()
@@ -8,7 +11,7 @@ EXTENDED, PAPER = NavigationParameters.extended(), NavigationParameters.paper()
 def test_the_constants_printed_in_the_paper_are_kept():
     assert (PAPER.evaluation.d_nm, PAPER.evaluation.d_fm) == (0.30, 1.30)
     assert PAPER.evaluation.lambda_cf == 0.85
-    assert (PAPER.univector.w_muf, PAPER.univector.w_auf) == (0.75, 0.25)
+    assert WEIGHTS[PAPER.planner.paper.weights] == (0.75, 0.25)
 
 
 @pytest.mark.parametrize("p", [EXTENDED, PAPER])
@@ -18,14 +21,21 @@ def test_weights_of_the_gaze_map_sum_to_one(p):
 
 
 def test_the_paper_profile_has_no_additions():
-    assert not PAPER.safety_filter.enabled
-    assert not PAPER.unseen_ground.enabled
+    assert PAPER.planner.method == "paper"
     assert PAPER.gaze.mode == "integrated"
-    assert PAPER.moving_obstacles.virtual_obstacle == "printed"
-    assert PAPER.univector.blend == "weights"
+    assert PAPER.univector.holonomic_distance == 0.0
 
 
 def test_profiles_agree_in_all_else():
     assert PAPER.mission == EXTENDED.mission
     assert PAPER.velocity_mapping == EXTENDED.velocity_mapping
-    assert PAPER.moving_obstacles.xi == EXTENDED.moving_obstacles.xi
+    assert replace(PAPER.planner, method=EXTENDED.planner.method) == EXTENDED.planner
+
+
+def test_the_gains_of_the_paper_keep_their_signs():
+    """k_beta < 0 < k_alpha in (8); d_e, d_b and K_r are lengths; xi in (0, 1)."""
+    p = PAPER.planner.paper
+    assert -1.0 < p.k_beta < 0.0
+    assert min(p.d_con, p.d_e, p.d_b, p.k_r, p.horizon, p.min_speed) > 0.0
+    assert 0.0 < p.xi < 1.0
+    assert 0.0 < p.nominal <= 1.0

@@ -4,15 +4,11 @@ import numpy as np
 import pytest
 from encounter_figure import foot_velocity
 
-from navigation.motion.virtual_obstacle import path_point
-
 
 def test_the_foot_moves_as_the_robot_does_along_the_path():
+    """The finite difference of the projection of the robot on the path of the mover."""
     rng = np.random.default_rng(0)
-    for _ in range(50):
-        u, robot, v = rng.normal(size=2), rng.normal(size=2), rng.normal(size=2)
-        here, there = (path_point(at, np.zeros(2), u) for at in (robot, robot + 1e-6 * v))
-        if here is None or there is None:
-            continue
-        slope = np.array([there.x - here.x, there.y - here.y]) / 1e-6
-        assert foot_velocity(v, here) == pytest.approx(slope, abs=1e-6)
+    for path, robot, v in rng.normal(size=(50, 3, 2)):
+        u = path / np.hypot(*path)
+        here, there = ((at @ u) * u for at in (robot, robot + 1e-6 * v))
+        assert foot_velocity(v, here) == pytest.approx((there - here) / 1e-6, abs=1e-6)

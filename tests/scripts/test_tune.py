@@ -2,11 +2,13 @@
 
 import argparse
 from concurrent.futures import ThreadPoolExecutor
+from typing import get_args
 
 import pytest
 import tune
 
 from hsr8.scenario.loader import load_scenario
+from navigation.parameters.planner import Method
 
 ARMS = [arm for study in ("baselines", "paper") for arm in tune.arms(study)]
 EFFORT = argparse.Namespace(candidates=6, seeds=2, finalists=2, more=3)
@@ -17,6 +19,16 @@ def test_every_set_is_a_valid_scenario_within_its_ranges(arm):
     for values in arm.sets(3):
         assert all(low <= values[key] <= high for key, (low, _, high) in arm.ranges.items())
         load_scenario("course", arm.words(values))
+
+
+def test_the_study_of_the_paper_has_a_row_for_each_order_of_the_weights():
+    given = [load_scenario("course", arm.words({})).navigation for arm in tune.arms("paper")]
+    assert [navigation.planner.method for navigation in given] == ["paper", "paper"]
+    assert [navigation.planner.paper.weights for navigation in given] == ["printed", "exchanged"]
+
+
+def test_every_planner_but_that_of_the_paper_is_tuned():
+    assert {arm.name for arm in tune.arms("baselines")} == set(get_args(Method)) - {"paper"}
 
 
 @pytest.fixture

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from hsr8.rerun_log.camera import image_points, map_points
-from navigation.gaze.gaze_map import GazeGrid
+from navigation.gaze.grid import GazeGrid
 from navigation.parameters.gaze import GazeParameters
 from vision.camera import PinholeCamera
 
@@ -35,20 +35,24 @@ def test_directions_behind_the_camera_are_not_drawn():
 
 @pytest.mark.parametrize(
     "gaze",
-    [GazeParameters(), GazeParameters(max_pan=1.0, min_tilt=-0.8, max_tilt=0.11, step=0.13)],
+    [
+        GazeParameters(),
+        GazeParameters(max_pan=1.0, min_tilt=-0.8, max_tilt=0.11, step=0.13),
+        GazeParameters(moved_by="body"),
+    ],
 )
 def test_pixels_of_the_gaze_map_match_its_cells(gaze):
-    grid = GazeGrid(gaze, 1.5, 1.2)
+    grid = GazeGrid.of(gaze)
     rows, columns = len(grid.tilt), len(grid.pan)
     pan, tilt = np.meshgrid(grid.pan, grid.tilt)
     cells = np.column_stack([pan.ravel(), tilt.ravel()])
     # The image shows left on its left and up above.
     v, u = np.mgrid[rows - 0.5 : 0.0 : -1.0, columns - 0.5 : 0.0 : -1.0]
-    pixels = map_points(cells, (rows, columns), gaze)
+    pixels = map_points(cells, grid)
     assert pixels == pytest.approx(np.column_stack([u.ravel(), v.ravel()]))
 
 
 def test_directions_beyond_the_gaze_map_are_on_its_border():
     gaze = GazeParameters()
     beyond = np.array([[gaze.max_pan + 1.0, gaze.max_tilt + 1.0], [-3.0, -3.0]])
-    assert map_points(beyond, (9, 19), gaze).tolist() == [[0.0, 0.0], [19.0, 9.0]]
+    assert map_points(beyond, GazeGrid.of(gaze)).tolist() == [[0.0, 0.0], [19.0, 9.0]]

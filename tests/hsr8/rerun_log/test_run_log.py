@@ -17,6 +17,7 @@ from hsr8.robots.loaded import load_robot
 from hsr8.scenario.loader import load_scenario
 from hsr8.world.truth.truth import ActivePush
 from navigation.belief.belief import Particles
+from navigation.decision import GazeDecision
 from tests.hsr8.rerun_log.batches import batch_of
 from walking.command import CommandLimits, Limit, VelocityCommand
 
@@ -115,6 +116,20 @@ def test_the_field_is_shown_where_there_is_one(folder, model, layout, fake):
     )
     assert len(paths[0][1]) == 1
     assert len(_values(path, "/plan/decision", "Arrows3D:vectors")) == 3
+
+
+def test_a_gaze_without_a_map_is_shown(folder, model, layout, fake):
+    records = []
+    for k in range(3):
+        frame = fake.frame(0.06 * k)
+        decision = replace(frame.decision, gaze=GazeDecision(0.1 * k, -0.4))
+        records.append(fake.record(0.06 * k, frame=replace(frame, decision=decision)))
+    path = _logged(folder, model, layout, records)
+    columns = [np.array(c)[0, 0] for _, c in _values(path, "/gaze/choice", "Points2D:positions")]
+    assert len(columns) == 3
+    assert np.all(np.diff(columns) < 0.0)
+    assert len(_values(path, "/gaze/window", "LineStrips2D:strips")) == 3
+    assert not _values(path, "/gaze/map", "EncodedImage:blob")
 
 
 def test_particles_show_where_a_lost_mover_may_be(folder, model, layout, fake):

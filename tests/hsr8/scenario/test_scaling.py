@@ -140,7 +140,8 @@ def test_the_table_of_a_robot_is_a_default(defaults):
     assert paper.robot.radius == 0.25
     assert paper.navigation.univector.s_robot == 0.25
     assert paper.navigation.gaze.max_pan == 1.0
-    assert paper.navigation.univector.d_e == 0.8
+    assert paper.navigation.univector.margin == 0.06
+    assert paper.navigation.planner.paper.d_e == 0.3
 
 
 def test_the_camera_of_a_robot_takes_precedence_over_a_preset(monkeypatch):

@@ -35,9 +35,8 @@ def test_the_profile_paper_is_that_of_the_library():
         "mission",
         "evaluation",
         "gaze",
+        "planner",
         "univector",
-        "moving_obstacles",
-        "unseen_ground",
         "safety_filter",
         "velocity_mapping",
     ):

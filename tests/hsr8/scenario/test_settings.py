@@ -90,7 +90,7 @@ def test_single_keys_take_precedence_over_profile_and_camera():
     )
     assert scenario.navigation.gaze.mode == "integrated"
     assert scenario.navigation.gaze.w_lm == 0.5
-    assert not scenario.navigation.safety_filter.enabled
+    assert scenario.navigation.planner.method == "paper"
     assert scenario.camera.vertical_fov_deg == 70.0
     assert scenario.walking.head.max_rate == 5.0
     camera = load_scenario("course").camera
@@ -133,7 +133,7 @@ def test_a_constant_is_changed_and_written_where_it_differs_from_the_profile(pro
             f"3: {LOOK_TIME}: a constant, not a setting; for studies, constants.{LOOK_TIME}",
         ),
         (
-            '[constants]\nnavigation.gaze.mode = "sweep"',
+            '[constants]\nnavigation.gaze.mode = "steps"',
             "3: constants.navigation.gaze.mode: a setting, not a constant; "
             "expected navigation.gaze.mode",
         ),

@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 from navigation.baselines.orca import HalfPlane, orca_plane, solve
+from navigation.parameters.planner import OrcaParameters
 
 V_MAX = 0.2
 
@@ -33,13 +34,13 @@ def test_the_program_finds_the_nearest_allowed_velocity():
     rng, grid = np.random.default_rng(0), lattice()
     for _ in range(60):
         planes = random_planes(rng, 0.0)
-        wanted = rng.uniform(-0.25, 0.25, 2)
-        v = solve(planes, 0, (wanted[0], wanted[1]), V_MAX)
+        desired = rng.uniform(-0.25, 0.25, 2)
+        v = solve(planes, 0, (desired[0], desired[1]), V_MAX)
         assert max(p.depth(v) for p in planes) < 1e-9
         assert hypot(*v) <= V_MAX + 1e-9
         allowed = grid[(depths(planes, grid) <= 0.0).all(axis=0)]
-        best = np.hypot(*(allowed - wanted).T).min()
-        assert hypot(v[0] - wanted[0], v[1] - wanted[1]) <= best + 1e-9
+        best = np.hypot(*(allowed - desired).T).min()
+        assert hypot(v[0] - desired[0], v[1] - desired[1]) <= best + 1e-9
 
 
 def test_without_a_solution_the_largest_violation_is_least():
@@ -104,6 +105,33 @@ def test_an_overlap_is_left_within_a_footstep():
     assert 0.2 - 0.34 * v[0] >= 0.25 - 1e-9
 
 
+@pytest.mark.parametrize("position", [(0.0, 0.0), (0.2, 0.0), (-0.03, 0.04), (0.0, -0.2)])
+@pytest.mark.parametrize("factor", [1.0, 1.0 - 1e-12, 0.0])
+def test_at_an_overlap_the_normal_has_unit_length_whatever_the_velocity(position, factor):
+    """Also if the relative velocity ends the overlap exactly: the disc is then on the centre."""
+    relative = factor * position[0] / 0.34, factor * position[1] / 0.34
+    p = orca_plane(
+        position, relative, (0.0, 0.0),
+        radius=0.25, horizon=5.0, footstep=0.34, responsibility=1.0,
+    )  # fmt: skip
+    assert hypot(p.dx, p.dy) == pytest.approx(1.0)
+    distance = hypot(position[0], position[1])
+    if factor and distance > 0.0:
+        assert (-p.dy * position[0] + p.dx * position[1]) / distance == pytest.approx(-1.0)
+
+
+def test_movers_have_a_longer_horizon_than_static_obstacles(plan, belief, task, track, limits):
+    p = OrcaParameters()
+    gap = 0.5 * (p.static_horizon + p.horizon) * limits.vx
+    position = (gap + 0.2 + p.margin, 0.0)
+    free, static, moving = (
+        plan("orca", belief(tracks), task((4.0, 0.0))).velocity
+        for tracks in ([], [track(position)], [track(position, (-0.1, 0.0))])
+    )
+    assert static == pytest.approx(free)
+    assert not np.allclose(moving, free)
+
+
 def test_the_reference_implementation_agrees():
     """RVO2 by its Python binding, where it is installed: half the responsibility, no box."""
     pyrvo = pytest.importorskip("pyrvo")
@@ -113,11 +141,11 @@ def test_the_reference_implementation_agrees():
         places = rng.uniform(-1.2, 1.2, (n, 2))
         places = places[np.hypot(*places.T) > 0.2]
         velocities = rng.uniform(-0.15, 0.15, places.shape)
-        own, wanted = rng.uniform(-0.12, 0.12, 2), rng.uniform(-0.15, 0.15, 2)
+        own, desired = rng.uniform(-0.12, 0.12, 2), rng.uniform(-0.15, 0.15, 2)
         sim = pyrvo.RVOSimulator(0.34, 10.0, 20, 5.0, 5.0, 0.14, V_MAX)
         me = sim.add_agent((0.0, 0.0))
         sim.set_agent_velocity(me, tuple(own))
-        sim.set_agent_pref_velocity(me, tuple(wanted))
+        sim.set_agent_pref_velocity(me, tuple(desired))
         for x, v in zip(places, velocities, strict=True):
             other = sim.add_agent(tuple(x))
             sim.set_agent_velocity(other, tuple(v))
@@ -131,4 +159,4 @@ def test_the_reference_implementation_agrees():
             )
             for i in order
         ]  # fmt: skip
-        assert solve(planes, 0, tuple(wanted), V_MAX) == pytest.approx(reference, abs=2e-4)
+        assert solve(planes, 0, tuple(desired), V_MAX) == pytest.approx(reference, abs=2e-4)

@@ -3,30 +3,10 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from navigation.baselines.planning_scene import PlanningScene
-from navigation.baselines.sampling import contact_cost, gaps, rollout
-from navigation.belief.tracks import Tracks
-from navigation.decision import Task
-from navigation.parameters.navigation import NavigationParameters
+from navigation.baselines.sampling import DynamicWindow, PathIntegral, contact_cost, gaps, rollout
+from navigation.parameters.planner import DwaParameters, MppiParameters
 
 DT = 0.34
-
-
-def scene(tracks, limits, pose=(0.0, 0.0, 0.0), body=(0.0, 0.0, 0.0)):
-    obstacles = Tracks.of(tracks)
-    return PlanningScene(
-        pose=np.array(pose, float),
-        body=np.array(body, float),
-        obstacles=obstacles,
-        inflation=np.zeros(len(obstacles)),
-        task=Task(np.array([2.0, 0.0]), 0.0, False, 0, False, False),
-        course=0.0,
-        speed=0.2,
-        facing=None,
-        side=0,
-        limits=limits,
-        parameters=NavigationParameters(),
-    )
 
 
 def test_a_constant_turn_walks_a_circle():
@@ -37,10 +17,10 @@ def test_a_constant_turn_walks_a_circle():
     assert heading[0, -1] == pytest.approx(40 * DT * 0.5)
 
 
-def test_gaps_equal_brute_force(tracks, limits):
+def test_gaps_equal_brute_force(tracks, planning):
     rng = np.random.default_rng(0)
     obstacles = tracks(rng.uniform(-1, 1, (6, 2)), rng.normal(0, 0.1, (6, 2)))
-    s = scene(obstacles, limits)
+    s = planning(obstacles)
     position = rng.uniform(-1, 1, (5, 8, 2))
     radii = rng.uniform(0.1, 0.3, 6)
     most = 0.8
@@ -55,9 +35,9 @@ def test_gaps_equal_brute_force(tracks, limits):
             assert result[k, t] == pytest.approx(min(most, least))
 
 
-def test_obstacles_within_lateral_reach_count(track, limits):
+def test_obstacles_within_lateral_reach_count(track, planning, limits):
     wide = replace(limits, vy=0.5)
-    s = scene([track((0.0, 1.4))], wide)
+    s = planning([track((0.0, 1.4))], limits=wide)
     aside = np.zeros((1, 6, 3))
     aside[..., 1] = wide.vy
     position, _ = rollout(s.pose, aside, DT)
@@ -74,16 +54,58 @@ def test_an_earlier_collision_costs_more():
     assert cost[3] == pytest.approx(1.01)
 
 
-def test_the_predicted_scene_is_a_footstep_later(track, limits):
-    s = scene([track((1.0, 0.0), (0.0, 0.1))], limits, (0, 0, np.pi / 2), (0.1, 0.0, 0.2))
-    later = s.predicted()
-    assert later.pose == pytest.approx([0.0, 0.034, np.pi / 2 + 0.068])
-    assert later.obstacles.position[0] == pytest.approx([1.0, 0.034])
-    assert later.body == pytest.approx(s.body)
+def test_the_window_is_what_one_footstep_reaches(planning):
+    """A slow robot far from its goal takes the highest speed within reach."""
+    s = planning(body=(0.05, 0.0, 0.0))
+    w = DynamicWindow(DwaParameters()).desired(s)
+    assert np.all(np.abs(w.body - s.body) <= s.change() + 1e-12)
+    assert w.body[0] == pytest.approx(0.05 + s.change()[0])
 
 
-def test_walking_turns_to_the_motion(limits):
-    s = scene([], limits)
-    aside = np.array([0.0, 0.1])
-    assert s.walk(aside) == pytest.approx([0.0, limits.vy, limits.wz])
-    assert s.walk(np.zeros(2)) == pytest.approx(0.0)
+def test_samples_come_from_the_generator_alone(planner, scene, belief, task, track):
+    s = scene(belief([track((0.6, 0.05))]), task())
+    first, again, other = (
+        planned.plan(planned.begin(), s)[0].velocity
+        for planned in (planner("mppi", rng=np.random.default_rng(seed)) for seed in (0, 0, 1))
+    )
+    assert np.array_equal(first, again)
+    assert not np.array_equal(first, other)
+
+
+class Silent:
+    """Generator of zeros: all samples are the plan."""
+
+    def standard_normal(self, shape):
+        return np.zeros(shape)
+
+
+def test_the_plan_of_mppi_lives_in_the_memory_alone(planning, task):
+    """A planner that has decided elsewhere decides as a fresh one; the plan is shifted by one."""
+
+    def method():
+        return PathIntegral(MppiParameters(spread=0.0), Silent())
+
+    used, s = method(), planning(task=task((2.0, 0.5)))
+    plan = np.zeros((MppiParameters().steps, 3))
+    plan[:, 0] = np.linspace(0.05, 0.15, len(plan))
+    used.desired(replace(s, plan=plan))
+    for kept in (None, plan):
+        one, other = (m.desired(replace(s, plan=kept)) for m in (used, method()))
+        assert np.array_equal(one.body, other.body)
+        assert np.array_equal(one.plan, other.plan)
+    start = used.desired(replace(s, plan=plan))
+    assert len(start.plan) == len(plan)
+    assert np.array_equal(start.plan[-1], start.plan[-2])
+    assert start.plan[0] != pytest.approx(start.body)
+
+
+def test_the_plan_of_mppi_is_continued(planner, scene, belief, task):
+    """The second decision of a memory is faster than the first: the body has accelerated."""
+    planned = planner("mppi", rng=np.random.default_rng(0))
+    memory, body, speeds = planned.begin(), np.zeros(3), []
+    for _ in range(6):
+        decision, memory = planned.plan(memory, scene(belief(), task(), body=body))
+        body = decision.velocity
+        speeds.append(body[0])
+        assert memory.plan.shape == (MppiParameters().steps, 3)
+    assert speeds[-1] > speeds[0] + 0.05

@@ -1,76 +1,122 @@
+"""Properties of every mode of the gaze."""
+
+from copy import deepcopy
 from dataclasses import replace
 from typing import get_args
 
 import numpy as np
 import pytest
 
-from navigation.gaze.choice import BLIND, VotingGaze
-from navigation.gaze.gaze_map import GazeGrid, Votes
-from navigation.gaze.planner import GazePlanner
-from navigation.parameters.gaze import GazeMode, GazeParameters
+from navigation.belief.tracks import Tracks
+from navigation.decision import MotionDecision
+from navigation.parameters.gaze import GazeMode
 from navigation.parameters.navigation import NavigationParameters
+from navigation.scene import Scene
 
-BEACONS = {"cyan/yellow": (2.9, 0.5), "yellow/cyan": (-2.9, 0.0), "magenta/cyan": (0.5, 2.9)}
-P = NavigationParameters.extended()
+P, PAPER = NavigationParameters.extended(), NavigationParameters.paper()
 MODES = get_args(GazeMode)
-DELIBERATE = [mode for mode in MODES if mode not in BLIND]
-FOV, NECK = (1.5, 1.22), (3.0, 40.0)
-
-
-def planner(limits, mode, step=P.gaze.step):
-    gaze = replace(P.gaze, mode=mode, step=step)
-    return GazePlanner(replace(P, gaze=gaze), limits, BEACONS, FOV, NECK)
+DELIBERATE = ["risk", "integrated"]
+ODD = {"step": 0.13, "max_pan": 1.5, "min_tilt": -1.0, "max_tilt": 0.27}
+WALK = MotionDecision(np.array([0.15, 0.0, 0.1]))
 
 
 @pytest.fixture
-def choose(limits, task):
-    def choose(mode, belief, **where):
-        step = P.gaze.step / 2.0
-        return planner(limits, mode, step).choose(belief, task(**where), None)
+def crowded(belief, track):
+    """Returns the belief of the k-th frame among obstacles, some lost and the ground half seen."""
 
-    return choose
+    def make(k, order=1, **details):
+        rng = np.random.default_rng(k)
+        cloud = (rng.uniform(-1.0, 1.0, (4, 2)), np.zeros((4, 2)), np.full(4, 0.25))
+        tracks = [
+            track(c, (0.1, 0.0), age=1.0, id=i, sigma=0.05, particles=cloud if i == 2 else None)
+            for i, c in enumerate(rng.uniform(-1.5, 1.5, (6, 2)))
+        ]
+        details = {"time": 0.37 * k, "confidence": lambda x, y: 0.5, **details}
+        return belief(tracks[::order], **details)
 
-
-ODD = {"step": 0.13, "max_pan": 1.5, "min_tilt": -1.0, "max_tilt": 0.27}
+    return make
 
 
 @pytest.mark.parametrize("changes", [{}, ODD], ids=["default", "no multiple of the step"])
 @pytest.mark.parametrize("mode", MODES)
-def test_every_gaze_stays_within_the_limits_of_the_head(mode, changes, limits, task, belief, track):
-    p = replace(P.gaze, mode=mode, **changes)
-    rng = np.random.default_rng(1)
+def test_every_gaze_stays_within_the_limits_of_the_head(mode, changes, gaze, crowded):
+    choose = gaze(mode=mode, **changes)
+    p = choose.parameters.gaze
     for k in range(12):
-        tracks = [track(c, (0.1, 0.0), age=1.0) for c in rng.uniform(-1.5, 1.5, (5, 2))]
-        b = belief(tracks, time=0.37 * k, confidence=lambda x, y: 0.5)
-        gaze = GazePlanner(replace(P, gaze=p), limits, BEACONS, FOV, NECK).choose(b, task(), None)
-        assert abs(gaze.pan) <= p.max_pan + 1e-9
-        assert p.min_tilt - 1e-9 <= gaze.tilt <= p.max_tilt + 1e-9
-        assert np.isfinite(gaze.gaze_map).all()
-        assert gaze.gaze_map.min() >= 0.0
+        decision = choose(crowded(k))
+        assert abs(decision.pan) <= p.max_pan + 1e-9
+        assert p.min_tilt - 1e-9 <= decision.tilt <= p.max_tilt + 1e-9
+        assert np.isfinite(decision.gaze_map).all()
+        assert decision.gaze_map.min() >= 0.0
 
 
-@pytest.mark.parametrize("ratio", [1.0, 1.1])
-def test_at_a_ratio_of_one_the_gaze_is_the_centre_of_the_plateau_and_stays(ratio):
-    p = GazeParameters(max_pan=1.0, min_tilt=-1.0, max_tilt=0.0, step=0.1, box_fraction=0.5)
-    grid = GazeGrid(p, 0.8, 0.6)
-    gaze = VotingGaze(lambda context: Votes.one(0.2, -0.5, 1.0), grid, ratio)
-    now = (0.5, -0.4)
-    for _ in range(5):
-        now = gaze.look(None, now)[1]
-    assert now == pytest.approx((0.2, -0.5) if ratio == 1.0 else (0.5, -0.4))
+@pytest.mark.parametrize("moved_by", ["head", "body"])
+@pytest.mark.parametrize("mode", MODES)
+def test_the_same_memory_and_scene_give_the_same_gaze(mode, moved_by, gaze, crowded):
+    """Deciding twice, or after the decisions of other frames, changes nothing."""
+    choose = gaze(mode=mode, moved_by=moved_by, max_pan=1.0)
+    decided = []
+    for k in range(8):
+        memory, scene = choose.memory, choose.scene(crowded(k, lost=k > 5), motion=WALK)
+        decided.append((memory, scene, *choose.planner.choose(memory, scene, WALK)))
+        choose.memory = decided[-1][3]
+    for memory, scene, decision, after in decided[::-1]:
+        again, later = choose.planner.choose(memory, scene, WALK)
+        assert same(again, decision)
+        assert same(later, after)
+
+
+@pytest.mark.parametrize("mode", MODES)
+def test_choosing_changes_neither_memory_nor_scene(mode, gaze, crowded):
+    choose = gaze(mode=mode)
+    for k in range(4):
+        choose(crowded(k), motion=WALK)
+    memory, scene = choose.memory, choose.scene(crowded(4), motion=WALK)
+    contents = scene.obstacles.position, scene.obstacles.age, scene.psi_ob, scene.s_oe
+    before = deepcopy((memory, contents))
+    choose.planner.choose(memory, scene, WALK)
+    assert same((memory, contents), before)
+
+
+@pytest.mark.parametrize("mode", MODES)
+def test_the_memory_of_the_start_holds_nothing_of_the_frames_before(mode, gaze, crowded):
+    """After a relocalization, densities and directions of the former pose are wrong."""
+    used, fresh = gaze(mode=mode), gaze(mode=mode)
+    for k in range(6):
+        used(crowded(k, pose=(0.7, 0.2, 0.4)), motion=WALK)
+    used.memory = used.planner.begin()
+    for k in range(6, 10):
+        b = crowded(k)
+        assert same(used(b, motion=WALK), fresh(b, motion=WALK))
+
+
+@pytest.mark.parametrize("p", [P, PAPER], ids=["extended", "paper"])
+def test_the_order_of_tracks_is_irrelevant(p, gaze, crowded):
+    for k in range(5):
+        one, other = gaze(p)(crowded(k)), gaze(p)(crowded(k, order=-1))
+        assert (one.pan, one.tilt) == pytest.approx((other.pan, other.tilt))
+        assert one.gaze_map == pytest.approx(other.gaze_map)
 
 
 @pytest.mark.parametrize("mode", DELIBERATE)
-def test_the_mirror_image_of_a_world_is_looked_at_from_the_other_side(
-    mode, choose, belief, track, limits, task
-):
+def test_the_gaze_ignores_landmarks_as_obstacles(mode, gaze, crowded, track):
+    choose, b = gaze(mode=mode), crowded(0)
+    known = Tracks.of([track((0.6, 0.5), id=-1)])
+    plain = choose.scene(b)
+    among = Scene.of(b, plain.task, choose.parameters, body=np.zeros(3), landmarks=known)
+    assert among.landmarks == 1
+    one, _ = choose.planner.choose(choose.memory, plain, None)
+    other, _ = choose.planner.choose(choose.memory, among, None)
+    assert same(one, other)
+
+
+@pytest.mark.parametrize("mode", DELIBERATE)
+def test_the_mirror_image_of_a_world_is_looked_at_from_the_other_side(mode, gaze, belief, track):
     def world(side):
         tracks = [track((0.4, 0.8 * side), (-0.05, -0.1 * side), sigma=0.1, age=1.5)]
         unseen = belief(tracks, confidence=lambda x, y: 0.2 if side * y > 0 else 1.0)
         beacons = {"cyan/yellow": (0.5, 2.9 * side)}
-        p = replace(P, gaze=replace(P.gaze, mode=mode))
-        goal = task(target=(0.2, 2.0 * side))
-        return GazePlanner(p, limits, beacons, FOV, NECK).choose(unseen, goal, None)
+        return gaze(mode=mode, beacons=beacons)(unseen, target=(0.2, 2.0 * side))
 
     left, right = world(1.0), world(-1.0)
     assert left.pan > 0.1
@@ -78,22 +124,39 @@ def test_the_mirror_image_of_a_world_is_looked_at_from_the_other_side(
     assert right.gaze_map == pytest.approx(left.gaze_map[:, ::-1])
 
 
-def test_a_single_evaluation_votes_alone(choose, belief, track):
-    blind = belief(sigma=0.0, turn_sigma=0.0)
-    assert choose("psi-lm", blind).gaze_map.max() == 0.0
-    assert choose("psi-sf", blind).gaze_map.max() == 0.0
-    assert choose("psi-ob", blind).gaze_map.max() == 0.0
-    unseen = belief(sigma=0.0, turn_sigma=0.0, confidence=lambda x, y: float(y < 0))
-    assert choose("psi-lm", unseen).pan > 0.2
-    lateral = belief([track((0.3, -0.6), (0.0, 0.1), sigma=0.1)], sigma=0.0, turn_sigma=0.0)
-    assert choose("psi-ob", lateral).pan < -0.2
-    assert choose("psi-way", lateral, target=(0.0, 2.0)).pan > 0.5
-    assert choose("psi-sf", belief(sigma=0.3)).gaze_map.max() == pytest.approx(1.0)
-
-
 @pytest.mark.parametrize("mode", MODES)
-def test_deliberate_gazes_and_stops_keep_their_direction_while_the_body_turns(
-    mode, choose, belief, track
-):
-    decision = choose(mode, belief([track((0.5, 0.5), age=1.0)]))
-    assert decision.stabilized == (mode not in ("fixed", "sweep", "triangle"))
+def test_deliberate_gazes_and_stops_keep_their_direction_while_the_body_turns(mode, gaze, crowded):
+    assert gaze(mode=mode)(crowded(0)).stabilized == (mode not in ("fixed", "triangle"))
+
+
+@pytest.mark.parametrize("mode", [m for m in MODES if m not in DELIBERATE])
+def test_a_blind_gaze_has_one_map_of_zeros_and_the_partial_evaluations(mode, gaze, crowded):
+    """Displays show an empty map of the size of that of a deliberate gaze, recorded once."""
+    choose = gaze(mode=mode)
+    first, second = choose(crowded(0)), choose(crowded(1))
+    assert first.gaze_map.shape == gaze(mode="risk")(crowded(0)).gaze_map.shape
+    assert not first.gaze_map.any()
+    assert second.gaze_map is first.gaze_map
+    assert min(first.psi_lm, first.psi_sf, first.psi_ob) > 0.0
+
+
+def same(one, other):
+    """Return whether two values, tuples or arrays have the same content."""
+    if hasattr(one, "__slots__") and type(one).__module__.startswith("navigation"):
+        names = type(one).__dataclass_fields__
+        return all(same(getattr(one, name), getattr(other, name)) for name in names)
+    if isinstance(one, tuple):
+        return all(same(a, b) for a, b in zip(one, other, strict=True))
+    if isinstance(one, np.ndarray):
+        return one.tobytes() == other.tobytes()
+    return one == other
+
+
+def test_contents_are_compared(gaze, crowded):
+    one, other = gaze(), gaze()
+    decisions = one(crowded(0)), other(crowded(0))
+    assert same(*decisions)
+    assert same(one.memory, other.memory)
+    assert not same(decisions[0], replace(decisions[1], pan=0.123))
+    other(crowded(1))
+    assert not same(one.memory, other.memory)

@@ -7,14 +7,13 @@ from navigation.belief.belief import Motion
 from navigation.belief.local_map import LocalMap
 from navigation.belief.visibility import Viewpoint
 from navigation.decision import MotionDecision
-from navigation.gaze.planner import GazePlanner
 from navigation.parameters.belief import LocalMapParameters
 from navigation.parameters.navigation import NavigationParameters
 
 P = NavigationParameters()
 P_MAP = LocalMapParameters()
 BEACONS = {"cyan/yellow": (2.9, 0.5), "yellow/cyan": (-2.9, 0.0)}
-FOV, NECK = (1.05, 0.82), (3.0, 40.0)
+FOV = (1.05, 0.82)
 WALK = MotionDecision(np.array([0.2, 0.0, 0.0]))
 
 
@@ -26,12 +25,11 @@ def known(p=P, path_weight=0.0):
 
 
 @pytest.fixture
-def gaze_map(limits, task):
+def gaze_map(gaze):
     """The gaze map of a first decision, without undetected obstacles."""
 
     def look(belief, motion=WALK, beacons=BEACONS, path_weight=0.0):
-        gaze = GazePlanner(known(path_weight=path_weight), limits, beacons, FOV, NECK)
-        return gaze.choose(belief, task(), motion).gaze_map
+        return gaze(known(path_weight=path_weight), beacons)(belief, motion=motion).gaze_map
 
     return look
 
@@ -98,13 +96,12 @@ def test_the_path_is_worth_a_look_by_the_age_of_its_ground(belief, gaze_map):
     assert value(2.0, path_weight=0.0) == 0.0
 
 
-def test_the_gaze_map_turns_with_the_world(belief, track, limits, task):
+def test_the_gaze_map_turns_with_the_world(belief, track, gaze):
     def chosen(turn):
         c, s = np.cos(turn), np.sin(turn)
         point = np.array([[c, -s], [s, c]]) @ (0.6, 0.7)
         b = belief([track(point, age=2.0, motion=Motion.UNKNOWN)], pose=(0.0, 0.0, turn))
-        gaze = GazePlanner(known(), limits, {}, FOV, NECK)
-        return gaze.choose(b, task(target=(2 * c, 2 * s)), WALK)
+        return gaze(known(), {})(b, (2 * c, 2 * s), WALK)
 
     plain = chosen(0.0)
     for turn in (0.5, -2.0, 3.0):
@@ -113,15 +110,15 @@ def test_the_gaze_map_turns_with_the_world(belief, track, limits, task):
         assert turned.gaze_map == pytest.approx(plain.gaze_map)
 
 
-def test_a_turning_body_does_not_look_where_the_neck_cannot_stay(belief, track, limits, task):
+def test_a_turning_body_does_not_look_where_the_neck_cannot_stay(belief, track, gaze):
     """The head keeps its direction while the body turns, up to the limit of the neck."""
     aside = belief([track((-0.2, 0.7), (0.1, 0.0), age=2.0)])
 
     def extremes(turn_rate):
-        gaze = GazePlanner(known(), limits, {}, FOV, NECK)
+        choose = gaze(known(), {})
         motion = MotionDecision(np.array([0.0, 0.0, turn_rate]))
-        seen = gaze.choose(aside, task(), motion).gaze_map.max(axis=0) > 0.0
-        return gaze.grid.pan[seen].min(), gaze.grid.pan[seen].max()
+        seen = choose(aside, motion=motion).gaze_map.max(axis=0) > 0.0
+        return choose.planner.grid.pan[seen].min(), choose.planner.grid.pan[seen].max()
 
     still = extremes(0.0)
     assert extremes(0.8) == still
@@ -129,42 +126,60 @@ def test_a_turning_body_does_not_look_where_the_neck_cannot_stay(belief, track, 
     assert extremes(-0.8)[1] < still[1] - 0.2
 
 
-def test_the_gaze_stays_where_no_other_view_is_worth_the_saccade(belief, track, limits, task, view):
-    gaze = GazePlanner(known(), limits, {}, FOV, NECK)
+def test_the_gaze_stays_where_no_other_view_is_worth_the_saccade(belief, track, gaze, view):
+    choose = gaze(known(), {})
     fresh = track((0.9, 0.2), motion=Motion.UNKNOWN, hits=3, age=0.0)
-    first = gaze.choose(belief([fresh]), task(), WALK)
+    first = choose(belief([fresh]), motion=WALK)
     for k in range(1, 10):
         camera = view(first.pan, first.tilt)
-        again = gaze.choose(belief([fresh], time=0.06 * k, camera=camera), task(), WALK)
+        again = choose(belief([fresh], time=0.06 * k, camera=camera), motion=WALK)
         assert (again.pan, again.tilt) == (first.pan, first.tilt)
 
 
-def test_ground_where_movers_may_hide_is_visited_in_turn(limits, task, view, belief):
+@pytest.fixture
+def look_around(belief, view):
+    """Lets a gaze look at an empty world from a pose for a number of frames; returns the pans."""
+
+    def look(choose, pose=(0.0, 0.0, 0.0), frames=60):
+        local_map, decision, pans = LocalMap(P_MAP, pose[:2], 0.0), None, []
+        for k in range(1, frames):
+            pan, tilt = (0.0, -0.5) if decision is None else (decision.pan, decision.tilt)
+            camera = view(pan, tilt, *FOV)
+            viewpoint = Viewpoint.of(camera, np.array(pose), 2.5)
+            local_map.update(0.3 * k, viewpoint, pose[:2], np.zeros((0, 2)), np.zeros(0))
+            b = belief(time=0.3 * k, camera=camera, pose=pose)
+            decision = choose(replace(b, local_map=local_map.snapshot()), motion=WALK)
+            pans.append(decision.pan)
+        return pans
+
+    return look
+
+
+def test_ground_where_movers_may_hide_is_visited_in_turn(gaze, look_around):
     """Without tracks the gaze visits both sides: ground that was looked at loses its density."""
-    gaze, local_map = GazePlanner(P, limits, {}, FOV, NECK), LocalMap(P_MAP, (0.0, 0.0), 0.0)
-    pan, tilt, pans = 0.0, -0.5, []
-    for k in range(1, 60):
-        camera = view(pan, tilt, *FOV)
-        viewpoint = Viewpoint.of(camera, np.zeros(3), 2.5)
-        local_map.update(0.3 * k, viewpoint, (0.0, 0.0), np.zeros((0, 2)), np.zeros(0))
-        seen = replace(belief(time=0.3 * k, camera=camera), local_map=local_map.snapshot())
-        decision = gaze.choose(seen, task(), WALK)
-        pan, tilt = decision.pan, decision.tilt
-        pans.append(pan)
+    pans = look_around(gaze(beacons={}))
     assert max(pans) > 1.0
     assert min(pans) < -1.0
 
 
-def test_a_fixation_lasts_for_its_minimum_duration(belief, track, limits, task, view):
+def test_densities_do_not_survive_a_relocalization(gaze, look_around):
+    """The densities of the former pose belong to other ground; all ground is unseen again."""
+    used, fresh = gaze(beacons={}), gaze(beacons={})
+    look_around(used, pose=(0.4, 0.1, 0.7), frames=20)
+    used.memory = used.planner.begin()
+    assert look_around(used, frames=20) == look_around(fresh, frames=20)
+
+
+def test_a_fixation_lasts_for_its_minimum_duration(belief, track, gaze, view):
     """The head arrives at the first obstacle when the other one becomes urgent."""
-    gaze = GazePlanner(known(), limits, {}, FOV, NECK)
+    choose = gaze(known(), {})
     left, right = (track((0.5, y), (-0.1, 0.0), age=2.0) for y in (0.8, -0.8))
-    first = gaze.choose(belief([left], camera=view(1.4, 0.3)), task(), WALK)
+    first = choose(belief([left], camera=view(1.4, 0.3)), motion=WALK)
     assert first.pan > 0.3
     pans = []
     for k in range(1, 6):
         camera = view(first.pan, first.tilt)
         seen = belief([right], time=0.06 * k, camera=camera)
-        pans.append(gaze.choose(seen, task(), WALK).pan)
+        pans.append(choose(seen, motion=WALK).pan)
     assert pans[0] == first.pan
     assert pans[1] < 0.0

@@ -5,11 +5,12 @@ import pytest
 
 from navigation.belief.local_map import LocalMap
 from navigation.belief.visibility import Viewpoint
-from navigation.gaze.undetected import Undetected
+from navigation.gaze.undetected import Undetected, risk_limits
 from navigation.parameters.belief import LocalMapParameters
 from navigation.parameters.gaze import RiskParameters, UndetectedParameters
 
-P, RISK = UndetectedParameters(), RiskParameters()
+P = UndetectedParameters()
+LIMITS = risk_limits(P, RiskParameters())
 STILL = np.zeros(2)
 NOTHING = np.zeros((0, 2)), np.zeros(0)
 
@@ -20,19 +21,19 @@ def world(view):
 
     def make(pan=0.0, frames=3, pose=(0.0, 0.0, 0.0), parameters=P):
         local_map = LocalMap(LocalMapParameters(), pose[:2], 0.0)
-        undetected = Undetected(parameters, RISK, local_map, 0.0)
+        undetected = Undetected.unseen(parameters, local_map, 0.0)
         viewpoint = Viewpoint.of(view(pan, -0.6), np.array(pose), 2.5)
         for k in range(frames):
             time = 0.06 * (k + 1)
             local_map.update(time, viewpoint, pose[:2], *NOTHING)
-            undetected.update(local_map, time)
+            undetected = undetected.updated(local_map, time)
         return local_map, undetected
 
     return make
 
 
 def risks(undetected, velocity=STILL, position=STILL):
-    return undetected.risks(np.array(position), np.array(velocity))
+    return undetected.risks(np.array(position), np.array(velocity), LIMITS)
 
 
 def test_ground_in_view_loses_its_risk_and_ground_beside_keeps_it(world):
@@ -48,7 +49,7 @@ def test_undetected_movers_enter_ground_that_was_seen_before(world, view):
     blind = Viewpoint.of(replace(view(), blind=True), np.zeros(3), 2.5)
     for k in range(150):
         local_map.update(0.3 + 0.06 * k, blind, (0.0, 0.0), *NOTHING)
-        undetected.update(local_map, 0.3 + 0.06 * k)
+        undetected = undetected.updated(local_map, 0.3 + 0.06 * k)
     after = risks(undetected)
 
     def ahead(cells):
@@ -85,6 +86,16 @@ def test_the_densities_stay_in_the_world_while_the_map_scrolls(world, view):
     before = risks(undetected)
     blind = Viewpoint.of(replace(view(), blind=True), np.zeros(3), 2.5)
     local_map.update(0.3, blind, (0.6, -0.3), *NOTHING)
-    undetected.update(local_map, 0.3)
+    undetected = undetected.updated(local_map, 0.3)
     after = risks(undetected, position=(0.0, 0.0))
     assert after == pytest.approx(before)
+
+
+def test_an_update_leaves_the_densities_before_unchanged(world):
+    local_map, undetected = world(frames=2)
+    before = undetected.movers.copy(), undetected.static.copy(), undetected.drift.copy()
+    later = undetected.updated(local_map, 3.0)
+    assert np.array_equal(undetected.movers, before[0])
+    assert np.array_equal(undetected.static, before[1])
+    assert np.array_equal(undetected.drift, before[2])
+    assert not np.array_equal(later.movers, before[0])

@@ -82,14 +82,14 @@ def test_free_intervals_agree_with_sampling(horizon):
 
 def test_the_letters_of_figure_4():
     crossing = Encounter(1.0, -1.0, 0.0, 0.15, 0.3)
-    assert crossing.case(0.2) is CollisionCase.CROSSING
+    assert crossing.case(0.2, inf) is CollisionCase.CROSSING
     head_on = Encounter(1.0, 0.0, -0.1, 0.0, 0.3)
-    assert head_on.case(0.2) is CollisionCase.DEFINITE
+    assert head_on.case(0.2, inf) is CollisionCase.DEFINITE
     leaving = Encounter(0.5, 0.0, 0.05, 0.0, 0.3)
-    assert leaving.case(0.2) is CollisionCase.RECEDING
+    assert leaving.case(0.2, inf) is CollisionCase.RECEDING
     from_the_side = Encounter(0.1, -0.6, 0.0, 0.1, 0.3)
-    assert from_the_side.case(0.2) is CollisionCase.ESCAPE
-    assert Encounter(1.0, 1.0, 0.0, 0.15, 0.3).case(0.2) is None
+    assert from_the_side.case(0.2, inf) is CollisionCase.ESCAPE
+    assert Encounter(1.0, 1.0, 0.0, 0.15, 0.3).case(0.2, inf) is None
 
 
 def test_at_the_points_of_contact_of_figure_4_disc_and_robot_touch():
@@ -105,3 +105,20 @@ def test_at_the_points_of_contact_of_figure_4_disc_and_robot_touch():
     assert result > 200
     e = Encounter(1.0, -1.0, 0.0, 0.15, 0.3)
     assert e.touch_time(0.05) == inf
+
+
+def test_the_case_takes_the_horizon():
+    """A collision later than the horizon is none: the free speeds are those of its time."""
+    head_on = Encounter(2.2, 0.0, -0.1, 0.0, 0.3)
+    assert [head_on.contact_time(v) for v in (0.0, 0.2)] == pytest.approx([19.0, 19.0 / 3.0])
+    cases = [head_on.case(0.2, horizon) for horizon in (inf, 20.0, 10.0)]
+    assert cases == [CollisionCase.DEFINITE, CollisionCase.DEFINITE, CollisionCase.ESCAPE]
+    rng = np.random.default_rng(7)
+    for e in encounters(rng, 500):
+        for horizon in (2.0, 6.0, inf):
+            free = not any(e.collides(v, horizon) for v in np.linspace(1e-6, 0.2, 41).tolist())
+            case = e.case(0.2, horizon)
+            if case is CollisionCase.DEFINITE:
+                assert all(e.collides(v, horizon) for v in np.linspace(0.001, 0.199, 41).tolist())
+            if case is None:
+                assert free

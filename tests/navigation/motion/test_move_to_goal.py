@@ -1,24 +1,35 @@
+"""Equation (8), in the reading of the default planner and in that of the paper."""
+
 from dataclasses import replace
+from functools import partial
 from math import pi
 
 import numpy as np
 import pytest
 
+from navigation import paper
 from navigation.angles import wrap_array
 from navigation.decision import Task
-from navigation.motion.move_to_goal import ArrivalSide, arrival_gain, move_to_goal, muf
+from navigation.motion.move_to_goal import arrival_gain, arrival_side, move_to_goal
 from navigation.motion.velocity_mapping import body_velocity
 from navigation.parameters.motion import UnivectorParameters
-from navigation.parameters.navigation import NavigationParameters
+from navigation.parameters.planner import PaperParameters
 
-EXTENDED = UnivectorParameters()
-PAPER = NavigationParameters.paper().univector
-POSTURE = replace(EXTENDED, arrival="nposture")
+DEFAULT, PAPER = UnivectorParameters(), PaperParameters()
+DIRECTIONS = {
+    "default": partial(move_to_goal, parameters=DEFAULT),
+    "paper": partial(paper.move_to_goal, p=PAPER),
+}
+EACH = pytest.mark.parametrize("direction", DIRECTIONS.values(), ids=DIRECTIONS.keys())
 ORIGIN = np.zeros(2)
-ALL = [EXTENDED, PAPER, POSTURE]
 
 
-def arrivals(p, limits, radius, r_goal=0.06, duration=60.0):
+def straight(point, target, _):
+    offset = target - point
+    return np.arctan2(offset[..., 1], offset[..., 0])
+
+
+def arrivals(direction, limits, radius, r_goal=0.06, duration=60.0):
     """Heading errors at arrival of 192 starts, NaN for those that never arrive."""
     errors = []
     for goal_heading in np.arange(4) * pi / 2 + 0.3:
@@ -30,13 +41,15 @@ def arrivals(p, limits, radius, r_goal=0.06, duration=60.0):
         body = np.zeros((len(point), 3))
         for step in range(round(duration / 0.085)):
             if step % 4 == 0:
-                phi = move_to_goal(point, heading, ORIGIN, goal_heading, p)
+                phi = direction(point, ORIGIN, goal_heading)
                 body = np.array([
                     body_velocity(a, 0.15, h, a, limits=limits, turn_gain=1.5)
                     for a, h in zip(phi.tolist(), heading.tolist(), strict=True)
                 ])  # fmt: skip
             here = np.isnan(error) & (np.hypot(*point.T) < r_goal)
             error[here] = np.abs(wrap_array(heading - goal_heading))[here]
+            if not np.isnan(error).any():
+                break
             middle = heading + 0.5 * body[:, 2] * 0.085
             c, s = np.cos(middle), np.sin(middle)
             point = point + 0.085 * np.stack(
@@ -47,143 +60,125 @@ def arrivals(p, limits, radius, r_goal=0.06, duration=60.0):
     return np.concatenate(errors)
 
 
-@pytest.mark.parametrize("p", ALL, ids=["extended", "paper", "nposture"])
+@EACH
 @pytest.mark.parametrize("radius", [1.0, 2.0])
-def test_all_of_192_starts_arrive(p, limits, radius):
-    errors = arrivals(p, limits, radius)
+def test_all_of_192_starts_arrive(direction, limits, radius):
+    errors = arrivals(direction, limits, radius)
     assert len(errors) == 192
     assert not np.isnan(errors).any()
-    straight = arrivals(replace(p, k_beta=-1e-9, arrival="hard"), limits, radius)
-    assert np.median(errors) < 0.7 * np.median(straight)
+    assert np.median(errors) < 0.7 * np.median(arrivals(straight, limits, radius))
 
 
-@pytest.mark.parametrize("p", ALL)
-def test_far_away_and_on_the_line_it_points_at_the_destination(p):
+@EACH
+def test_far_away_and_on_the_line_it_points_at_the_destination(direction):
     rng = np.random.default_rng(0)
-    if p.arrival != "nposture":
-        for x, y in rng.normal(0, 3, (50, 2)).tolist():
-            if np.hypot(x, y) > p.d_con:
-                phi = move_to_goal((x, y), 0.3, ORIGIN, 1.0, p)
-                assert phi == pytest.approx(np.arctan2(-y, -x))
+    for point in rng.normal(0, 3, (50, 2)):
+        if np.hypot(*point) > 0.8:
+            assert direction(point, ORIGIN, 1.0) == pytest.approx(straight(point, ORIGIN, 1.0))
     for rho in (0.1, 0.5, 1.5):
         point = -rho * np.array([np.cos(0.7), np.sin(0.7)])
-        assert move_to_goal(point, 2.0, ORIGIN, 0.7, p) == pytest.approx(0.7)
+        assert direction(point, ORIGIN, 0.7) == pytest.approx(0.7)
 
 
-@pytest.mark.parametrize("p", ALL)
-def test_mirror_symmetry(p):
-    rng = np.random.default_rng(1)
-    places = rng.normal(0, 0.6, (200, 2))
-    phi = move_to_goal(places, 0.4, ORIGIN, 0.9, p)
-    mirrored = move_to_goal(places * [1, -1], -0.4, ORIGIN, -0.9, p)
+@EACH
+def test_mirror_symmetry(direction):
+    places = np.random.default_rng(1).normal(0, 0.6, (200, 2))
+    phi = direction(places, ORIGIN, 0.9)
+    mirrored = direction(places * [1, -1], ORIGIN, -0.9)
     assert wrap_array(phi + mirrored) == pytest.approx(0.0, abs=1e-9)
 
 
-@pytest.mark.parametrize("p", ALL)
-def test_rigid_motion_moves_the_field_along(p, rotation):
-    rng = np.random.default_rng(2)
-    places, a = rng.normal(0, 0.6, (100, 2)), 1.1
-    r = rotation(a)
-    target, shift = np.array([0.2, -0.1]), np.array([5.0, 2.0])
-    phi = move_to_goal(places, 0.4, target, 0.9, p)
-    moved = move_to_goal(places @ r.T + shift, 0.4 + a, r @ target + shift, 0.9 + a, p)
+@EACH
+def test_rigid_motion_moves_the_field_along(direction, rotation):
+    places, a = np.random.default_rng(2).normal(0, 0.6, (100, 2)), 1.1
+    r, target, shift = rotation(a), np.array([0.2, -0.1]), np.array([5.0, 2.0])
+    phi = direction(places, target, 0.9)
+    moved = direction(places @ r.T + shift, r @ target + shift, 0.9 + a)
     assert wrap_array(moved - phi - a) == pytest.approx(0.0, abs=1e-9)
 
 
-@pytest.mark.parametrize("p", [EXTENDED, PAPER], ids=["extended", "paper"])
-def test_the_distance_never_grows(p):
-    rng = np.random.default_rng(3)
-    places = rng.uniform(-1, 1, (2000, 2))
-    phi = move_to_goal(places, 0.0, ORIGIN, 0.5, p)
+@EACH
+def test_the_distance_never_grows(direction):
+    places = np.random.default_rng(3).uniform(-1, 1, (2000, 2))
+    phi = direction(places, ORIGIN, 0.5)
     inward = -(places * np.stack([np.cos(phi), np.sin(phi)], axis=1)).sum(axis=1)
     assert inward.min() >= -1e-12
 
 
-def test_the_ramped_field_is_continuous_at_d_con():
+def test_the_default_field_is_continuous_at_d_con():
     for bearing in np.linspace(-3.0, 3.0, 25).tolist():
         d = np.array([np.cos(bearing), np.sin(bearing)])
-        inside = move_to_goal((EXTENDED.d_con - 1e-6) * d, 0.0, ORIGIN, 0.5, EXTENDED)
-        outside = move_to_goal((EXTENDED.d_con + 1e-6) * d, 0.0, ORIGIN, 0.5, EXTENDED)
+        inside, outside = (
+            move_to_goal((DEFAULT.d_con + e) * d, ORIGIN, 0.5, DEFAULT) for e in (-1e-6, 1e-6)
+        )
         assert abs(float(wrap_array(inside - outside))) < 1e-4
 
 
-def leg(beta, index=0):
-    """A task with `beta` at the origin."""
-    return Task(np.array([1.0, 0.0]), beta, False, index, False, False)
+def test_the_printed_field_turns_by_its_gain_within_d_con():
+    p = replace(PAPER, k_beta=-0.4, d_con=1.0)
+    for rho, gain in ((0.99, -0.4), (0.3, -0.4), (1.01, 0.0)):
+        point = -rho * np.array([np.cos(0.8), np.sin(0.8)])
+        phi = paper.move_to_goal(point, ORIGIN, 1.1, p)
+        assert phi == pytest.approx(0.8 + gain * (1.1 - 0.8))
 
 
-def test_the_side_is_kept_while_beta_passes_pi():
-    side = ArrivalSide(EXTENDED)
-    betas = (1.0, 3.0, -3.1, -2.0, -1.7)
-    assert [side.update(ORIGIN, leg(beta)) for beta in betas] == [0, 1, 1, 1, 0]
-    point = np.array([0.3, 0.01])
-    free = move_to_goal(point, 0.0, ORIGIN, 0.0, EXTENDED)
-    held = move_to_goal(point, 0.0, ORIGIN, 0.0, EXTENDED, side=1)
-    other = move_to_goal(point, 0.0, ORIGIN, 0.0, EXTENDED, side=-1)
-    assert free in (pytest.approx(float(held)), pytest.approx(float(other)))
-    assert held != pytest.approx(float(other))
+def test_the_arrival_is_ramped_in_and_clamped():
+    p = replace(DEFAULT, d_con=0.8, arrival_ramp=0.5, k_beta=-0.5, arrival_clamp=0.6)
+    for x, heading, expected in (
+        (-0.6, 0.8, -0.5 * 0.8 * 0.5),
+        (-0.4, 0.8, -0.5 * 0.8),
+        (-0.1, 0.8, -0.5 * 0.8),
+        (-0.1, 2.0, -0.6),
+        (-0.1, -2.0, 0.6),
+    ):
+        assert move_to_goal((x, 0.0), ORIGIN, heading, p) == pytest.approx(expected)
 
 
 def test_k_rho_falls_at_the_goal_only():
-    p = replace(EXTENDED, slow_fraction=0.2, slow_distance=0.4)
+    p = replace(DEFAULT, slow_fraction=0.2, slow_distance=0.4)
     gains = [arrival_gain(d, True, p) for d in (0.0, 0.1, 0.4, 2.0)]
     assert gains == pytest.approx([0.2, 0.4, 1.0, 1.0])
     assert arrival_gain(0.0, False, p) == 1.0
 
 
-@pytest.mark.parametrize("p", ALL)
-def test_the_vector_has_the_direction_phi_and_is_zero_at_the_destination(p):
-    places = np.random.default_rng(5).uniform(-1, 1, (50, 2))
-    phi = move_to_goal(places, 0.0, ORIGIN, 0.5, p)
-    u = muf(places, ORIGIN, phi)
-    assert u == pytest.approx(np.stack([np.cos(phi), np.sin(phi)], axis=1))
-    assert not muf(ORIGIN, ORIGIN, 0.5).any()
+def leg(beta):
+    """A task with `beta` at the origin."""
+    return Task(np.array([1.0, 0.0]), beta, False, 0, False, False)
 
 
-def test_the_printed_field_is_the_weighted_sum_of_both_angles():
-    p = replace(PAPER, arrival="hard", k_alpha=0.6, k_beta=-0.4, d_con=1.0)
-    point, heading, target_heading = (-0.3, -0.3), 0.2, 1.1  # the destination bears pi/4
-    alpha, beta = pi / 4 - heading, target_heading - pi / 4
-    phi = move_to_goal(point, heading, ORIGIN, target_heading, p)
-    assert phi == pytest.approx(heading + 0.6 * alpha - 0.4 * beta)
+def sides(betas, side=0):
+    result = []
+    for beta in betas:
+        side = arrival_side(ORIGIN, leg(beta), side, DEFAULT)
+        result.append(side)
+    return result
 
 
-def test_the_arrival_is_ramped_in_and_clamped():
-    p = replace(
-        EXTENDED, arrival="ramped", d_con=0.8, arrival_ramp=0.5, k_beta=-0.5, arrival_clamp=0.6
-    )
-    assert move_to_goal((-0.6, 0.0), 0.0, ORIGIN, 0.8, p) == pytest.approx(-0.5 * 0.8 * 0.5)
-    assert move_to_goal((-0.4, 0.0), 0.0, ORIGIN, 0.8, p) == pytest.approx(-0.5 * 0.8)
-    assert move_to_goal((-0.1, 0.0), 0.0, ORIGIN, 0.8, p) == pytest.approx(-0.5 * 0.8)
-    assert move_to_goal((-0.1, 0.0), 0.0, ORIGIN, 2.0, p) == pytest.approx(-0.6)
-    assert move_to_goal((-0.1, 0.0), 0.0, ORIGIN, -2.0, p) == pytest.approx(0.6)
+def test_the_side_is_kept_while_beta_passes_pi():
+    assert sides((1.0, 3.0, -3.1, -2.0, -1.7)) == [0, 1, 1, 1, 0]
+    assert sides((-1.0, -3.0, 3.1, 2.0, 1.7)) == [0, -1, -1, -1, 0]
+    assert sides((2.0, 2.2, 2.0)) == [0, 0, 0]  # not beyond the upper threshold
 
 
-def test_the_posture_field_turns_by_the_angle_to_the_point_beyond():
-    p = replace(POSTURE, posture_gain=2.0, posture_offset=0.3)
-    beyond = np.arctan2(0.3, 0.4)  # 0.4 m before the destination, 0.3 m to its left beyond
-    phi = move_to_goal((-0.4, 0.0), 0.0, ORIGIN, pi / 2, p)
-    assert phi == pytest.approx(-2.0 * beyond)
-
-
-def test_each_side_is_set_and_forgotten():
-    side = ArrivalSide(EXTENDED)
-    assert [side.update(ORIGIN, leg(beta)) for beta in (-3.0, 3.1)] == [-1, -1]
-    assert [side.update(ORIGIN, leg(beta, 1)) for beta in (2.0, 2.5)] == [0, 1]
-    there = np.array([3.0, 2.0])
-    moved = replace(leg(-3.0, 2), target=leg(-3.0).target + there)
-    assert side.update(there, moved) == -1
-
-
-@pytest.mark.parametrize("p", [PAPER, POSTURE])
-def test_arrivals_that_are_not_ramped_in_have_no_side(p):
-    side = ArrivalSide(p)
-    assert [side.update(ORIGIN, leg(beta)) for beta in (3.0, -3.1)] == [0, 0]
+def test_the_side_does_not_depend_on_the_frame(rotation):
+    a, shift = 0.8, np.array([3.0, 2.0])
+    for beta, side in ((3.0, 0), (-3.0, 0), (-2.0, 1), (1.0, 1)):
+        task = leg(beta)
+        moved = replace(task, target=rotation(a) @ task.target + shift, heading=beta + a)
+        there = arrival_side(shift, moved, side, DEFAULT)
+        assert there == arrival_side(ORIGIN, task, side, DEFAULT)
 
 
 def test_a_remembered_side_turns_a_whole_turn_the_other_way():
-    p = replace(EXTENDED, arrival_clamp=10.0, k_beta=-0.5, arrival_ramp=0.5, d_con=0.8)
+    p = replace(DEFAULT, arrival_clamp=10.0, k_beta=-0.5, arrival_ramp=0.5, d_con=0.8)
     point = (0.1, 0.0)  # beyond the destination, which bears pi
     for side, beta in ((1, 3.0), (-1, 3.0 - 2 * pi)):
-        phi = move_to_goal(point, 0.0, ORIGIN, wrap_array(np.array(pi + 3.0)), p, side=side)
+        phi = move_to_goal(point, ORIGIN, wrap_array(np.array(pi + 3.0)), p, side=side)
         assert wrap_array(phi - pi + 0.5 * beta) == pytest.approx(0.0, abs=1e-9)
+
+
+def test_a_remembered_side_decides_only_beyond_the_destination():
+    before, beyond = np.array([-0.3, 0.01]), np.array([0.3, 0.01])
+    for point, differs in ((before, False), (beyond, True)):
+        left, right = (move_to_goal(point, ORIGIN, 0.0, DEFAULT, side=s) for s in (1, -1))
+        assert (left != pytest.approx(float(right))) == differs

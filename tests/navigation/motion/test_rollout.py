@@ -1,4 +1,4 @@
-"""Compiled functions against formulas over whole arrays."""
+"""Compiled functions against formulas over whole arrays, and the limits of the body."""
 
 from math import inf, nan
 
@@ -12,7 +12,8 @@ from navigation.motion.hypotheses import DISC
 from navigation.parameters.motion import SafetyFilterParameters
 
 ENVELOPE = (0.2, 0.1, 0.08, 0.8, 1.5)
-GAIT = (0.34, 0.1, 0.4, 0.5, 0.096)
+FOOTSTEP, CHANGE, TURN_CHANGE = GAIT = (0.34, 0.1, 0.4)
+STANDING = np.zeros(3)
 
 
 def body_velocity(course, speed, heading, facing):
@@ -25,11 +26,16 @@ def body_velocity(course, speed, heading, facing):
 
 
 @pytest.fixture
-def scene():
-    """Candidates, present velocity."""
+def candidates():
     rng = np.random.default_rng(0)
-    candidates = np.concatenate([np.zeros((1, 2)), rng.uniform(-0.2, 0.2, (30, 2))])
-    return candidates, np.array([0.1, 0.02, 0.3])
+    return np.concatenate([np.zeros((1, 2)), rng.uniform(-0.2, 0.2, (30, 2))])
+
+
+def followed(candidates, heading=0.0, facing=nan, now=STANDING, steps=10):
+    return kernel.followed(
+        np.asarray(candidates, float), heading, 0.3, facing, np.asarray(now, float), ENVELOPE,
+        GAIT, steps,
+    )  # fmt: skip
 
 
 def test_body_velocities_obey_the_formula_over_arrays():
@@ -39,44 +45,142 @@ def test_body_velocities_obey_the_formula_over_arrays():
 
 
 @pytest.mark.parametrize("facing", [nan, 2.0])
-def test_footsteps_follow_one_another(scene, facing):
-    candidates, now = scene
-    footstep, change, turn_change, turn_first_angle, fast = GAIT
+def test_footsteps_follow_one_another(candidates, facing):
+    now = np.array([0.1, 0.02, 0.3])
     speed = np.hypot(*candidates.T)
     direction = np.where(speed < 1e-9, 0.3, np.arctan2(candidates[:, 1], candidates[:, 0]))
     to = direction if np.isnan(facing) else np.full(len(candidates), facing)
     heading, body = np.full(len(candidates), 2.8), np.tile(now, (len(candidates), 1))
-    velocity, duration = kernel.rollout(candidates, 2.8, 0.3, facing, now, ENVELOPE, GAIT, 4)
-    for step in range(4):
+    result = followed(candidates, 2.8, facing, now, 6)
+    assert result.shape == (len(candidates), 6, 3)
+    for step in range(6):
         delta = body_velocity(direction, speed, heading, to) - body
         size = np.hypot(delta[:, 0], delta[:, 1])
-        delta[:, :2] *= np.minimum(1.0, change / np.maximum(size, 1e-9))[:, None]
-        delta[:, 2] = np.clip(delta[:, 2], -turn_change, turn_change)
+        delta[:, :2] *= np.minimum(1.0, CHANGE / np.maximum(size, 1e-9))[:, None]
+        delta[:, 2] = np.clip(delta[:, 2], -TURN_CHANGE, TURN_CHANGE)
         body = body + delta
-        middle = heading + 0.5 * body[:, 2] * footstep
-        c, s = np.cos(middle), np.sin(middle)
-        moved = [c * body[:, 0] - s * body[:, 1], s * body[:, 0] + c * body[:, 1]]
-        assert velocity[step] == pytest.approx(np.stack(moved, axis=1))
-        heading = heading + body[:, 2] * footstep
-    wait = np.maximum(0.0, np.abs(wrap_array(direction - heading)) - turn_first_angle) / 0.8
-    assert duration[4] == pytest.approx(np.where(speed > fast, wait, 0.0))
-    assert velocity[5] == pytest.approx(candidates)
-    assert (duration[:4] == footstep).all()
-    assert (duration[5] == inf).all()
-    assert not velocity[4].any()
+        assert result[:, step] == pytest.approx(body)
+        heading = heading + body[:, 2] * FOOTSTEP
 
 
-def test_penalties_are_the_sum_over_the_discs():
+def test_every_footstep_is_within_the_limits_of_the_body(candidates):
+    rng = np.random.default_rng(4)
+    for facing in (nan, *rng.uniform(-3, 3, 5).tolist()):
+        body = followed(3.0 * candidates, float(rng.uniform(-3, 3)), facing, steps=12)
+        assert body[..., 0].max() <= 0.2 + 1e-12
+        assert body[..., 0].min() >= -0.1 - 1e-12
+        assert np.abs(body[..., 1]).max() <= 0.08 + 1e-12
+        assert np.abs(body[..., 2]).max() <= 0.8 + 1e-12
+        change = np.diff(body, axis=1, prepend=np.zeros((len(body), 1, 3)))
+        assert np.hypot(change[..., 0], change[..., 1]).max() <= CHANGE + 1e-12
+        assert np.abs(change[..., 2]).max() <= TURN_CHANGE + 1e-12
+
+
+def test_a_fixed_heading_walks_sideways_at_once_and_at_the_lateral_limit():
+    """Formerly the robot stood for the time of the turn, then walked at full speed."""
+    body = followed([[0.0, 0.2], [0.0, -0.2]], facing=0.0)
+    assert np.abs(body[:, :, 1]) == pytest.approx(0.08)
+    assert np.sign(body[:, 0, 1]).tolist() == [1.0, -1.0]
+    assert not body[..., 2].any()
+    velocity, _ = kernel.walked(body, 0.0, FOOTSTEP)
+    distance = FOOTSTEP * velocity.sum(axis=1)
+    assert distance[:, 1] == pytest.approx([0.08 * 3.4, -0.08 * 3.4])
+
+
+def test_a_candidate_behind_turns_at_once_and_is_walked_meanwhile():
+    body = followed([[-0.2, 0.01], [-0.2, -0.01]])
+    assert body[:, 0, 2] == pytest.approx([TURN_CHANGE, -TURN_CHANGE])
+    velocity, heading = kernel.walked(body, 0.0, FOOTSTEP)
+    assert np.all(velocity[:, 0, 0] < -0.05)
+    assert np.abs(heading[:, -1]).min() > 1.5
+
+
+def test_a_path_of_constant_turn_is_a_circle():
+    body = np.broadcast_to([0.2, 0.0, 0.5], (1, 40, 3)).copy()
+    velocity, heading = kernel.walked(body, 0.0, FOOTSTEP)
+    position = FOOTSTEP * np.cumsum(velocity[0], axis=0)
+    assert np.hypot(*(position - [0.0, 0.4]).T) == pytest.approx(0.4, abs=0.002)
+    assert heading[0, -1] == pytest.approx(40 * FOOTSTEP * 0.5)
+
+
+def discs(places, velocities=None, radius=0.2, horizon=6.0):
+    places = np.atleast_2d(np.asarray(places, float))
+    result = np.zeros(len(places), DISC)
+    result["position"], result["radius"] = places, radius
+    result["velocity"] = 0.0 if velocities is None else velocities
+    result["horizon"], result["weight"] = horizon, 1.0
+    return result
+
+
+def contacts(velocity, hypotheses, position=(0.0, 0.0)):
+    velocity = np.atleast_3d(np.asarray(velocity, float))
+    return kernel.contact_times(velocity, FOOTSTEP, np.array(position), hypotheses)
+
+
+def test_contact_times_and_gaps_equal_brute_force():
+    """Paths of 20 footsteps against time stepping."""
+    rng = np.random.default_rng(0)
+    n, m, steps, dt = 40, 40, 20, 0.34 / 68
+    velocity = rng.normal(0, 0.2, (n, steps, 2))
+    velocity = np.repeat(velocity[:, ::4], 4, axis=1)  # straight pieces, which go somewhere
+    d = discs(rng.uniform(-1.5, 1.5, (m, 2)), rng.normal(0, 0.15, (m, 2)))
+    first, gap, _ = contacts(velocity, d)
+    fine = np.repeat(velocity, 68, axis=1)
+    path = np.concatenate([np.zeros((n, 1, 2)), dt * np.cumsum(fine, axis=1)], axis=1)
+    time = dt * np.arange(path.shape[1])
+    outside = np.hypot(*d["position"].T) > 0.2
+    assert outside.sum() > 20
+    compared = 0
+    for j in np.flatnonzero(outside).tolist():
+        centre = d["position"][j] + time[:, None] * d["velocity"][j]
+        distance = np.hypot(*np.moveaxis(path - centre, -1, 0))
+        inside = distance < 0.2
+        touched = np.where(inside.any(axis=1), time[inside.argmax(axis=1)], inf)
+        clear = np.abs(distance.min(axis=1) - 0.2) > 0.003  # neither grazes nor just misses
+        assert np.array_equal(np.isfinite(first[clear, j]), np.isfinite(touched[clear]))
+        hit = np.isfinite(first[:, j]) & clear
+        assert first[hit, j] == pytest.approx(touched[hit], abs=0.02)
+        assert gap[hit, j] == pytest.approx(0.0, abs=1e-9)
+        free = np.isinf(first[:, j]) & np.isinf(touched)
+        assert gap[free, j] == pytest.approx(distance[free].min(axis=1) - 0.2, abs=0.003)
+        compared += hit.sum()
+    assert compared > 100
+
+
+def test_inside_leaving_is_free_and_closing_is_now():
+    both = np.array([[[1.0, 0.0]], [[-1.0, 0.0]]])
+    first, gap, closing = contacts(both, discs([-0.1, 0.0]))
+    assert first[:, 0].tolist() == [inf, 0.0]
+    assert closing[:, 0] == pytest.approx([0.0, 1.0])
+    assert gap[0, 0] == pytest.approx(-0.1)
+
+
+def test_losses_are_the_sum_over_the_discs():
+    p = SafetyFilterParameters(close_loss=3.0)
     rng = np.random.default_rng(3)
-    time, closing = rng.uniform(0, 8, (20, 12)), rng.uniform(0, 0.2, (20, 12))
-    time[rng.random((20, 12)) < 0.3] = inf
+    first, closing = rng.uniform(0, 8, (20, 12)), rng.uniform(0, 0.2, (20, 12))
+    first[rng.random((20, 12)) < 0.3] = inf
+    gap = rng.uniform(0.0, 0.1, (20, 12))
     depth, horizon, weight = rng.uniform(-1, 0.5, 12), rng.uniform(1, 6, 12), rng.uniform(0, 1, 12)
-    each = np.maximum(0.0, 1.0 - time / horizon) * np.where(time < 1.5, 20.0, 6.0)
-    within = (depth > 0.0) & (time < horizon)
-    each += within * (10.0 + 40.0 * depth + 100.0 * closing)
-    discs = np.zeros(12, DISC)
-    discs["radius"], discs["horizon"], discs["weight"] = 0.2, horizon, weight
-    discs["position"][:, 0] = 0.2 * (1.0 - depth)
-    p = record(SafetyFilterParameters())
-    result = kernel.penalties(time, closing, np.zeros(2), discs, p)
+    collides = first < horizon
+    each = np.where(first < p.urgent_time, p.urgent_loss, p.collision_loss)
+    each = np.where(collides, (1.0 - np.minimum(first, horizon) / horizon) * each, 0.0)
+    inside = p.inside_loss + p.depth_loss * depth + p.closing_loss * closing / 0.2
+    each += collides * (depth > 0.0) * inside
+    close = ~collides & (gap < p.comfort)
+    each += close * p.close_loss * (1.0 - gap / p.comfort)
+    d = discs(np.zeros((12, 2)))
+    d["horizon"], d["weight"] = horizon, weight
+    d["position"][:, 0] = 0.2 * (1.0 - depth)
+    result = kernel.losses((first, gap, closing), np.zeros(2), d, 0.2, record(p))
     assert result == pytest.approx(each @ weight)
+
+
+def test_an_earlier_collision_loses_more():
+    p = record(SafetyFilterParameters())
+    times = np.linspace(0.0, 3.4, 35)[:, None]
+    zeros = np.zeros_like(times)
+    d = discs([9.0, 0.0], horizon=3.5)
+    loss = kernel.losses((times, zeros, zeros), np.zeros(2), d, 0.2, p)
+    assert np.all(np.diff(loss) < 0.0)
+    assert loss[-1] > 0.0
