@@ -89,7 +89,7 @@ class Tracks(Sequence[Track]):
         speed: its norm (n,) [m/s].
         radius: (n,) [m].
         sigma: square root of the largest eigenvalue of the position covariance (n,) [m].
-        static, moving: classification by the tracker (n,); neither means undecided.
+        static: whether the tracker has classified each as static (n,).
         lost: tracks with particles (n,).
         age: time since the latest detection (n,) [s].
     """
@@ -103,7 +103,6 @@ class Tracks(Sequence[Track]):
         self.radius: Array = rows["radius"]
         self.sigma: Array = rows["sigma"]
         self.static: Mask = rows["motion"] == STATIC
-        self.moving: Mask = rows["motion"] == MOVING
         self.lost: Mask = rows["cloud"] >= 0
         self.age: Array = rows["age"]
         self._tracks: list[Track] | None = None
@@ -159,22 +158,6 @@ class Tracks(Sequence[Track]):
         rows = self.rows.copy()
         rows["position"] += time * rows["velocity"]
         return Tracks(rows, self.clouds, self.labels)
-
-    def possible_positions(self) -> tuple[Ints, Array, Array]:
-        """Return where tracks may be: at their positions, or at the particles of lost ones.
-
-        Returns:
-            Index of the track (m,), position in W (m, 2) [m] and weight (m,), which sums to one
-            for each track.
-        """
-        clouds = self.clouds[self.rows["cloud"][self.lost]]
-        known, lost = np.flatnonzero(~self.lost), np.flatnonzero(self.lost)
-        owner = np.concatenate([known, np.repeat(lost, clouds.shape[2])])
-        particles = clouds[:, :VX].transpose(0, 2, 1).reshape(-1, 2)
-        positions = np.concatenate([self.position[known], particles])
-        weights = np.concatenate([np.ones(len(known)), clouds[:, WEIGHT].ravel()])
-        order = np.argsort(owner, kind="stable")
-        return owner[order], positions[order], weights[order]
 
     def _views(self) -> list[Track]:
         """Return the tracks one by one, made at the first call."""

@@ -85,7 +85,7 @@ class PlanningScene:
     def radii(self, margin: float) -> Array:
         """Return collision distances with position uncertainty and a margin (n,) [m]."""
         o = self.obstacles
-        sigma = np.minimum(self.parameters.univector.max_sigma, o.sigma)
+        sigma = np.minimum(self.parameters.planner.max_sigma, o.sigma)
         return self.touching + np.where(o.static, 0.0, sigma) + margin
 
     def yielding(self, gap: Array) -> Array:

@@ -49,8 +49,6 @@ class UnivectorParameters:
     inside: Annotated[float, "m"] = 0.02
     # time unseen after which only the safety filter avoids a mover
     memory: Annotated[float, "s"] = 4.0
-    # maximum position uncertainty added to the radius of a mover
-    max_sigma: Annotated[float, "m"] = 0.06
 
 
 @dataclass(frozen=True)

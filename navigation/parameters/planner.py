@@ -106,6 +106,9 @@ class PlannerParameters:
     method: Annotated[
         Method, doc("Planner: the default one, the method of the paper, or a baseline.")
     ] = "univector"
+
+    # maximum position uncertainty that a baseline adds to the radius of a mover
+    max_sigma: Annotated[float, "m"] = 0.06
     paper: PaperParameters = field(default_factory=PaperParameters)
     n_posture: NPostureParameters = field(default_factory=NPostureParameters)
     apf: ApfParameters = field(default_factory=ApfParameters)

@@ -95,7 +95,7 @@ def test_published_radii_contain_robot_obstacle_margin_and_uncertainty(
     tracks = [track((0.9, 0.9), id=1), track((0.9, -0.9), (0.05, 0.0), id=2, sigma=0.5)]
     radii = dict(plan(method, belief(tracks), task()).extended_radii)
     assert radii[1] == pytest.approx(0.12 + 0.08 + margin)
-    most = parameters(method).univector.max_sigma
+    most = parameters(method).planner.max_sigma
     assert radii[2] == pytest.approx(0.12 + 0.08 + margin + most)
 
 

@@ -63,7 +63,6 @@ def test_tracks_as_an_array_are_the_same_one_by_one(track):
     assert equal(array[1:][1], plain[2])
     assert array.speed == pytest.approx([0.5, 0.1, 0.0])
     assert array.sigma == pytest.approx([0.02, 0.01, 0.01])
-    assert array.moving.tolist() == [True, True, False]
     assert not array.static.any()
     assert array.lost.tolist() == [False, True, False]
 
@@ -89,15 +88,6 @@ def test_selection_keeps_rows_together(track):
     assert part.ids.tolist() == [1, 3]
     assert part.position[:, 1] == pytest.approx([2, 6])
     assert part.speed == pytest.approx([0.1, 0.3])
-
-
-def test_possible_positions_are_those_of_tracks_and_the_particles_of_lost_ones(track):
-    cloud = ([[1.0, 0.0], [2.0, 0.0], [3.0, 0.0]], np.zeros((3, 2)), [0.5, 0.3, 0.2])
-    tracks = [track((0.0, 1.0)), track((9.0, 9.0), particles=cloud), track((0.0, 2.0))]
-    owner, positions, weights = Tracks.of(tracks).possible_positions()
-    assert owner.tolist() == [0, 1, 1, 1, 2]
-    assert positions.tolist() == [[0, 1], [1, 0], [2, 0], [3, 0], [0, 2]]
-    assert np.bincount(owner, weights).tolist() == pytest.approx([1.0, 1.0, 1.0])
 
 
 P = TrackingParameters()

@@ -28,9 +28,9 @@ def test_radii_contain_both_bodies_the_margin_and_the_uncertainty_of_movers(plan
         track((1, 1), (0.1, 0.0), sigma=0.03),
         track((1, 1), (0.1, 0.0), sigma=0.5),
     ])  # fmt: skip
-    p = s.parameters.univector
-    assert s.touching == pytest.approx(p.s_robot + 0.08)
-    assert s.radii(0.02) - s.touching == pytest.approx([0.02, 0.05, 0.02 + p.max_sigma])
+    most = s.parameters.planner.max_sigma
+    assert s.touching == pytest.approx(s.parameters.univector.s_robot + 0.08)
+    assert s.radii(0.02) - s.touching == pytest.approx([0.02, 0.05, 0.02 + most])
 
 
 def test_repulsion_yields_to_a_destination_nearer_than_the_obstacle(planning, task):
