@@ -1,19 +1,15 @@
 """The decorator of compiled functions and their cache."""
 
-import hashlib
 import pickle
-import sys
 from collections.abc import Callable
+from functools import cached_property
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, ParamSpec, TypeVar, cast
 
 from numba.core import config
-from numba.core.caching import NullCache
+from numba.core.caching import FunctionCache, NullCache
 from numba.core.compiler import CompileResult
-from numba.core.serialize import dumps
-from numba.core.sigutils import normalize_signature
 
-from compilation import store
 from compilation.function import OPTIONS, CompiledFunction
 from compilation.sources import stamp
 
@@ -40,49 +36,65 @@ def compiled(function: Callable[P, R]) -> "Dispatcher[P, R]":
         return cast("Dispatcher[P, R]", function)
     dispatcher = CompiledFunction(function, targetoptions=OPTIONS)
     if Path(function.__code__.co_filename).is_file():
-        dispatcher._cache = CodeCache(function)
+        dispatcher._cache = LazyCache(function)
     return cast("Dispatcher[P, R]", dispatcher)
 
 
-class CodeCache(NullCache):
-    """Machine code of one function on disk, a file for each combination of argument types.
-
-    A file that is stale or damaged counts as missing: the function is compiled and its file
-    replaced.
+class LazyCache(NullCache):
+    """Cache of a function that is opened at its first call, when all its imports are complete.
 
     Args:
         function: function that Numba compiles.
     """
 
     def __init__(self, function: Callable[..., Any]) -> None:
-        self._file = Path(function.__code__.co_filename)
-        self._name = f"{self._file.stem}.{function.__qualname__}"
-        self._stamp = stamp(self._file)
+        self._function = function
+
+    @cached_property
+    def _cache(self) -> NullCache:
+        try:
+            return CodeCache(self._function)
+        except RuntimeError:  # no folder can be written
+            return NullCache()
 
     @property
-    def cache_path(self) -> str:
-        """Preferred folder of the files."""
-        return str(next(store.folders(self._file)))
+    def cache_path(self) -> str | None:
+        """Folder of the files; None if no folder can be written."""
+        return self._cache.cache_path
 
     def load_overload(self, sig: Any, target_context: Any) -> CompileResult | None:
         """Return the code for the argument types; None if it must be compiled."""
-        target_context.refresh()
-        name = self._file_name(sig, target_context.codegen())
-        payload = store.load(self._file, name, self._stamp)
-        if payload is None:
-            return None
-        return CompileResult._rebuild(target_context, *pickle.loads(payload))
+        return self._cache.load_overload(sig, target_context)
 
     def save_overload(self, sig: Any, data: CompileResult) -> None:
-        """Keep the code for the argument types, where a folder can be written."""
-        if data.library.has_dynamic_globals:  # addresses of this process
-            return
-        name = self._file_name(sig, data.library.codegen)
-        store.save(self._file, name, self._stamp, dumps(data._reduce()))
+        """Keep the code for the argument types."""
+        self._cache.save_overload(sig, data)
 
-    def _file_name(self, sig: Any, codegen: Any) -> str:
-        """Return the name of the file for argument types, processor and options of Numba."""
-        types, _ = normalize_signature(sig)
-        key = repr((types, codegen.magic_tuple(), config.BOUNDSCHECK, config.OPT))
-        digest = hashlib.sha256(key.encode()).hexdigest()[:16]
-        return f"{self._name}-{sys.implementation.cache_tag}-{digest}{store.SUFFIX}"
+
+class CodeCache(FunctionCache):
+    """Numba's cache, with a stamp of all sources and with the check of indices in the key.
+
+    Numba chooses the folder: `NUMBA_CACHE_DIR`, else `__pycache__` next to the source, else one of
+    the user.
+
+    Args:
+        function: function that Numba compiles.
+
+    Raises:
+        RuntimeError: no folder can be written.
+    """
+
+    def __init__(self, function: Callable[..., Any]) -> None:
+        super().__init__(function)
+        self._cache_file._source_stamp = stamp(function.__module__)
+
+    def load_overload(self, sig: Any, target_context: Any) -> CompileResult | None:
+        """Return the code for the argument types; None if it must be compiled."""
+        try:
+            return super().load_overload(sig, target_context)
+        except (EOFError, pickle.UnpicklingError):  # cut files, from a full disk or a power failure
+            self.flush()
+            return None
+
+    def _index_key(self, sig: Any, codegen: Any) -> tuple[Any, ...]:
+        return (*super()._index_key(sig, codegen), config.BOUNDSCHECK)

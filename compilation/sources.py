@@ -1,69 +1,81 @@
-"""Source files that a compiled function depends on.
+"""Sources of the code of a compiled function.
 
 Numba compiles the functions that a function calls, and the constants that it uses, into its code.
-Both come from the file of the function or from a project file that it imports, directly or not.
+They come from its own module, from modules that this one imports, directly or not, or are constants
+that one of these modules imports by name.
 """
 
 import hashlib
-import re
+import sys
 from functools import cache
 from pathlib import Path
+from types import ModuleType
 
 import numba
+import numpy as np
 
-ROOT = Path(__file__).resolve().parents[1]
-PACKAGES = ("compilation", "hsr8", "navigation", "vision", "walking")
-_NAMES = "|".join(PACKAGES)
-_IMPORT = re.compile(
-    rf"^[ \t]*(?:from[ \t]+((?:{_NAMES})\b[\w.]*)[ \t]+import[ \t]+(?:\(([^)]*)\)|(.*))"
-    r"|import[ \t]+(.*))",
-    re.MULTILINE,
-)
+OWN = "compilation.decorator"
 
 
 @cache
-def stamp(file: Path) -> bytes:
-    """Return a digest of a file, of the project files that it imports and of Numba's version.
+def stamp(module: str) -> bytes:
+    """Return a digest of the sources of the compiled functions of a module, and of Numba's version.
 
     Args:
-        file: source file of a compiled function.
+        module: name of an imported module.
 
     Returns:
         Digest of 32 bytes, equal on all machines.
     """
-    digests = sorted(_read(source)[0] for source in closure(file))
+    digests = sorted(_digest(name) for name in closure(module) | closure(OWN))
     return hashlib.sha256(b"".join([numba.__version__.encode(), *digests])).digest()
 
 
-def closure(file: Path) -> set[Path]:
-    """Return a file and the project files that it imports, directly or not."""
-    reached, waiting = {file}, [file]
+def closure(module: str) -> set[str]:
+    """Return the names of a module and of the modules that it imports, directly or not."""
+    reached, waiting = {module}, [module]
     while waiting:
-        new = _read(waiting.pop())[1] - reached
+        new = _imports(waiting.pop()) - reached
         reached |= new
         waiting += new
     return reached
 
 
 @cache
-def _read(file: Path) -> tuple[bytes, frozenset[Path]]:
-    """Return the digest of a file and the project files that it names in its imports."""
-    source = file.read_bytes()
-    modules: set[str] = set()
-    for package, in_brackets, on_line, plain in _IMPORT.findall(source.decode()):
-        if plain:
-            modules |= {name.split()[0] for name in plain.split(",") if name.strip()}
-        else:  # a name may be that of a module
-            names = re.findall(r"(\w+)[^,\n]*", in_brackets or on_line)
-            modules |= {package, *(f"{package}.{name}" for name in names)}
-    imported = {path for module in modules for path in _files(module)}
-    return hashlib.sha256(source).digest(), frozenset(imported)
+def _imports(module: str) -> set[str]:
+    """Return the modules of the functions, classes and modules that a module refers to.
+
+    Other packages contribute compiled functions only.
+    """
+    here, package = sys.modules[module], module.partition(".")[0]
+    names = set()
+    for value in vars(here).values():
+        if isinstance(value, ModuleType):
+            # A package refers to all of its modules that any program has imported.
+            name = "" if hasattr(here, "__path__") else value.__name__
+        else:
+            name = str(getattr(value, "__module__", None))
+        is_compiled = hasattr(value, "py_func") and not isinstance(value, type)
+        if name in sys.modules and (is_compiled or name.partition(".")[0] == package):
+            names.add(name)
+    return names
 
 
-def _files(module: str) -> list[Path]:
-    """Return the file of a project module; empty for another name."""
-    if module.partition(".")[0] not in PACKAGES:
-        return []
-    path = ROOT.joinpath(*module.split("."))
-    candidates = path.with_name(f"{path.name}.py"), path / "__init__.py"
-    return [candidate for candidate in candidates if candidate.is_file()]
+@cache
+def _digest(module: str) -> bytes:
+    """Return a digest of the file of a module and of its constants."""
+    here = sys.modules[module]
+    digest = hashlib.sha256(Path(str(here.__file__)).read_bytes())
+    for name, value in sorted(vars(here).items()):
+        if _is_constant(value) and not name.startswith("__"):
+            digest.update(f"{name} {value!r}".encode())
+        elif isinstance(value, np.ndarray):
+            digest.update(name.encode() + value.tobytes())
+    return digest.digest()
+
+
+def _is_constant(value: object) -> bool:
+    """Whether a value can be a constant in compiled code, and `repr` states all of it."""
+    if isinstance(value, tuple):
+        return all(map(_is_constant, value))
+    return isinstance(value, bool | int | float | str | np.generic | np.dtype)

@@ -6,7 +6,7 @@ from typing import Self
 
 from numba.core import event
 
-from compilation.sources import PACKAGES
+from compilation.function import CompiledFunction
 
 COMPILE = "numba:compile"  # event of a function whose code is not on disk
 
@@ -42,12 +42,11 @@ class CompilationWatch(event.Listener):
         if self._depth > 1:
             return
         self._started = perf_counter()
-        module = event.data["dispatcher"].py_func.__module__ or ""  # None in no module
-        package = module.partition(".")[0]
-        if package in PACKAGES:
+        function = event.data["dispatcher"]
+        if isinstance(function, CompiledFunction):
             self.count += 1
             if self._before is not None:
-                self._before(package)
+                self._before(function.__module__.partition(".")[0])
 
     def on_end(self, event: event.Event) -> None:
         """End a compilation."""

@@ -9,7 +9,6 @@ from dataclasses import asdict, dataclass
 from pathlib import Path
 from time import perf_counter
 
-from compilation import store
 from hsr8.cli.options import Doctor
 from hsr8.errors import Hsr8Error
 from hsr8.files import atomic
@@ -44,7 +43,6 @@ def main(options: Doctor) -> int:
     """Report the findings; 0 where a full run can be made, else 2."""
     findings = [
         *examine(),
-        *damaged_code(),
         *([_compiled_code(options)] if options.compile else []),
     ]
     if options.json:
@@ -115,14 +113,6 @@ def _requested_opengl(backend: str) -> list[Finding]:
     if renderer is None:
         return [Finding(name, "missing", "is set, but does not draw here: unset MUJOCO_GL")]
     return [Finding(name, "ok", f"is set and draws: {renderer}")]
-
-
-def damaged_code() -> list[Finding]:
-    """Return a finding where files of compiled code are damaged."""
-    if not (files := store.damaged()):
-        return []
-    text = f"{len(files)} damaged, {files[0]}: the next use compiles again and replaces them"
-    return [Finding("compiled code", "note", text)]
 
 
 def _compiled_code(options: Doctor) -> Finding:

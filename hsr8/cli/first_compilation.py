@@ -12,7 +12,6 @@ from contextlib import contextmanager
 
 import numpy as np
 
-from compilation import store
 from hsr8.compilation_watch import CompilationWatch
 from hsr8.errors import RenderingUnavailable
 from hsr8.gl import require_gl
@@ -20,6 +19,7 @@ from hsr8.loop import Simulation
 from hsr8.parent_watch import with_parent_watch
 from hsr8.plugin_walker import RobotInfo
 from hsr8.scenario.loader import load_scenario
+from navigation.angles import wrap
 from walking.command import VelocityCommand
 from walking.observer import BodyEstimate
 from walking.state import BodySensors
@@ -42,7 +42,7 @@ def two_processes(source: str, *, quiet: bool) -> Iterator[CompilationWatch]:
         quiet: print nothing.
     """
     processes: list[subprocess.Popen[bytes]] = []
-    kept, announced = store.can_keep(), quiet
+    kept, announced = can_keep(), quiet
 
     def before(package: str) -> None:
         nonlocal announced
@@ -65,6 +65,11 @@ def two_processes(source: str, *, quiet: bool) -> Iterator[CompilationWatch]:
         for process in processes:
             process.terminate()
             process.wait()
+
+
+def can_keep() -> bool:
+    """Return whether compiled code can be kept."""
+    return wrap.stats.cache_path is not None
 
 
 def compile_all(*, quiet: bool) -> int:

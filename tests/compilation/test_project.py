@@ -2,51 +2,47 @@
 
 import ast
 import importlib
+from pathlib import Path
 
 import pytest
 
+import compilation
 from compilation.function import OPTIONS
-from compilation.sources import PACKAGES, ROOT, closure
+from compilation.sources import closure
 
-FILES = sorted(path for package in PACKAGES for path in (ROOT / package).rglob("*.py"))
+ROOT = Path(compilation.__file__).parents[1]
+LIBRARIES = ("hsr8", "navigation", "vision", "walking")
+FILES = sorted(path for library in LIBRARIES for path in (ROOT / library).rglob("*.py"))
 COMPILED = [path for path in FILES if "\n@compiled\n" in path.read_text(encoding="utf-8")]
-PARTS = [path.relative_to(ROOT).with_suffix("").parts for path in COMPILED]
+MODULES = [".".join(path.relative_to(ROOT).with_suffix("").parts) for path in COMPILED]
 
 
-def imported_files(path):
-    """Return the project files that a file imports, from its syntax tree."""
-    modules = set()
-    for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
-        if isinstance(node, ast.Import):
-            modules |= {alias.name for alias in node.names}
-        elif isinstance(node, ast.ImportFrom):
-            assert node.level == 0, "relative imports are not followed"
-            modules |= {node.module, *(f"{node.module}.{alias.name}" for alias in node.names)}
-    files = {ROOT.joinpath(*name.split(".")) for name in modules if name.split(".")[0] in PACKAGES}
-    return {
-        file
-        for stem in files
-        for file in (stem.with_name(f"{stem.name}.py"), stem / "__init__.py")
-        if file.is_file()
-    }
+def sources(module):
+    """Return the project modules from which a module imports functions, classes or modules."""
+    here = importlib.import_module(module)
+    for node in ast.parse(Path(here.__file__).read_text(encoding="utf-8")).body:
+        if isinstance(node, ast.ImportFrom) and node.module.partition(".")[0] in LIBRARIES:
+            for alias in node.names:
+                value = getattr(here, alias.asname or alias.name)
+                own = node.module.partition(".")[0] == module.partition(".")[0]
+                if hasattr(value, "py_func") or (own and type(value) is type):
+                    yield value.__module__
 
 
-def test_every_imported_project_file_is_a_source_of_the_importing_file():
-    for path in FILES:
-        assert imported_files(path) <= closure(path), path
+@pytest.mark.parametrize("module", MODULES)
+def test_the_modules_of_imported_functions_and_classes_are_sources(module):
+    assert set(sources(module)) <= closure(module)
 
 
-@pytest.mark.parametrize("parts", PARTS, ids="/".join)
-def test_compiled_functions_are_kept_and_give_the_same_bits_every_time(parts):
+@pytest.mark.parametrize("module", MODULES)
+def test_compiled_functions_are_kept_and_give_the_same_bits_every_time(module):
     """Kept on disk; no `fastmath`, no `parallel`."""
-    module = importlib.import_module(".".join(parts))
-    kept = 0
-    for value in vars(module).values():
-        if hasattr(value, "py_func") and value.__module__ == module.__name__:
-            assert type(value._cache).__name__ == "CodeCache"
-            assert value.targetoptions == OPTIONS
-            kept += 1
-    assert kept
+    here = importlib.import_module(module)
+    functions = [value for value in vars(here).values() if hasattr(value, "py_func")]
+    own = [function for function in functions if function.__module__ == module]
+    assert own
+    assert all(function.stats.cache_path for function in own)
+    assert all(function.targetoptions == OPTIONS for function in own)
 
 
 def test_all_compiled_functions_use_the_decorator_of_the_project():

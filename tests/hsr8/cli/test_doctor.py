@@ -1,6 +1,5 @@
 import json
 import re
-from pathlib import Path
 
 import pytest
 
@@ -84,11 +83,3 @@ def test_the_speed_of_a_run_is_expected_from_a_physics_step(monkeypatch, capsys)
     step, expected = map(float, re.findall(r"([\d.]+) (?:us|times)", findings["speed"]["text"]))
     assert 2.0 < step < 2000.0
     assert expected == pytest.approx(yardstick.COURSE / step, rel=0.1)
-
-
-def test_damaged_compiled_code_is_noticed(monkeypatch):
-    assert doctor.damaged_code() == []
-    monkeypatch.setattr(doctor.store, "damaged", lambda: [Path("a.compiled"), Path("b.compiled")])
-    (finding,) = doctor.damaged_code()
-    assert finding.state == "note"
-    assert "2 damaged, a.compiled" in finding.text

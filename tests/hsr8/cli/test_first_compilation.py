@@ -1,22 +1,27 @@
-from types import SimpleNamespace
-
 import numpy as np
 import pytest
 from numba import njit
 
 import hsr8
-from compilation import store
+from compilation import compiled
 from hsr8.cli import first_compilation
 from hsr8.cli.first_compilation import NOT_KEPT, TEXT, compile_all, two_processes
 from hsr8.cli.main import entry
 from hsr8.compilation_watch import CompilationWatch
 from hsr8.gl import BACKENDS
 
+SOURCE = "def doubled(x): return x + x"
 
-def compile_in(watch, package):
-    function = SimpleNamespace(__module__=f"{package}.module")
-    watch.on_start(SimpleNamespace(data={"dispatcher": SimpleNamespace(py_func=function)}))
-    watch.on_end(None)
+
+def trial(module):
+    """Return a compiled function of a module that has no file."""
+    names = {"__name__": module}
+    exec(SOURCE, names)
+    return compiled(names["doubled"])
+
+
+def compile_in(package):
+    trial(f"{package}.trial")(1.0)
 
 
 @pytest.fixture
@@ -29,26 +34,26 @@ def helper(tmp_path, monkeypatch):
 
 
 def test_the_second_process_is_awaited_before_the_first_look(helper, capsys):
-    with two_processes("rendered", quiet=False) as watch:
+    with two_processes("rendered", quiet=False):
         for _ in range(2):
-            compile_in(watch, "walking")
-        compile_in(watch, "vision")
+            compile_in("walking")
+        compile_in("vision")
         assert helper.read_text() == "rendered\n"
     assert capsys.readouterr().err == f"{TEXT}\n"
 
 
 def test_a_change_of_vision_alone_needs_no_second_process(helper, capsys):
-    with two_processes("rendered", quiet=True) as watch:
-        compile_in(watch, "vision")
+    with two_processes("rendered", quiet=True):
+        compile_in("vision")
     assert not helper.exists()
     assert capsys.readouterr().err == ""
 
 
 def test_code_that_cannot_be_kept_is_announced_with_the_remedy(helper, monkeypatch, capsys):
-    monkeypatch.setattr(store, "can_keep", lambda: False)
-    with two_processes("rendered", quiet=False) as watch:
-        compile_in(watch, "walking")
-        compile_in(watch, "vision")
+    monkeypatch.setattr(first_compilation, "can_keep", lambda: False)
+    with two_processes("rendered", quiet=False):
+        compile_in("walking")
+        compile_in("vision")
     assert not helper.exists()
     assert capsys.readouterr().err == f"{NOT_KEPT}\n"
 
@@ -71,37 +76,23 @@ def test_doctor_compiles_on_request(monkeypatch, capsys, compiled, text):
     assert text in capsys.readouterr().out
 
 
-def nested(monkeypatch, module):
-    @njit
-    def inner(x):
-        return x + 1.0
-
-    @njit
-    def outer(x):
-        return inner(x)
-
-    for function in (inner, outer):
-        monkeypatch.setattr(function.py_func, "__module__", module)
-    return outer
-
-
-def test_the_watch_sees_a_compilation_and_not_a_call(monkeypatch):
-    outer = nested(monkeypatch, "vision.trial")
+def test_the_watch_sees_a_compilation_and_not_a_call():
+    function = trial("vision.trial")
     with CompilationWatch() as watch:
-        outer(1.0)
+        function(1.0)
         assert watch.count == 1
         seconds = watch.seconds
-        outer(2.0)
+        function(2.0)
     assert 0.0 < watch.seconds == seconds
-    outer(np.float32(1.0))
+    function(np.float32(1.0))
     assert watch.count == 1
 
 
-def test_compilations_of_hsr8_are_announced_by_package(monkeypatch):
+def test_compilations_of_hsr8_are_announced_by_package():
     packages = []
     with CompilationWatch(packages.append) as watch:
-        nested(monkeypatch, "walking.trial")(1.0)
-        nested(monkeypatch, "somewhere.else")(1.0)
-        nested(monkeypatch, "vision.trial")(1)
+        trial("walking.trial")(1.0)
+        njit(lambda x: x)(1.0)
+        trial("vision.trial")(1)
     assert packages == ["walking", "vision"]
     assert watch.count == 2

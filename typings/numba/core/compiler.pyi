@@ -1,13 +1,10 @@
 from collections.abc import Callable
-from typing import Any, Self
+from typing import Any
 
 class CompileResult:
     fndesc: Any
     library: Any
     signature: Any
-    def _reduce(self) -> tuple[Any, ...]: ...
-    @classmethod
-    def _rebuild(cls, target_context: Any, *states: Any) -> Self: ...
 
 class Flags:
     no_compile: bool
