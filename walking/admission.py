@@ -2,7 +2,7 @@
 
 Bisection between the last plan, which stays feasible, and the wanted one; landing, later strides
 and timing change together (Lee & Kim, J. Electr. Eng. Technol. 9(1), 2014). After a disturbance the
-last plan may be infeasible, too; then the generator approximates the wanted one.
+last plan may be infeasible, too; then the ZMP functions approximate the wanted one.
 
 A walk that ends takes the shortest footstep after which the next one can close the stance: any
 other compromise takes the body farther and costs more footsteps.
@@ -14,17 +14,25 @@ from compilation import compiled
 from compilation.record import record_type
 from walking.footsteps import foothold, landing_of, towards, towards_strides
 from walking.gait import aimed, retime, support_foot, update_phase
-from walking.patterns import is_feasible, remains_feasible
+from walking.mwpg import ZMP_FUNCTIONS, admits_target, reaches_target
 from walking.pendulum import plan_pendulum
 from walking.records import Record
-from walking.reference import BEST, LIVE, TRIAL, WANTED, copy_plan, plan_walk
+from walking.reference import BEST, LIVE, TRIAL, WANTED, copy_plan, plan_walk, reference_of
 from walking.steering import moves
 from walking.support import Region
 from walking.timing import CLOCK, TIMING
 
-ADMISSION = record_type(stepping=bool, completed=int, clock=CLOCK, fraction=float, between=TIMING)
+ADMISSION = record_type(
+    stepping=bool,
+    completed=int,
+    clock=CLOCK,
+    fraction=float,
+    between=TIMING,
+    functions=ZMP_FUNCTIONS,
+)
 """Admission, see `walking.admission`: whether the gait was stepping, completed footsteps and clock
-in the last tick; admitted fraction of the wanted change [1]; timing of a plan that is tried."""
+in the last tick; admitted fraction of the wanted change [1]; timing and ZMP functions of a plan
+that is tried."""
 
 BISECTIONS = 4  # at most 1/16 short of the maximum admissible change
 
@@ -36,18 +44,14 @@ def remember(admission: Record, gait: Record) -> None:
 
 
 @compiled
-def admit(walk: Record, plans: Record, knots: Record, region: Region, robot: Record) -> bool:
+def admit_modified(walk: Record, plans: Record, region: Region, robot: Record) -> None:
     """Put the plan of the wanted strides in force, as far as it is feasible.
 
     Args:
         walk: state, its admission is changed.
         plans: plans (4,), see `LIVE`; changed.
-        knots: knots of the plans (4, k), changed.
         region: admissible ZMP in this tick.
         robot: constants.
-
-    Returns:
-        whether the ZMP plan in `BEST` belongs to the reference.
     """
     admission, live, wanted = walk.admission, plans[LIVE], plans[WANTED]
     gait = live.gait
@@ -62,36 +66,41 @@ def admit(walk: Record, plans: Record, knots: Record, region: Region, robot: Rec
         goal = aimed(gait, last, landing_of(support_foot(gait), walk.steering.wanted), robot)
     wanted.gait = gait
     plan_walk(wanted, goal, walk.steering.wanted, moves(walk.steering), robot)
-    plans[BEST].functions = live.functions
+    admission.functions = walk.functions
     if not (admission.stepping and gait.stepping):
         _take(walk, plans, WANTED, 1.0)
-        return False
-    if is_feasible(plans, knots, WANTED, plan_pendulum(walk), region, robot):
-        accepted = True
+        return
+    if _is_feasible(walk, plans[WANTED], region, robot):
         _take(walk, plans, WANTED, 1.0)
     else:
-        accepted = _compromise(walk, plans, knots, region, robot)
-    live.functions = plans[BEST].functions
-    return accepted
+        _compromise(walk, plans, region, robot)
+    walk.functions = admission.functions
 
 
 @compiled
-def _compromise(walk: Record, plans: Record, knots: Record, region: Region, robot: Record) -> bool:
+def _is_feasible(walk: Record, plan: Record, region: Region, robot: Record) -> bool:
+    """Whether the ZMP can follow a plan inside the sole; then set the tried functions."""
+    functions, pendulum = walk.admission.functions, plan_pendulum(walk)
+    return admits_target(functions, pendulum, reference_of(plan), region, robot)
+
+
+@compiled
+def _compromise(walk: Record, plans: Record, region: Region, robot: Record) -> None:
     """Take a feasible plan between the last one and the wanted one."""
     live = plans[LIVE]
-    if not plans[WANTED].moving and _end(walk, plans, knots, region, robot):
-        return True
+    if not plans[WANTED].moving and _end(walk, plans, region, robot):
+        return
     live.gait.clock = walk.admission.clock
     update_phase(live.gait, robot)
     plan_walk(live, foothold(live.landing), live.following, live.moving, robot)
-    if remains_feasible(live, robot):
-        return _bisect(walk, plans, knots, region, robot)
-    _take(walk, plans, WANTED, 1.0)
-    return False
+    if reaches_target(walk.functions):
+        _bisect(walk, plans, region, robot)
+    else:
+        _take(walk, plans, WANTED, 1.0)
 
 
 @compiled
-def _end(walk: Record, plans: Record, knots: Record, region: Region, robot: Record) -> bool:
+def _end(walk: Record, plans: Record, region: Region, robot: Record) -> bool:
     """Take a walk that ends after the next footstep, if one is feasible."""
     wanted, trial, low, high = plans[WANTED], plans[TRIAL], 0.0, 1.0
     last, goal = foothold(plans[LIVE].landing), foothold(wanted.landing)
@@ -99,7 +108,7 @@ def _end(walk: Record, plans: Record, knots: Record, region: Region, robot: Reco
         fraction = 0.5 * (low + high) if attempt > 0 else 0.0
         trial.gait = wanted.gait
         plan_walk(trial, towards(last, goal, fraction), wanted.following, False, robot)
-        if is_feasible(plans, knots, TRIAL, plan_pendulum(walk), region, robot):
+        if _is_feasible(walk, trial, region, robot):
             low = fraction
             copy_plan(plans[BEST], trial)
         elif attempt == 0:
@@ -111,7 +120,7 @@ def _end(walk: Record, plans: Record, knots: Record, region: Region, robot: Reco
 
 
 @compiled
-def _bisect(walk: Record, plans: Record, knots: Record, region: Region, robot: Record) -> bool:
+def _bisect(walk: Record, plans: Record, region: Region, robot: Record) -> None:
     """Take the plan with the maximum admitted fraction of the change, or keep the last plan."""
     live, wanted, trial = plans[LIVE], plans[WANTED], plans[TRIAL]
     before, after = live.gait.clock.timing, wanted.gait.clock.timing
@@ -128,7 +137,7 @@ def _bisect(walk: Record, plans: Record, knots: Record, region: Region, robot: R
         towards_strides(trial.following, live.following, wanted.following, fraction)
         landing = towards(last, goal, fraction)
         plan_walk(trial, landing, trial.following, live.moving, robot)
-        if is_feasible(plans, knots, TRIAL, plan_pendulum(walk), region, robot):
+        if _is_feasible(walk, trial, region, robot):
             low, admitted = fraction, True
             copy_plan(plans[BEST], trial)
         else:
@@ -137,7 +146,6 @@ def _bisect(walk: Record, plans: Record, knots: Record, region: Region, robot: R
         _take(walk, plans, BEST, low)
     else:
         walk.admission.fraction = 0.0
-    return admitted
 
 
 @compiled

@@ -3,10 +3,6 @@
 The DCM error grows by e^{ωt} until touchdown; a landing shifted by as much is at the capture point
 (Pratt et al., Humanoids 2006). The ankles shift the ZMP within the sole; a capture step is made for
 the error beyond their dead zone.
-
-A generator that plans its ZMP cannot plan for footholds that a push dictates. During a capture step
-its plan continues as the reference of the DCM error, and the pendulum of the body tracks the DCM
-that leads to the actual landing. At touchdown the two become one.
 """
 
 from math import exp, log
@@ -14,7 +10,6 @@ from typing import NamedTuple
 
 from compilation import compiled
 from compilation.record import record_type
-from walking.admission import admit
 from walking.command import BALANCE, LANDING_FROZEN, LANDING_SPEED, ZMP_REGION
 from walking.footsteps import (
     Foothold,
@@ -27,16 +22,10 @@ from walking.footsteps import (
     reachable,
 )
 from walking.gait import aimed, shorten, support_foot
+from walking.generator import admit, keeps_plan, planned_dcm
 from walking.parameters import CONTROL_PERIOD
-from walking.patterns import advance_pattern, planned_dcm, rejects_infeasible, reset_plan
-from walking.pendulum import (
-    dcm_of,
-    dcm_reference,
-    plan_pendulum,
-    ramp_weights,
-    track_dcm,
-    track_reference,
-)
+from walking.pendulum import dcm_of
+from walking.plan_departure import return_to_plan
 from walking.plane import Point, clamp, dead_zone, rotate, rotate_back
 from walking.records import Record
 from walking.reference import LIVE, WANTED, plan_walk, reference_of
@@ -44,9 +33,9 @@ from walking.steering import moves
 from walking.support import Region, clip
 from walking.timing import equal_clocks
 
-PLACING = record_type(applied=(float, 3), bound=int, moved_x=float, moved_y=float, accepted=bool)
+PLACING = record_type(applied=(float, 3), bound=int, moved_x=float, moved_y=float)
 """Foot placement: velocity that the footsteps follow; limits that bind, as bits; shift of the
-landing by a capture step [m]; whether the ZMP plan of this tick was admitted."""
+landing by a capture step [m]."""
 
 ROUNDING = 1e-6  # rounding error of a time in control ticks [1]
 
@@ -176,10 +165,7 @@ def _needed_capture(walk: Record, plan: Record, landing: Foothold, robot: Record
     """Return the capture step for the measured DCM."""
     gait, ramps, sensing = plan.gait, reference_of(plan), walk.sensing
     support = support_foot(gait)
-    if gait.shortened:
-        x, y = dcm_reference(ramps, robot)
-    else:
-        x, y = planned_dcm(plan, plan_pendulum(walk), robot)
+    x, y = planned_dcm(walk, plan, robot)
     body_x, body_y = dcm_of(walk.pendulum, robot)
     off = (body_x + sensing.dcm_x - x, body_y + sensing.dcm_y - y)
     if not exceeds(support, off, robot.stabilizer.capture_dead_zone, robot):
@@ -192,21 +178,21 @@ def _needed_capture(walk: Record, plan: Record, landing: Foothold, robot: Record
 
 
 @compiled
-def place_foot(walk: Record, plans: Record, knots: Record, region: Region, robot: Record) -> None:
+def place_foot(walk: Record, plans: Record, region: Region, robot: Record) -> None:
     """Choose landing and timing of the swing foot in this tick: the plan in force.
 
     Args:
         walk: state, changed.
         plans: plans (4,), see `LIVE`; changed.
-        knots: knots of the plans (4, k), changed.
         region: admissible ZMP in this tick.
         robot: constants.
     """
     placing, gait, wanted = walk.placing, plans[LIVE].gait, walk.steering.wanted
     adjustable = gait.adjustable
-    placing.bound, placing.accepted = 0, False
+    placing.bound = 0
     placing.moved_x = placing.moved_y = 0.0
-    landing = _reference(walk, plans, knots, region, robot)
+    landing = admit(walk, plans, region, robot)
+    _apply_velocity(walk, plans, robot)
     if adjustable:
         _capture(walk, plans[LIVE], landing, robot)
     elif gait.stepping:
@@ -216,26 +202,9 @@ def place_foot(walk: Record, plans: Record, knots: Record, region: Region, robot
 
 
 @compiled
-def _selects(gait: Record, robot: Record) -> bool:
-    """Whether the generator may limit the footsteps; not in a shortened footstep."""
-    return rejects_infeasible(robot) and not gait.shortened
-
-
-@compiled
-def _reference(
-    walk: Record, plans: Record, knots: Record, region: Region, robot: Record
-) -> Foothold:
-    """Put the reference that the generator admits in force; return the landing of the plan."""
-    placing, admission, live, steering = walk.placing, walk.admission, plans[LIVE], walk.steering
-    gait = live.gait
-    if _selects(gait, robot):
-        placing.accepted = admit(walk, plans, knots, region, robot)
-    else:
-        admission.fraction = 1.0
-        landing = foothold(gait.landing)
-        if gait.adjustable:
-            landing = landing_of(support_foot(gait), steering.wanted)
-        plan_walk(live, landing, steering.wanted, moves(steering), robot)
+def _apply_velocity(walk: Record, plans: Record, robot: Record) -> None:
+    """Set the velocity that the footsteps follow: as far as the wanted plan is admitted."""
+    placing, admission, steering = walk.placing, walk.admission, walk.steering
     if admission.fraction < 1.0:
         if _differs(plans, walk, robot):
             placing.bound |= ZMP_REGION
@@ -245,7 +214,6 @@ def _reference(
     else:
         for k in range(3):
             placing.applied[k] = steering.velocity[k]
-    return foothold(live.landing)
 
 
 @compiled
@@ -269,8 +237,7 @@ def _capture(walk: Record, plan: Record, landing: Foothold, robot: Record) -> No
     capture = _needed_capture(walk, plan, landing, robot)
     if capture.needed and shorten(gait, walk.limbs.feet, capture.ticks, capture.landing, robot):
         # The timing has changed: plan again.
-        merge_pendulums(walk, plan)
-        placing.accepted = False
+        return_to_plan(walk)
         plan_walk(plan, landing, steering.wanted, moves(steering), robot)
         capture = _needed_capture(walk, plan, landing, robot)
     if capture.needed and not gait.double:
@@ -282,59 +249,5 @@ def _capture(walk: Record, plan: Record, landing: Foothold, robot: Record) -> No
         placing.bound |= BALANCE
     elif not placing.bound & ZMP_REGION and not is_same(nominal, now, robot):
         placing.bound |= LANDING_SPEED
-    if not _selects(gait, robot) and not equal(now, landing):
+    if not keeps_plan(gait, robot) and not equal(now, landing):
         plan_walk(plan, now, steering.wanted, moves(steering), robot)
-
-
-# Pendulum
-
-
-@compiled
-def advance_pendulum(
-    walk: Record, plans: Record, knots: Record, region: Region, robot: Record, sums: Record
-) -> None:
-    """Advance the pendulums of plan and body by one tick.
-
-    Args:
-        walk: state, changed.
-        plans: plans (4,), see `LIVE`; the ZMP plan in force is changed.
-        knots: knots of the plans (4, k); those of the plan in force are changed.
-        region: admissible ZMP.
-        robot: constants.
-        sums: sums of the gains of preview control.
-    """
-    live, body, gain = plans[LIVE], walk.pendulum, robot.pattern.dcm_gain
-    gait = live.gait
-    selective = rejects_infeasible(robot)
-    if selective and gait.shortened:
-        track_reference(body, robot, gain, reference_of(live), region)
-        return
-    landing, planned = foothold(gait.landing), foothold(live.landing)
-    if selective and not (gait.double or walk.off_plan or equal(landing, planned)):
-        walk.planned, walk.off_plan = body, True
-    pendulum = plan_pendulum(walk)
-    x, y = dcm_of(pendulum, robot)
-    accepted: bool = walk.placing.accepted
-    advance_pattern(plans, knots, accepted, pendulum, region, robot, sums)
-    if walk.off_plan:
-        # Shift of the DCM by a ramp of the ZMP from the fixed support foot to the new landing.
-        wh = robot.omega * CONTROL_PERIOD
-        growth, _, last = ramp_weights(wh, gait.clock.timing.double)
-        weight = (1.0 + last) / growth / ramp_weights(wh, gait.ticks_left)[0]
-        x += weight * (landing.x - planned.x)
-        y += weight * (landing.y - planned.y)
-        track_dcm(body, robot, gain, (x, y), (pendulum.zmp_x, pendulum.zmp_y), region)
-
-
-@compiled
-def end_capture(walk: Record, plan: Record) -> None:
-    """At touchdown, restart the plan from the pendulum of the body."""
-    if walk.off_plan and (plan.gait.double or not plan.gait.stepping):
-        merge_pendulums(walk, plan)
-
-
-@compiled
-def merge_pendulums(walk: Record, plan: Record) -> None:
-    """Drop the plan of the generator."""
-    walk.off_plan = False
-    reset_plan(plan)

@@ -12,7 +12,6 @@ from walking.estimation import steady_gains
 from walking.feedforward import JOINT
 from walking.footsteps import STILL, STRIDES, velocity_strides
 from walking.parameters import CONTROL_PERIOD, GRAVITY, LIGHT_LOAD, WalkingParameters
-from walking.patterns import PREVIEW_SUM, preview_gains
 from walking.pendulum import natural_frequency
 from walking.records import GENERATORS, SECTIONS, Record
 from walking.swing_reaction import leg_reaction
@@ -62,11 +61,6 @@ ROBOT = record_type(
     position_gain=float,
     velocity_gain=float,
     ankle_gain=float,
-    # Gains of preview control, see `walking.patterns`.
-    preview_position=float,
-    preview_velocity=float,
-    preview_zmp=float,
-    preview_total=float,
 )
 """Constants of the robot and of its walk."""
 
@@ -95,8 +89,8 @@ def parameters_record(parameters: WalkingParameters) -> Record:
     return robots
 
 
-def robot_record(robot: RobotModel, parameters: WalkingParameters) -> tuple[Record, Record]:
-    """Return the constants of a robot (1,), and the sums of the gains of preview control.
+def robot_record(robot: RobotModel, parameters: WalkingParameters) -> Record:
+    """Return the constants of a robot (1,).
 
     Args:
         robot: model of the robot.
@@ -126,13 +120,8 @@ def robot_record(robot: RobotModel, parameters: WalkingParameters) -> tuple[Reco
     ankles = slice(leg.ankle, 6)
     lag = float((robot.damping[ankles] / robot.stiffness[ankles]).max())
     r.ankle_gain = ankle_gain(omega, lag, p.stabilizer.dcm_rate)
-    sums = np.zeros(1, PREVIEW_SUM)
-    if p.pattern.generator == "preview":
-        gains = preview_gains(omega, p.pattern)
-        r.preview_position, r.preview_velocity = gains.position, gains.velocity
-        r.preview_zmp, r.preview_total, sums = gains.zmp, gains.total, gains.sums
     velocity_strides(r.still, STILL, p.gait.footstep_time, r)
-    return records, sums
+    return records
 
 
 def joint_records(robot: RobotModel, parameters: WalkingParameters) -> Record:

@@ -1,7 +1,5 @@
 """Walking engine: sensors and commands to joint targets, once per control tick."""
 
-from math import ceil
-
 import numpy as np
 
 from walking.body.robot_model import RobotModel
@@ -10,19 +8,14 @@ from walking.command import Command, CommandState, HeadTarget, Limit, VelocityCo
 from walking.constants import joint_records, robot_record
 from walking.estimation import sense
 from walking.odometry import LegOdometry
-from walking.parameters import CONTROL_PERIOD, WalkingParameters
-from walking.patterns import PLAN
+from walking.parameters import WalkingParameters
 from walking.plane import Array
 from walking.published import PUBLISHED, publish, walking_state
-from walking.reference import LIVE
+from walking.reference import LIVE, PLAN
 from walking.state import BodySensors, JointTargets, WalkingState
 from walking.tick import WALK, begin, finish, stand_ready
-from walking.zmp_program import max_knots
-from walking.zmp_solver import KNOT
 
 PLANS = 4  # see `walking.reference.LIVE`
-SUPPORTS = 5  # whose ZMP is planned
-MAX_STRETCH = 2.0  # of a single support by the minimum time in the air [1]
 
 
 class PlanDiverged(Exception):
@@ -45,11 +38,10 @@ class WalkingEngine:
         self, robot: RobotModel, parameters: WalkingParameters, odometry: LegOdometry | None = None
     ) -> None:
         self._robot = robot = robot.with_own_buffers()
-        self._robots, self._sums = robot_record(robot, parameters)
+        self._robots = robot_record(robot, parameters)
         self._joints = joint_records(robot, parameters)
         self._odometry = odometry or LegOdometry(parameters.odometry)
         self._walks, self._plans = np.zeros(1, WALK), np.zeros(PLANS, PLAN)
-        self._knots = np.zeros((PLANS, max_knots(_longest(parameters), SUPPORTS)), KNOT)
         self._walk, self._plan = self._walks[0], self._plans[LIVE]
         self._command: Command = VelocityCommand()
         self._sensors: BodySensors | None = None
@@ -118,10 +110,8 @@ class WalkingEngine:
             self._walks,
             self._odometry.records,
             self._plans,
-            self._knots,
             self._joints,
             self._robots,
-            self._sums,
             self._robot.links,
             self._robot.order,
             dynamics.q,
@@ -201,12 +191,3 @@ def _values(command: Command) -> tuple[tuple[float, float, float, float, float, 
         supports = c.single_support, c.double_support
         return (*supports, c.forward, c.side, c.direction, c.swing_height), True
     return (command.vx, command.vy, command.wz, 0.0, 0.0, 0.0), False
-
-
-def _longest(parameters: WalkingParameters) -> int:
-    """Return an upper bound of the control ticks of a planned ZMP."""
-    gait, limits = parameters.gait, parameters.limits
-    footstep = max(gait.footstep_time, gait.min_footstep_time)
-    single = MAX_STRETCH * max(footstep, limits.max_single) + gait.min_swing_time
-    double = max(footstep, limits.max_double, gait.start_time, gait.stop_time)
-    return ceil(SUPPORTS * (single + double) / CONTROL_PERIOD)

@@ -161,7 +161,7 @@ class BodyObserver:
         self, robot: RobotModel, parameters: WalkingParameters, odometry: LegOdometry
     ) -> None:
         self._robot, self._odometry = robot, odometry
-        self._robots, _ = robot_record(robot, parameters)
+        self._robots = robot_record(robot, parameters)
         self._walks = np.zeros(1, WALK)
         self._sensing = self._walks[0].sensing
         self._contacts = FootContacts(robot.mass, parameters.gait)
@@ -331,7 +331,7 @@ class Head:
     """
 
     def __init__(self, robot: RobotModel, parameters: WalkingParameters) -> None:
-        self._limbs, self._robot = np.zeros(1, LIMBS)[0], robot_record(robot, parameters)[0][0]
+        self._limbs, self._robot = np.zeros(1, LIMBS)[0], robot_record(robot, parameters)[0]
         self._joints = joint_records(robot, parameters)
         self._limbs.head = robot.neck.angles(robot.ready)
 

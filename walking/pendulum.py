@@ -128,18 +128,3 @@ def track_reference(
     x = ramp.ax + (ramp.bx - ramp.ax) * middle
     y = ramp.ay + (ramp.by - ramp.ay) * middle
     track_dcm(pendulum, robot, gain, dcm_reference(ramps, robot), (x, y), region)
-
-
-@compiled
-def slide_tick(
-    robot: Record, position: float, velocity: float, before: float, after: float
-) -> Point:
-    """Return position [m] and velocity [m/s] one tick later under a linearly moving ZMP [m]."""
-    w = robot.omega
-    rate = (after - before) / CONTROL_PERIOD
-    # The ZMP is a particular solution of the equation of motion.
-    d, v = position - before, velocity - rate
-    return (
-        after + d * robot.cosh + v / w * robot.sinh,
-        rate + d * w * robot.sinh + v * robot.cosh,
-    )

@@ -5,7 +5,7 @@ change records in place; an assignment of a record copies it. A function that ge
 another one shares it.
 
     walk   state of the walk, see `walking.tick.WALK`.
-    plans  plan in force and other plans, see `walking.patterns.PLAN`.
+    plans  plan in force and other plans, see `walking.reference.PLAN`.
     robot  constants of the robot and of its walk, see `walking.constants.ROBOT`; among them all
            `WalkingParameters`, section by section under the same names.
 
@@ -25,9 +25,9 @@ from walking.parameters import WalkingParameters
 Record = Any
 """Record, or array of records; type checkers do not know the fields."""
 
-GENERATORS = ("dcm", "preview", "paper", "robust")
+GENERATORS = ("preview", "mwpg")
 """Pattern generators; a record holds the index."""
-DCM, PREVIEW, PAPER, ROBUST = range(len(GENERATORS))
+MWPG = GENERATORS.index("mwpg")
 
 
 def _section(cls: type) -> np.dtype[Any]:

@@ -2,8 +2,16 @@
 
 from compilation import compiled
 from compilation.record import record_type
-from walking.footsteps import FOOTHOLD, Foothold, foothold, is_parallel, landing_of, put
-from walking.gait import scheduled_zmp, stop_ticks, support_foot, swing_foot, zmp_between, zmp_under
+from walking.footsteps import FOOTHOLD, STRIDES, Foothold, foothold, is_parallel, landing_of, put
+from walking.gait import (
+    GAIT,
+    scheduled_zmp,
+    stop_ticks,
+    support_foot,
+    swing_foot,
+    zmp_between,
+    zmp_under,
+)
 from walking.plane import Point
 from walking.records import Record
 
@@ -21,6 +29,19 @@ and loading foot, in single support twice the support foot."""
 
 STEPS = 4  # planned footholds
 
+PLAN = record_type(
+    gait=GAIT,
+    landing=FOOTHOLD,
+    following=STRIDES,
+    moving=bool,
+    ramps=(RAMP, 2 * STEPS + 2),
+    ramp_count=int,
+    steps=(FOOTHOLD, STEPS),
+    step_count=int,
+)
+"""Plan of the walk: gait with its timing; landing of the swing foot, strides after it, and whether
+the walk goes on; ZMP reference and its number of ramps; footholds and their number."""
+
 LIVE, WANTED, TRIAL, BEST = range(4)
 """Plans: the one in force, the wanted one, one that is tried, and the best that was admitted."""
 
@@ -32,7 +53,7 @@ def plan_walk(
     """Set footholds and ZMP reference of a plan from now on.
 
     Args:
-        plan: plan whose gait is read; all but its ZMP plan is set.
+        plan: plan whose gait is read; the rest is set.
         landing: foothold of the swing foot.
         following: strides of the footsteps after it.
         moving: whether the walk goes on; if not, it ends as soon as the stance is parallel.
@@ -93,7 +114,7 @@ def _set_ramps(plan: Record, ends: bool, robot: Record) -> None:
 
 @compiled
 def copy_plan(copy: Record, plan: Record) -> None:
-    """Copy a plan, except for its ZMP plan."""
+    """Copy a plan."""
     copy.gait, copy.landing, copy.following = plan.gait, plan.landing, plan.following
     copy.moving, copy.ramp_count, copy.step_count = plan.moving, plan.ramp_count, plan.step_count
     for k in range(plan.ramp_count):

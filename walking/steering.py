@@ -16,9 +16,10 @@ from walking.footsteps import (
     stride_limits,
     velocity_strides,
 )
+from walking.mwpg import is_selected
 from walking.parameters import CONTROL_PERIOD
 from walking.plane import Vector, clamp
-from walking.records import PAPER, Record
+from walking.records import Record
 from walking.timing import TIMING, cadence, command_timing, duration, put_timing
 
 COMMAND = record_type(explicit=bool, values=(float, 6))
@@ -207,8 +208,8 @@ def _follow_velocity(steering: Record, velocity: Vector, speed_ratio: float, rob
         vx, vy, wz = limited(velocity, robot)
         wanted = (speed_ratio * vx, speed_ratio * vy, speed_ratio * wz)
         steering.bound |= BALANCE
-    if robot.pattern.generator >= PAPER and velocity == STILL:
-        # These generators limit the change themselves.
+    if is_selected(robot) and velocity == STILL:
+        # This generator limits the change itself.
         _jump(steering, STILL)
     limit = _approach(steering, wanted, robot)
     steering.bound |= speed_limits(velocity, robot)

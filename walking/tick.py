@@ -9,7 +9,7 @@ import numpy as np
 from compilation import compiled
 from compilation.record import record_type
 from walking.admission import ADMISSION, remember
-from walking.balance import PLACING, advance_pendulum, end_capture, exceeds, place_foot, zmp_shift
+from walking.balance import PLACING, exceeds, place_foot, zmp_shift
 from walking.body.kinematics import tree_pass
 from walking.command import BALANCE, FALLEN, SWING_HEIGHT, TIMING
 from walking.corrections import (
@@ -38,8 +38,11 @@ from walking.gait import (
     touch_down,
     zmp_under,
 )
+from walking.generator import advance as advance_pendulum
+from walking.mwpg import ZMP_FUNCTIONS
 from walking.parameters import CONTROL_PERIOD
 from walking.pendulum import PENDULUM
+from walking.plan_departure import end_capture
 from walking.plane import Array, Indices, Point, norm, rotate, rotate_back
 from walking.posture import LIMBS, advance_head, head_joints, pelvis_over, set_posture
 from walking.records import Record
@@ -67,6 +70,7 @@ WALK = record_type(
     pendulum=PENDULUM,
     planned=PENDULUM,
     off_plan=bool,
+    functions=ZMP_FUNCTIONS,
     zmp_shift_x=float,
     zmp_shift_y=float,
     zmp_depth=float,
@@ -78,9 +82,9 @@ WALK = record_type(
     limbs=LIMBS,
 )
 """State of the walk: ticks; the parts above; pendulum of the body, and that of the plan if it
-differs; shift of the ZMP by the ankles [m]; depth of the planned ZMP in the support polygon [m],
-whether one foot supports, and the feet in contact; foot of the last opening step; limits that bind,
-as bits."""
+differs; ZMP functions in force; shift of the ZMP by the ankles [m]; depth of the planned ZMP in the
+support polygon [m], whether one foot supports, and the feet in contact; foot of the last opening
+step; limits that bind, as bits."""
 
 SAME_HEIGHT = 1e-9  # rounding error of swing heights [m]
 DIVERGED = 1e6  # distance of the pendulum from the support foot per length of the leg [1]
@@ -126,10 +130,8 @@ def begin(
     walks: Record,
     odometry: Record,
     plans: Record,
-    knots: Record,
     joints: Record,
     robots: Record,
-    sums: Record,
     links: Array,
     order: Indices,
     q: Array,
@@ -147,10 +149,8 @@ def begin(
         walks: state (1,), changed.
         odometry: dead reckoning (1,), changed.
         plans: plans (4,), changed.
-        knots: knots of the plans (4, k), changed.
         joints: joints of the robot (n,), changed.
         robots: constants (1,).
-        sums: sums of the gains of preview control.
         links: links of the robot, see `walking.body.kinematics.tree_pass`.
         order: order of its joints.
         q: position of the dynamic model, set.
@@ -178,8 +178,8 @@ def begin(
         _maybe_start(walk, gait, robot)
     _detect_touchdown(walk, gait, robot)
     region = _contact_region(walk, gait, robot.pattern.sole_margin, robot)
-    place_foot(walk, plans, knots, region, robot)
-    advance_pendulum(walk, plans, knots, region, robot, sums)
+    place_foot(walk, plans, region, robot)
+    advance_pendulum(walk, live, region, robot)
     distance = _far(walk, gait, robot)
     if distance != 0.0:
         return distance, walk.zmp_depth, 0

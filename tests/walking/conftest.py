@@ -13,9 +13,8 @@ from walking.constants import robot_record
 from walking.footsteps import STILL, STRIDES, Foothold, put, velocity_strides
 from walking.gait import stand
 from walking.parameters import CONTROL_PERIOD, PatternParameters, WalkingParameters
-from walking.patterns import PLAN
 from walking.records import Record
-from walking.reference import LIVE
+from walking.reference import LIVE, PLAN
 from walking.state import BodySensors
 from walking.swing import rest_at
 from walking.tick import WALK
@@ -114,20 +113,18 @@ def mirrored_joints(robot):
 
 
 class Model(NamedTuple):
-    """Constants of a walk, and sums of the gains of preview control."""
+    """Constants of a walk."""
 
     robot: Record
-    sums: Record
 
 
 @pytest.fixture(scope="session")
 def make_model(robot):
     """Constants of a walk with a pattern generator."""
 
-    def make(generator="robust", parameters=None):
+    def make(generator="preview", parameters=None):
         parameters = parameters or WalkingParameters(pattern=PatternParameters(generator=generator))
-        records, sums = robot_record(robot, parameters)
-        return Model(records[0], sums)
+        return Model(robot_record(robot, parameters)[0])
 
     return make
 

@@ -15,7 +15,7 @@ from walking.parameters import CONTROL_PERIOD, HeadParameters, WalkingParameters
 from walking.state import Phase
 
 AHEAD = HeadTarget()
-GENERATORS = ["dcm", "preview", "paper", "robust"]
+GENERATORS = ["preview", "mwpg"]
 
 
 def run(robot, body, script, seconds, parameters=None, watch=None):

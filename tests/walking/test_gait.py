@@ -275,7 +275,7 @@ def stop(walk, velocity, stop_at):
     return walk.gait.completed - completed
 
 
-@pytest.mark.parametrize("generator", ["dcm", "robust"])
+@pytest.mark.parametrize("generator", ["preview", "mwpg"])
 @pytest.mark.parametrize(
     "velocity",
     [

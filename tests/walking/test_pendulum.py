@@ -15,7 +15,6 @@ from walking.pendulum import (
     hold,
     hold_tick,
     ramp_weights,
-    slide_tick,
     track_dcm,
     track_reference,
 )
@@ -72,14 +71,6 @@ def test_a_time_under_a_constant_zmp(model, omega, time):
     if time == CONTROL_PERIOD:
         tick = hold_tick(model.robot, 0.03, -0.2, 0.01)
         np.testing.assert_allclose(tick, expected, atol=1e-11)
-
-
-def test_a_tick_under_a_moving_zmp(model, omega):
-    expected = integrate(
-        omega, 0.03, -0.2, lambda t: 0.01 + 0.02 * t / CONTROL_PERIOD, CONTROL_PERIOD
-    )
-    result = slide_tick(model.robot, 0.03, -0.2, 0.01, 0.03)
-    np.testing.assert_allclose(result, expected, atol=1e-11)
 
 
 @pytest.mark.parametrize("ticks", [1, 14, 54])

@@ -10,8 +10,7 @@ from hypothesis import strategies as st
 from walking.footsteps import STILL, Foothold, foothold, is_parallel, landing_of, put
 from walking.gait import scheduled_zmp, stand, start, update_phase, zmp_between, zmp_under
 from walking.parameters import PatternParameters, WalkingParameters
-from walking.patterns import PLAN
-from walking.reference import LIVE, is_single, plan_walk
+from walking.reference import LIVE, PLAN, is_single, plan_walk
 from walking.timing import put_timing
 
 LEFT, RIGHT = Foothold(True, 0.0, 0.042, 0.1), Foothold(False, 0.05, -0.042, -0.1)

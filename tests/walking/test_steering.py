@@ -9,8 +9,8 @@ from walking.command import ACCELERATION, BALANCE, STRIDE_LIMITS
 from walking.constants import parameters_record
 from walking.footsteps import STILL, mean_velocity
 from walking.parameters import CONTROL_PERIOD, WalkingParameters
-from walking.patterns import PLAN
 from walking.published import PUBLISHED, publish_limits
+from walking.reference import PLAN
 from walking.steering import (
     STEERING,
     follow_command,
@@ -27,7 +27,7 @@ LIMITS = WalkingParameters().limits
 LONG = 250  # control ticks in which any velocity is reached
 velocities = st.tuples(st.floats(-0.7, 0.7), st.floats(-0.3, 0.3), st.floats(-2.5, 2.5))
 walks = st.lists(st.tuples(velocities | st.just(STILL), st.integers(1, 30)), max_size=4)
-generators = st.sampled_from(("dcm", "robust"))
+generators = st.sampled_from(("preview", "mwpg"))
 speeds = st.floats(-2.0, 2.0)
 PARAMETERS = parameters_record(WalkingParameters())[0]
 
@@ -57,8 +57,8 @@ class Steering:
 
 @pytest.fixture(scope="module")
 def steer(make_model):
-    models = {name: make_model(name) for name in ("dcm", "robust")}
-    return lambda generator="robust": Steering(models[generator])
+    models = {name: make_model(name) for name in ("preview", "mwpg")}
+    return lambda generator="preview": Steering(models[generator])
 
 
 @given(speeds, speeds, speeds)
@@ -137,7 +137,7 @@ def test_a_stop_is_followed_at_once_if_the_generator_limits_it_and_in_the_brakin
     steering.follow(velocity, ticks=LONG)
     moving = moves(steering.record)
     steering.follow(STILL)
-    if generator == "robust":
+    if generator == "mwpg":
         assert not moves(steering.record)
         assert steering.bound == 0
     elif moving:
@@ -148,7 +148,7 @@ def test_a_stop_is_followed_at_once_if_the_generator_limits_it_and_in_the_brakin
 
 @pytest.mark.parametrize("wanted", [0.0, 0.1, -0.3])
 def test_a_walk_is_braked_in_the_braking_time_and_reverses_through_rest(steer, wanted):
-    steering = steer("dcm")
+    steering = steer("preview")
     steering.follow((LIMITS.vx, 0.0, 0.0), ticks=LONG)
     path = [steering.velocity[0]]
     while steering.velocity[0] > max(wanted, 0.0):
@@ -159,7 +159,7 @@ def test_a_walk_is_braked_in_the_braking_time_and_reverses_through_rest(steer, w
 
 
 def test_a_slowed_walk_keeps_the_direction_of_the_command(steer):
-    steering = steer("dcm")
+    steering = steer("preview")
     steering.follow((0.2, 0.05, 0.3), ticks=1000, fraction=0.4)
     assert steering.velocity == pytest.approx((0.08, 0.02, 0.12))
     assert steering.bound == BALANCE
@@ -176,7 +176,7 @@ def test_a_robot_off_balance_keeps_its_motion(steer):
 
 
 def test_footsteps_that_close_the_stance_keep_the_time_of_the_walk(steer):
-    steering, timing = steer(), np.zeros(1, TIMING)[0]
+    steering, timing = steer("mwpg"), np.zeros(1, TIMING)[0]
     record = steering.record
     usual = cadence(STILL, PARAMETERS)
     steering.follow((LIMITS.vx, 0.0, 0.0), ticks=LONG)

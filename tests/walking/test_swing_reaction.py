@@ -11,9 +11,8 @@ from walking.engine import WalkingEngine
 from walking.footsteps import FOOTHOLD, Foothold, put
 from walking.gait import GAIT
 from walking.parameters import CONTROL_PERIOD, WalkingParameters
-from walking.patterns import PLAN
 from walking.posture import LIMBS
-from walking.reference import zmp_under
+from walking.reference import PLAN, zmp_under
 from walking.swing_reaction import compensate
 
 DOUBLE, SINGLE = 10, 50  # control ticks of a footstep

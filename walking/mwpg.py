@@ -1,4 +1,4 @@
-"""Modifiable walking pattern: ZMP functions that lead to a walking state.
+"""Modifiable walking pattern generator (MWPG): ZMP functions that lead to a walking state.
 
 Lee et al., "Modifiable Walking Pattern of a Humanoid Robot by Using Allowable ZMP Variation",
 IEEE T-RO 2008; the formulas are derived here from the pendulum. In the frame of the support
@@ -22,7 +22,7 @@ from compilation.record import record_type
 from walking.parameters import CONTROL_PERIOD
 from walking.pendulum import dcm_of, dcm_reference, hold, ramp_weights, track_reference
 from walking.plane import Point, clamp, rotate
-from walking.records import Record
+from walking.records import MWPG, Record
 from walking.reference import is_single
 from walking.support import Region
 
@@ -36,7 +36,7 @@ ZMP_FUNCTIONS = record_type(
     missed_x=float,
     missed_y=float,
 )
-"""ZMP functions, see `walking.paper_pattern`: whether there is a target, DCM and convergent
+"""ZMP functions, see `walking.mwpg`: whether there is a target, DCM and convergent
 component at the end of single support along and across the foot [m] (whether the latter is free);
 level [m] and time of the switch before the end [s] of each function; part of the DCM that is out of
 reach [m]."""
@@ -68,6 +68,13 @@ class ZmpFunctions(NamedTuple):
 
     level: Point
     switch: Point
+
+
+@compiled
+def is_selected(robot: Record) -> bool:
+    """Whether a robot walks with this generator."""
+    selected: bool = robot.pattern.generator == MWPG
+    return selected
 
 
 @compiled
@@ -136,7 +143,7 @@ def admits_target(
     """Aim at the walking state of a reference; return whether the ZMP can stay in the sole.
 
     Args:
-        trial: ZMP plan with the last target, set if feasible.
+        trial: ZMP functions with the last target, set if feasible.
         pendulum: present pendulum.
         ramps: reference.
         region: admissible ZMP.
@@ -157,7 +164,14 @@ def admits_target(
 
 
 @compiled
-def forget_target(live: Record) -> None:
+def reaches_target(live: Record) -> bool:
+    """Whether the functions lead to the DCM of their target."""
+    reached: bool = live.missed_x == 0.0 and live.missed_y == 0.0
+    return reached
+
+
+@compiled
+def reset_target(live: Record) -> None:
     """Drop the present target."""
     live.aimed = False
     live.missed_x = live.missed_y = 0.0
@@ -170,14 +184,14 @@ def advance_functions(
     """Advance the pendulum by a tick along the ZMP functions, in double support along the DCM.
 
     Args:
-        live: ZMP plan in force, changed.
+        live: ZMP functions in force, changed.
         pendulum: changed.
         ramps: reference.
         region: admissible ZMP.
         robot: constants.
     """
     if not is_single(ramps[0]):
-        forget_target(live)
+        reset_target(live)
         gain = robot.pattern.dcm_gain
         track_reference(pendulum, robot, gain, ramps, region)
         return

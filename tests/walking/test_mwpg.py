@@ -8,7 +8,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from walking.footsteps import Foothold
-from walking.paper_pattern import (
+from walking.mwpg import (
     ZMP_FUNCTIONS,
     admits_target,
     advance_functions,
@@ -63,11 +63,11 @@ def reference(left, stride=0.05):
     return ramps
 
 
-class Paper:
+class Mwpg:
     """Generator and a pendulum in periodic walking at the start of single support."""
 
     def __init__(self, make_model):
-        self.model = make_model("paper")
+        self.model = make_model("mwpg")
         robot, ramps = self.model.robot, reference(54)
         self.plan, self.pendulum = np.zeros(1, ZMP_FUNCTIONS)[0], np.zeros(1, PENDULUM)[0]
         growth = exp(W * 54 * CONTROL_PERIOD)
@@ -92,12 +92,12 @@ class Paper:
 
 
 @pytest.fixture
-def paper(make_model):
-    return Paper(make_model)
+def mwpg(make_model):
+    return Mwpg(make_model)
 
 
-def test_a_walk_that_goes_on_unchanged_needs_no_function(paper):
-    path = [paper.tick(reference(54 - k)) for k in range(54)]
+def test_a_walk_that_goes_on_unchanged_needs_no_function(mwpg):
+    path = [mwpg.tick(reference(54 - k)) for k in range(54)]
     assert all(row[0] for row in path)
     zmp = np.array([row[1:] for row in path])
     np.testing.assert_allclose(zmp, np.tile([0.01, 0.042], (54, 1)), atol=1e-4)
@@ -105,23 +105,23 @@ def test_a_walk_that_goes_on_unchanged_needs_no_function(paper):
 
 @pytest.mark.parametrize("tick", [0, 10, 25])
 @pytest.mark.parametrize("stride", [0.035, 0.065])
-def test_position_and_velocity_of_a_new_walk_are_reached_at_touchdown(paper, tick, stride):
-    path = [paper.tick(reference(54 - k, 0.05 if k < tick else stride)) for k in range(54)]
+def test_position_and_velocity_of_a_new_walk_are_reached_at_touchdown(mwpg, tick, stride):
+    path = [mwpg.tick(reference(54 - k, 0.05 if k < tick else stride)) for k in range(54)]
     assert all(row[0] for row in path)
-    target, p = walking_target(reference(1, stride), paper.model.robot), paper.pendulum
+    target, p = walking_target(reference(1, stride), mwpg.model.robot), mwpg.pendulum
     dx, dy = p.x - 0.01, p.y - 0.042
     assert (dx + p.vx / W, dy + p.vy / W) == pytest.approx(target.xi, abs=1e-5)
     assert (dx - p.vx / W, dy - p.vy / W) == pytest.approx(target.zeta, abs=1e-5)
 
 
-def test_a_late_change_is_rejected(paper):
-    path = [paper.tick(reference(54 - k, 0.05 if k < 48 else 0.12)) for k in range(54)]
+def test_a_late_change_is_rejected(mwpg):
+    path = [mwpg.tick(reference(54 - k, 0.05 if k < 48 else 0.12)) for k in range(54)]
     assert [row[0] for row in path[:49]] == 48 * [True] + [False]
 
 
-def test_the_part_of_the_dcm_that_is_out_of_reach_is_reported(paper):
-    paper.pendulum.vx += 0.4
-    paper.tick(reference(54))
-    robot = paper.model.robot
-    reached = reachable_dcm(paper.plan, paper.pendulum, robot)
-    assert reached[0] < dcm_of(paper.pendulum, robot)[0] - 0.005
+def test_the_part_of_the_dcm_that_is_out_of_reach_is_reported(mwpg):
+    mwpg.pendulum.vx += 0.4
+    mwpg.tick(reference(54))
+    robot = mwpg.model.robot
+    reached = reachable_dcm(mwpg.plan, mwpg.pendulum, robot)
+    assert reached[0] < dcm_of(mwpg.pendulum, robot)[0] - 0.005
