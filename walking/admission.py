@@ -11,49 +11,36 @@ A plan that is tried is a copy: the plan in force changes only when one is taken
 """
 
 from compilation import compiled
-from compilation.record import record_type
+from walking.data import Data, Plan
 from walking.footsteps import foothold, landing_of, towards, towards_strides
 from walking.gait import aimed, retime, support_foot, update_phase
-from walking.mwpg import ZMP_FUNCTIONS, admits_target, reaches_target
+from walking.model import Model
+from walking.mwpg import admits_target, reaches_target
 from walking.pendulum import plan_pendulum
-from walking.records import Record
-from walking.reference import BEST, LIVE, TRIAL, WANTED, copy_plan, plan_walk, reference_of
+from walking.reference import copy_plan, plan_walk, reference_of
 from walking.steering import moves
 from walking.support import Region
-from walking.timing import CLOCK, TIMING
-
-ADMISSION = record_type(
-    stepping=bool,
-    completed=int,
-    clock=CLOCK,
-    fraction=float,
-    between=TIMING,
-    functions=ZMP_FUNCTIONS,
-)
-"""Admission, see `walking.admission`: whether the gait was stepping, completed footsteps and clock
-in the last tick; admitted fraction of the wanted change [1]; timing and ZMP functions of a plan
-that is tried."""
 
 BISECTIONS = 4  # at most 1/16 short of the maximum admissible change
 
 
 @compiled
-def remember(admission: Record, gait: Record) -> None:
+def remember(walk: Data) -> None:
     """Store the timing of the last tick before it changes."""
+    admission, gait = walk.admission, walk.plan.gait
     admission.stepping, admission.clock = gait.stepping, gait.clock
 
 
 @compiled
-def admit_modified(walk: Record, plans: Record, region: Region, robot: Record) -> None:
+def admit_modified(walk: Data, region: Region, robot: Model) -> None:
     """Put the plan of the wanted strides in force, as far as it is feasible.
 
     Args:
-        walk: state, its admission is changed.
-        plans: plans (4,), see `LIVE`; changed.
+        walk: state, its plan and admission are changed.
         region: admissible ZMP in this tick.
         robot: constants.
     """
-    admission, live, wanted = walk.admission, plans[LIVE], plans[WANTED]
+    admission, live, wanted = walk.admission, walk.plan, walk.admission.wanted
     gait = live.gait
     continues = admission.stepping and gait.stepping and gait.completed == admission.completed
     admission.completed = gait.completed
@@ -68,61 +55,62 @@ def admit_modified(walk: Record, plans: Record, region: Region, robot: Record) -
     plan_walk(wanted, goal, walk.steering.wanted, moves(walk.steering), robot)
     admission.functions = walk.functions
     if not (admission.stepping and gait.stepping):
-        _take(walk, plans, WANTED, 1.0)
+        _take(walk, wanted, 1.0)
         return
-    if _is_feasible(walk, plans[WANTED], region, robot):
-        _take(walk, plans, WANTED, 1.0)
+    if _is_feasible(walk, wanted, region, robot):
+        _take(walk, wanted, 1.0)
     else:
-        _compromise(walk, plans, region, robot)
+        _compromise(walk, region, robot)
     walk.functions = admission.functions
 
 
 @compiled
-def _is_feasible(walk: Record, plan: Record, region: Region, robot: Record) -> bool:
+def _is_feasible(walk: Data, plan: Plan, region: Region, robot: Model) -> bool:
     """Whether the ZMP can follow a plan inside the sole; then set the tried functions."""
     functions, pendulum = walk.admission.functions, plan_pendulum(walk)
     return admits_target(functions, pendulum, reference_of(plan), region, robot)
 
 
 @compiled
-def _compromise(walk: Record, plans: Record, region: Region, robot: Record) -> None:
+def _compromise(walk: Data, region: Region, robot: Model) -> None:
     """Take a feasible plan between the last one and the wanted one."""
-    live = plans[LIVE]
-    if not plans[WANTED].moving and _end(walk, plans, region, robot):
+    live, wanted = walk.plan, walk.admission.wanted
+    if not wanted.moving and _end(walk, region, robot):
         return
     live.gait.clock = walk.admission.clock
     update_phase(live.gait, robot)
     plan_walk(live, foothold(live.landing), live.following, live.moving, robot)
     if reaches_target(walk.functions):
-        _bisect(walk, plans, region, robot)
+        _bisect(walk, region, robot)
     else:
-        _take(walk, plans, WANTED, 1.0)
+        _take(walk, wanted, 1.0)
 
 
 @compiled
-def _end(walk: Record, plans: Record, region: Region, robot: Record) -> bool:
+def _end(walk: Data, region: Region, robot: Model) -> bool:
     """Take a walk that ends after the next footstep, if one is feasible."""
-    wanted, trial, low, high = plans[WANTED], plans[TRIAL], 0.0, 1.0
-    last, goal = foothold(plans[LIVE].landing), foothold(wanted.landing)
+    wanted, trial, best = walk.admission.wanted, walk.admission.trial, walk.admission.best
+    last, goal, low, high = foothold(walk.plan.landing), foothold(wanted.landing), 0.0, 1.0
     for attempt in range(BISECTIONS + 1):
         fraction = 0.5 * (low + high) if attempt > 0 else 0.0
         trial.gait = wanted.gait
         plan_walk(trial, towards(last, goal, fraction), wanted.following, False, robot)
         if _is_feasible(walk, trial, region, robot):
             low = fraction
-            copy_plan(plans[BEST], trial)
+            copy_plan(best, trial)
         elif attempt == 0:
             return False
         else:
             high = fraction
-    _take(walk, plans, BEST, low)
+    _take(walk, best, low)
     return True
 
 
 @compiled
-def _bisect(walk: Record, plans: Record, region: Region, robot: Record) -> None:
+def _bisect(walk: Data, region: Region, robot: Model) -> None:
     """Take the plan with the maximum admitted fraction of the change, or keep the last plan."""
-    live, wanted, trial = plans[LIVE], plans[WANTED], plans[TRIAL]
+    live, wanted, trial = walk.plan, walk.admission.wanted, walk.admission.trial
+    best = walk.admission.best
     before, after = live.gait.clock.timing, wanted.gait.clock.timing
     last, goal, between = foothold(live.landing), foothold(wanted.landing), walk.admission.between
     low, high, admitted = 0.0, 1.0, False
@@ -139,17 +127,17 @@ def _bisect(walk: Record, plans: Record, region: Region, robot: Record) -> None:
         plan_walk(trial, landing, trial.following, live.moving, robot)
         if _is_feasible(walk, trial, region, robot):
             low, admitted = fraction, True
-            copy_plan(plans[BEST], trial)
+            copy_plan(best, trial)
         else:
             high = fraction
     if admitted:
-        _take(walk, plans, BEST, low)
+        _take(walk, best, low)
     else:
         walk.admission.fraction = 0.0
 
 
 @compiled
-def _take(walk: Record, plans: Record, which: int, fraction: float) -> None:
+def _take(walk: Data, plan: Plan, fraction: float) -> None:
     """Put a plan in force that makes a fraction of the wanted change [1]."""
-    copy_plan(plans[LIVE], plans[which])
+    copy_plan(walk.plan, plan)
     walk.admission.fraction = fraction

@@ -9,8 +9,8 @@ from math import exp, log
 from typing import NamedTuple
 
 from compilation import compiled
-from compilation.record import record_type
 from walking.command import BALANCE, LANDING_FROZEN, LANDING_SPEED, ZMP_REGION
+from walking.data import Data
 from walking.footsteps import (
     Foothold,
     equal,
@@ -23,19 +23,15 @@ from walking.footsteps import (
 )
 from walking.gait import aimed, shorten, support_foot
 from walking.generator import admit, keeps_plan, planned_dcm
+from walking.model import Model
 from walking.parameters import CONTROL_PERIOD
 from walking.pendulum import dcm_of
 from walking.plan_departure import return_to_plan
 from walking.plane import Point, clamp, dead_zone, rotate, rotate_back
-from walking.records import Record
-from walking.reference import LIVE, WANTED, plan_walk, reference_of
+from walking.reference import plan_walk
 from walking.steering import moves
 from walking.support import Region, clip
 from walking.timing import equal_clocks
-
-PLACING = record_type(applied=(float, 3), bound=int, moved_x=float, moved_y=float)
-"""Foot placement: velocity that the footsteps follow; limits that bind, as bits; shift of the
-landing by a capture step [m]."""
 
 ROUNDING = 1e-6  # rounding error of a time in control ticks [1]
 
@@ -61,22 +57,23 @@ def ankle_gain(omega: float, lag: float, rate: float) -> float:
 
 
 @compiled
-def zmp_shift(zmp: Point, error: Point, region: Region, robot: Record) -> Point:
+def zmp_shift(zmp: Point, error: Point, region: Region, robot: Model) -> Point:
     """Return the shift of the ZMP by the ankles against a DCM error [m]."""
     gain = robot.ankle_gain
-    x, y = clip(region, zmp[0] + gain * error[0], zmp[1] + gain * error[1])
-    return x - zmp[0], y - zmp[1]
+    (zmp_x, zmp_y), (off_x, off_y) = zmp, error
+    x, y = clip(region, zmp_x + gain * off_x, zmp_y + gain * off_y)
+    return x - zmp_x, y - zmp_y
 
 
 @compiled
-def sole_margins(robot: Record) -> Point:
+def sole_margins(robot: Model) -> Point:
     """Return the ZMP margins of a sole, forward and lateral [m]."""
     support, margin = robot.support, robot.stabilizer.sole_margin
     return support.half_length - margin, support.half_width - margin
 
 
 @compiled
-def exceeds(foot: Foothold, error: Point, ratio: float, robot: Record) -> bool:
+def exceeds(foot: Foothold, error: Point, ratio: float, robot: Model) -> bool:
     """Whether a DCM error [m] exceeds a ratio [1] of the ZMP margins of the sole."""
     length, width = sole_margins(robot)
     x, y = rotate_back(foot.yaw, error[0], error[1])
@@ -129,7 +126,7 @@ def capture_time(omega: float, time: float, off: float, ahead: float, reach: flo
 
 @compiled
 def capture_step(
-    support: Foothold, landing: Foothold, error: Point, ahead: Point, ticks_left: int, robot: Record
+    support: Foothold, landing: Foothold, error: Point, ahead: Point, ticks_left: int, robot: Model
 ) -> Capture:
     """Return the capture step for the DCM error beyond the dead zone of the ankles.
 
@@ -161,16 +158,15 @@ def capture_step(
 
 
 @compiled
-def _needed_capture(walk: Record, plan: Record, landing: Foothold, robot: Record) -> Capture:
+def _needed_capture(walk: Data, landing: Foothold, robot: Model) -> Capture:
     """Return the capture step for the measured DCM."""
-    gait, ramps, sensing = plan.gait, reference_of(plan), walk.sensing
-    support = support_foot(gait)
-    x, y = planned_dcm(walk, plan, robot)
+    gait, error, ramp = walk.plan.gait, walk.error, walk.plan.ramps[0]
+    support, (x, y) = support_foot(gait), planned_dcm(walk, robot)
     body_x, body_y = dcm_of(walk.pendulum, robot)
-    off = (body_x + sensing.dcm_x - x, body_y + sensing.dcm_y - y)
+    off = (body_x + error.dcm_x - x, body_y + error.dcm_y - y)
     if not exceeds(support, off, robot.stabilizer.capture_dead_zone, robot):
         return Capture(False, landing, 0)
-    ahead = (x - ramps[0].bx, y - ramps[0].by)
+    ahead = (x - ramp.bx, y - ramp.by)
     return capture_step(support, landing, off, ahead, gait.ticks_left, robot)
 
 
@@ -178,76 +174,88 @@ def _needed_capture(walk: Record, plan: Record, landing: Foothold, robot: Record
 
 
 @compiled
-def place_foot(walk: Record, plans: Record, region: Region, robot: Record) -> None:
+def place_foot(walk: Data, region: Region, robot: Model) -> int:
     """Choose landing and timing of the swing foot in this tick: the plan in force.
 
     Args:
         walk: state, changed.
-        plans: plans (4,), see `LIVE`; changed.
         region: admissible ZMP in this tick.
         robot: constants.
+
+    Returns:
+        limits that bind.
     """
-    placing, gait, wanted = walk.placing, plans[LIVE].gait, walk.steering.wanted
+    placing, gait, wanted = walk.placing, walk.plan.gait, walk.steering.wanted
     adjustable = gait.adjustable
-    placing.bound = 0
     placing.moved_x = placing.moved_y = 0.0
-    landing = admit(walk, plans, region, robot)
-    _apply_velocity(walk, plans, robot)
+    landing = admit(walk, region, robot)
+    bound = _apply_velocity(walk, robot)
     if adjustable:
-        _capture(walk, plans[LIVE], landing, robot)
-    elif gait.stepping:
+        return bound | _capture(walk, landing, bound != 0, robot)
+    if gait.stepping:
         nominal = landing_of(support_foot(gait), wanted)
         if not is_same(nominal, foothold(gait.landing), robot):
-            placing.bound |= LANDING_FROZEN
+            bound |= LANDING_FROZEN
+    return bound
 
 
 @compiled
-def _apply_velocity(walk: Record, plans: Record, robot: Record) -> None:
+def _apply_velocity(walk: Data, robot: Model) -> int:
     """Set the velocity that the footsteps follow: as far as the wanted plan is admitted."""
-    placing, admission, steering = walk.placing, walk.admission, walk.steering
-    if admission.fraction < 1.0:
-        if _differs(plans, walk, robot):
-            placing.bound |= ZMP_REGION
-        for k in range(3):
-            change = steering.velocity[k] - placing.applied[k]
-            placing.applied[k] += admission.fraction * change
-    else:
-        for k in range(3):
-            placing.applied[k] = steering.velocity[k]
+    applied, wanted, fraction = (
+        walk.placing.applied,
+        walk.steering.velocity,
+        walk.admission.fraction,
+    )
+    if fraction == 1.0:
+        walk.placing.applied = wanted
+        return 0
+    applied.vx += fraction * (wanted.vx - applied.vx)
+    applied.vy += fraction * (wanted.vy - applied.vy)
+    applied.wz += fraction * (wanted.wz - applied.wz)
+    return ZMP_REGION if _differs(walk, robot) else 0
 
 
 @compiled
-def _differs(plans: Record, walk: Record, robot: Record) -> bool:
+def _differs(walk: Data, robot: Model) -> bool:
     """Whether the admitted plan differs from the wanted one."""
-    live, wanted = plans[LIVE], plans[WANTED]
+    live, wanted = walk.plan, walk.admission.wanted
     retimed = not equal_clocks(live.gait.clock, wanted.gait.clock)
     if retimed or live.moving != wanted.moving:
         return True
     if not equal_strides(live.following, wanted.following):
         return True
     nominal = landing_of(support_foot(live.gait), walk.steering.wanted)
-    differs: bool = live.gait.adjustable and not is_same(nominal, foothold(live.landing), robot)
-    return differs
+    return live.gait.adjustable and not is_same(nominal, foothold(live.landing), robot)
 
 
 @compiled
-def _capture(walk: Record, plan: Record, landing: Foothold, robot: Record) -> None:
-    """Aim at the landing of a capture step if one is needed."""
-    placing, gait, steering, goal = walk.placing, plan.gait, walk.steering, landing
-    capture = _needed_capture(walk, plan, landing, robot)
+def _capture(walk: Data, landing: Foothold, limited: bool, robot: Model) -> int:
+    """Aim at the landing of a capture step if one is needed; return the limits that bind.
+
+    Args:
+        walk: state, changed.
+        landing: landing of the plan.
+        limited: whether the generator limits this plan.
+        robot: constants.
+    """
+    placing, plan, steering, goal = walk.placing, walk.plan, walk.steering, landing
+    gait = plan.gait
+    capture = _needed_capture(walk, landing, robot)
     if capture.needed and shorten(gait, walk.limbs.feet, capture.ticks, capture.landing, robot):
         # The timing has changed: plan again.
         return_to_plan(walk)
         plan_walk(plan, landing, steering.wanted, moves(steering), robot)
-        capture = _needed_capture(walk, plan, landing, robot)
+        capture = _needed_capture(walk, landing, robot)
     if capture.needed and not gait.double:
         goal = capture.landing
         placing.moved_x, placing.moved_y = goal.x - landing.x, goal.y - landing.y
     put(gait.landing, aimed(gait, foothold(gait.landing), goal, robot))
     now, nominal = foothold(gait.landing), landing_of(support_foot(gait), steering.wanted)
-    if gait.shortened or not is_same(goal, landing, robot):
-        placing.bound |= BALANCE
-    elif not placing.bound & ZMP_REGION and not is_same(nominal, now, robot):
-        placing.bound |= LANDING_SPEED
     if not keeps_plan(gait, robot) and not equal(now, landing):
         plan_walk(plan, now, steering.wanted, moves(steering), robot)
+    if gait.shortened or not is_same(goal, landing, robot):
+        return BALANCE
+    if not limited and not is_same(nominal, now, robot):
+        return LANDING_SPEED
+    return 0

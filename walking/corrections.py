@@ -7,50 +7,22 @@ one foot and closes it with the other one; only the mean over both is the comman
 from math import cos, exp, sin
 
 from compilation import compiled
-from compilation.record import record_type
+from walking.data import Corrections
+from walking.model import Model
 from walking.parameters import CONTROL_PERIOD
-from walking.plane import Point, Vector, clamp
-from walking.records import Record
-
-CORRECTIONS = record_type(
-    # Gait cycle: first support foot and the last one, -1 for none.
-    first=int,
-    support=int,
-    # Decaying maximum of the DCM error [m].
-    max_error=float,
-    # Heading: held offset [rad], yaw rate [rad/s].
-    held=float,
-    turn=float,
-    # Speed: command, correction [m/s], last odometry pose, displacement [m] and ticks of the cycle.
-    steady=bool,
-    command=(float, 3),
-    speed=(float, 2),
-    posed=bool,
-    pose=(float, 3),
-    displacement=(float, 2),
-    ticks=int,
-    whole=bool,
-    # CoM offset: goal, sum of the errors and their number (-1: cycle discarded), offset [m].
-    goal=(float, 2),
-    error_sum=(float, 2),
-    errors=int,
-    com_offset=(float, 2),
-    # Ticks of contact of the swing foot.
-    contact=int,
-)
-"""Slow corrections, see `walking.corrections`."""
+from walking.plane import Point, Vector, clamp, within
 
 NO_FOOT = -1
 
 
 @compiled
-def restart_cycle(corrections: Record) -> None:
+def restart_cycle(corrections: Corrections) -> None:
     """Restart the gait cycle with the next support foot."""
     corrections.first = corrections.support = NO_FOOT
 
 
 @compiled
-def cycle_begins(corrections: Record, support: int) -> bool:
+def cycle_begins(corrections: Corrections, support: int) -> bool:
     """Whether a cycle begins in this tick with support foot `support`."""
     if corrections.first == NO_FOOT:
         corrections.first = support
@@ -60,7 +32,7 @@ def cycle_begins(corrections: Record, support: int) -> bool:
 
 
 @compiled
-def speed_ratio(corrections: Record, error: float, robot: Record) -> float:
+def speed_ratio(corrections: Corrections, error: float, robot: Model) -> float:
     """Return the speed ratio [1]: slowdown by the decaying maximum of the DCM error [m]."""
     p = robot.stabilizer
     decay = exp(-CONTROL_PERIOD / p.slowdown_time)
@@ -69,12 +41,12 @@ def speed_ratio(corrections: Record, error: float, robot: Record) -> float:
         return 1.0
     error_range = p.slowdown_full_error - p.slowdown_start_error
     excess = (corrections.max_error - p.slowdown_start_error) / error_range
-    ratio: float = 1.0 - (1.0 - p.min_speed_ratio) * min(1.0, max(0.0, excess))
+    ratio: float = 1.0 - (1.0 - p.min_speed_ratio) * within(excess, 0.0, 1.0)
     return ratio
 
 
 @compiled
-def heading_rate(corrections: Record, ahead: float, renew: bool, robot: Record) -> float:
+def heading_rate(corrections: Corrections, ahead: float, renew: bool, robot: Model) -> float:
     """Return the yaw rate against yaw slip of the feet [rad/s].
 
     Proportional feedback of the heading error, constant over a gait cycle: one footstep of a cycle
@@ -96,20 +68,20 @@ def heading_rate(corrections: Record, ahead: float, renew: bool, robot: Record) 
 
 
 @compiled
-def reset_speed(corrections: Record) -> None:
+def reset_speed(corrections: Corrections) -> None:
     """Discard the correction of the speed."""
     corrections.steady = corrections.posed = corrections.whole = False
-    corrections.speed[0] = corrections.speed[1] = 0.0
+    corrections.speed.x = corrections.speed.y = 0.0
 
 
 @compiled
 def speed_correction(
-    corrections: Record,
+    corrections: Corrections,
     pose: Vector,
     velocity: Vector,
     begins: bool,
     disturbed: bool,
-    robot: Record,
+    robot: Model,
 ) -> Point:
     """Return the correction of (vx, vy) [m/s, m/s] against slip and short landings of the feet.
 
@@ -126,49 +98,50 @@ def speed_correction(
         robot: constants.
     """
     c = corrections
-    if not c.steady or velocity != (c.command[0], c.command[1], c.command[2]):
+    if not c.steady or velocity != (c.command.vx, c.command.vy, c.command.wz):
         reset_speed(c)
         c.steady = True
-        for k in range(3):
-            c.command[k] = velocity[k]
+        c.command.vx, c.command.vy, c.command.wz = velocity
     if c.posed:
         _add_displacement(c, pose)
     c.posed = True
-    for k in range(3):
-        c.pose[k] = pose[k]
+    c.pose.x, c.pose.y, c.pose.yaw = pose
     c.whole = c.whole and not disturbed
     if begins:
         if c.whole:
             p, time = robot.stabilizer, c.ticks * CONTROL_PERIOD
-            for k in range(2):
-                missing = c.displacement[k] / time - velocity[k]
-                c.speed[k] = clamp(c.speed[k] - p.speed_gain * missing, p.max_speed_correction)
+            vx, vy, _ = velocity
+            x = c.speed.x - p.speed_gain * (c.displacement.x / time - vx)
+            y = c.speed.y - p.speed_gain * (c.displacement.y / time - vy)
+            c.speed.x, c.speed.y = (
+                clamp(x, p.max_speed_correction),
+                clamp(y, p.max_speed_correction),
+            )
         c.whole, c.ticks = True, 0
-        c.displacement[0] = c.displacement[1] = 0.0
-    return c.speed[0], c.speed[1]
+        c.displacement.x = c.displacement.y = 0.0
+    return c.speed.x, c.speed.y
 
 
 @compiled
-def _add_displacement(corrections: Record, pose: Vector) -> None:
+def _add_displacement(corrections: Corrections, pose: Vector) -> None:
     """Add the displacement of a tick in the mean heading."""
-    before, displacement = corrections.pose, corrections.displacement
-    dx, dy = pose[0] - before[0], pose[1] - before[1]
-    middle = 0.5 * (before[2] + pose[2])
+    before, displacement, (x, y, yaw) = corrections.pose, corrections.displacement, pose
+    dx, dy, middle = x - before.x, y - before.y, 0.5 * (before.yaw + yaw)
     c, s = cos(middle), sin(middle)
-    displacement[0] = displacement[0] + c * dx + s * dy
-    displacement[1] = displacement[1] + c * dy - s * dx
+    displacement.x = displacement.x + c * dx + s * dy
+    displacement.y = displacement.y + c * dy - s * dx
     corrections.ticks += 1
 
 
 @compiled
-def discard_offset_cycle(corrections: Record) -> None:
+def discard_offset_cycle(corrections: Corrections) -> None:
     """Discard the present cycle of the CoM offset; keep the offset."""
     corrections.errors = -1
 
 
 @compiled
 def correct_offset(
-    corrections: Record, error: Point, begins: bool, disturbed: bool, robot: Record
+    corrections: Corrections, error: Point, begins: bool, disturbed: bool, robot: Model
 ) -> None:
     """Correct the CoM offset from the measured centre of pressure, once per gait cycle.
 
@@ -185,24 +158,24 @@ def correct_offset(
     c, p = corrections, robot.stabilizer
     if begins:
         if c.errors > 0:
-            for k in range(2):
-                change = p.com_offset_gain * c.error_sum[k] / c.errors
-                c.goal[k] = clamp(c.goal[k] - change, p.max_com_offset)
-        c.error_sum[0] = c.error_sum[1] = 0.0
+            x = c.goal.x - p.com_offset_gain * c.error_sum.x / c.errors
+            y = c.goal.y - p.com_offset_gain * c.error_sum.y / c.errors
+            c.goal.x, c.goal.y = clamp(x, p.max_com_offset), clamp(y, p.max_com_offset)
+        c.error_sum.x = c.error_sum.y = 0.0
         c.errors = 0
     if disturbed:
         discard_offset_cycle(c)
     elif c.errors >= 0:
-        c.error_sum[0] += error[0]
-        c.error_sum[1] += error[1]
+        x, y = error
+        c.error_sum.x, c.error_sum.y = c.error_sum.x + x, c.error_sum.y + y
         c.errors += 1
     step = p.max_com_offset_rate * CONTROL_PERIOD
-    for k in range(2):
-        c.com_offset[k] += clamp(c.goal[k] - c.com_offset[k], step)
+    c.com_offset.x += clamp(c.goal.x - c.com_offset.x, step)
+    c.com_offset.y += clamp(c.goal.y - c.com_offset.y, step)
 
 
 @compiled
-def detects_touchdown(corrections: Record, phase: float, force: float, robot: Record) -> bool:
+def detects_touchdown(corrections: Corrections, phase: float, force: float, robot: Model) -> bool:
     """Whether the swing foot is down, given the phase of its swing [1] and its load [N]."""
     p = robot.estimator
     contact = phase >= p.contact_phase and force > p.contact_force

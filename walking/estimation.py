@@ -11,51 +11,17 @@ import numpy as np
 from scipy.linalg import solve_discrete_are
 
 from compilation import compiled
-from compilation.record import record_type
+from compilation.record import Records
 from walking.body.kinematics import MOVE, frame_pose, tree_pass
 from walking.body.robot_model import RobotModel
+from walking.body.tree import Sole
+from walking.data import Body, Data, DeadReckoning, FootReference, PlanError
+from walking.model import LEFT, RIGHT, Link, Model
 from walking.odometry import reckon
 from walking.parameters import CONTROL_PERIOD, EstimatorParameters
+from walking.pendulum import dcm
 from walking.plane import Array, Indices, Point, Vector, from_frame, norm, rotate, rotate_back
-from walking.records import Record
 from walking.state import BodySensors
-
-FOOT = record_type(
-    x=float, y=float, z=float, yaw=float, load=float, pressure_x=float, pressure_y=float
-)
-"""Measured foot: position [m] and yaw [rad] in the level frame of the heading, load [N], centre of
-pressure in the foot frame [m]."""
-
-SENSING = record_type(
-    started=bool,
-    roll=float,
-    pitch=float,
-    heading=float,
-    turn_rate=float,
-    frames=(float, 3, 12),
-    feet=(FOOT, 2),
-    com=(float, 3),
-    right_load=float,
-    # Error of the body against the plan.
-    x=float,
-    y=float,
-    vx=float,
-    vy=float,
-    weighted=bool,
-    right_weight=float,
-    dcm_x=float,
-    dcm_y=float,
-    pressure_x=float,
-    pressure_y=float,
-)
-"""Measured body: filtered roll and pitch, heading of the IMU [rad]; yaw rate [rad/s]; rotation, row
-by row, and position of left foot, right foot and camera in the base frame [m]; feet; centre of mass
-[m]; load fraction of the right foot, 0.5 in the air [1]. Error of the CoM, x, y [m], vx, vy
-[m/s]; planned load fraction of the right foot, once known; error of the DCM in the plan frame [m],
-of the centre of pressure forward and left [m]."""
-
-CAMERA_FRAME = 2
-"""Index of the camera in `SENSING.frames`; the feet have 0 and 1."""
 
 
 def steady_gains(omega: float, parameters: EstimatorParameters) -> tuple[float, float]:
@@ -73,7 +39,9 @@ def steady_gains(omega: float, parameters: EstimatorParameters) -> tuple[float, 
     return position, velocity
 
 
-def sense(walks: Record, sensors: BodySensors, robot: RobotModel, robots: Record) -> bool:
+def sense(
+    walks: Records[Data], sensors: BodySensors, robot: RobotModel, robots: Records[Model]
+) -> bool:
     """Measure the body; return whether the robot is fallen.
 
     Args:
@@ -82,21 +50,28 @@ def sense(walks: Record, sensors: BodySensors, robot: RobotModel, robots: Record
         robot: model of the robot.
         robots: constants (1,).
     """
-    rest = (sensors.orientation, sensors.gyro, sensors.foot_force, robot.links, robot.order, robots)
-    fallen: bool = watch(walks, sensors.joint_position, *rest)
-    return fallen
+    return watch(
+        walks,
+        sensors.joint_position,
+        sensors.orientation,
+        sensors.gyro,
+        sensors.foot_force,
+        robot.links,
+        robot.order,
+        robots,
+    )
 
 
 @compiled
 def watch(
-    walks: Record,
+    walks: Records[Data],
     angles: Array,
     orientation: Array,
     gyro: Array,
     pads: Array,
-    links: Array,
+    links: Records[Link],
     order: Indices,
-    robots: Record,
+    robots: Records[Model],
 ) -> bool:
     """Measure the body; return whether the robot is fallen.
 
@@ -110,115 +85,113 @@ def watch(
         order: order of its joints.
         robots: constants (1,).
     """
-    walk, robot, poses = walks[0], robots[0], np.empty((links.shape[0], 12))
+    walk, robot, poses = walks[0], robots[0], np.empty((links.size, 12))
     com = tree_pass(links, order, angles, poses)
     for k in range(3):
-        frame_pose(walk.sensing.frames[k], poses[robot.carriers[k]], robot.frames[k])
-    measure(walk.sensing, com, orientation, gyro, pads, robot)
+        frame_pose(walk.body.frames[k], poses[robot.carriers[k]], robot.frames[k])
+    measure(walk.body, com, orientation, gyro, pads, robot)
     walk.ticks += 1
-    return is_fallen(walk.sensing, robot)
+    return is_fallen(walk.body, robot)
 
 
 @compiled
 def measure(
-    sensing: Record,
+    body: Body,
     com: Vector,
     orientation: Array,
     gyro: Array,
     pads: Array,
-    robot: Record,
+    robot: Model,
 ) -> None:
-    """Measure the body from `sensing.frames`, which must be set, and filter its tilt.
+    """Measure the body from `body.frames`, which must be set, and filter its tilt.
 
     Args:
-        sensing: changed.
+        body: changed.
         com: centre of mass for the measured joints in the base frame [m].
         orientation: attitude of the IMU, quaternion w-x-y-z (4,).
         gyro: angular velocity (3,) [rad/s].
         pads: load on front left, front right, back left and back right of each sole (2, 4) [N].
         robot: constants.
     """
-    w, x, y, z = orientation[0], orientation[1], orientation[2], orientation[3]
-    roll, pitch, sensing.heading = roll_pitch_yaw(w, x, y, z)
-    follow_tilt(sensing, roll, pitch, gyro, robot.estimator.tilt_gain)
-    sensing.turn_rate = gyro[2]
-    tilt = (sensing.roll, sensing.pitch)
+    roll, pitch, body.heading = roll_pitch_yaw(orientation)
+    follow_tilt(body, roll, pitch, gyro, robot.estimator.tilt_gain)
+    body.turn_rate = gyro[2]
+    tilt = (body.roll, body.pitch)
     for side in range(2):
-        foot, frame = sensing.feet[side], sensing.frames[side]
+        foot, frame = body.feet[side], body.frames[side]
         foot.x, foot.y, foot.z = level((frame[MOVE], frame[MOVE + 1], frame[MOVE + 2]), tilt)
         foot.yaw = atan2(frame[3], frame[0])
         foot.load, foot.pressure_x, foot.pressure_y = load_of(pads[side], robot.sole)
-    sensing.com[0], sensing.com[1], sensing.com[2] = level(com, tilt)
-    left = max(0.0, sensing.feet[0].load - robot.light_load)
-    right = max(0.0, sensing.feet[1].load - robot.light_load)
+    body.com_x, body.com_y, body.com_z = level(com, tilt)
+    left = max(0.0, body.feet[LEFT].load - robot.light_load)
+    right = max(0.0, body.feet[RIGHT].load - robot.light_load)
     both = left + right
-    sensing.right_load = right / both if both > 0.0 else 0.5
+    body.right_load = right / both if both > 0.0 else 0.5
 
 
 @compiled
-def base_height(sensing: Record) -> float:
+def base_height(body: Body) -> float:
     """Return the height of the base above the loaded feet [m]."""
-    load, left, right = sensing.right_load, sensing.feet[0], sensing.feet[1]
-    height: float = -(1.0 - load) * left.z - load * right.z
-    return height
+    load, left, right = body.right_load, body.feet[LEFT], body.feet[RIGHT]
+    return -(1.0 - load) * left.z - load * right.z
 
 
 @compiled
-def is_fallen(sensing: Record, robot: Record) -> bool:
+def is_fallen(body: Body, robot: Model) -> bool:
     """Whether the tilt of the trunk is that of a fallen robot."""
-    fallen: bool = norm(sensing.roll, sensing.pitch) > robot.estimator.fall_tilt
-    return fallen
+    return norm(body.roll, body.pitch) > robot.estimator.fall_tilt
 
 
 @compiled
-def compare_with_plan(sensing: Record, walk: Record, robot: Record, right_weight: float) -> None:
+def compare_with_plan(walk: Data, robot: Model) -> None:
     """Update the errors of CoM, DCM and centre of pressure against the plan of the last tick.
 
     Args:
-        sensing: changed.
-        walk: state of the last tick.
+        walk: measured body and plan of the last tick; the error is changed.
         robot: constants.
-        right_weight: planned load fraction of the right foot [1].
     """
-    limbs, pendulum = walk.limbs, walk.pendulum
-    frame = (limbs.pelvis[0], limbs.pelvis[1], limbs.pelvis[2])
-    planned = from_frame(frame, limbs.com[0], limbs.com[1])
-    lx, ly, lax, lay = _com_error(sensing, 0, limbs.feet[0], planned)
-    rx, ry, rax, ray = _com_error(sensing, 1, limbs.feet[1], planned)
-    rest, before = 1.0 - right_weight, sensing.right_weight
-    if sensing.weighted and right_weight != before:
+    right_weight = walk.plan.gait.right_weight
+    body, error, limbs, pendulum = walk.body, walk.error, walk.limbs, walk.pendulum
+    left, right = limbs.feet[LEFT], limbs.feet[RIGHT]
+    frame = (limbs.pelvis.x, limbs.pelvis.y, limbs.pelvis.yaw)
+    planned = from_frame(frame, limbs.com_x, limbs.com_y)
+    lx, ly, lax, lay = _com_error(body, LEFT, left, planned)
+    rx, ry, rax, ray = _com_error(body, RIGHT, right, planned)
+    rest, before = 1.0 - right_weight, error.right_weight
+    if error.weighted and right_weight != before:
         # A jump of the plan, not a velocity of the body.
-        sensing.x += (right_weight - before) * (rx - lx)
-        sensing.y += (right_weight - before) * (ry - ly)
-    sensing.weighted, sensing.right_weight = True, right_weight
-    slip = sensing.turn_rate - limbs.turn_rate
+        error.x += (right_weight - before) * (rx - lx)
+        error.y += (right_weight - before) * (ry - ly)
+    error.weighted, error.right_weight = True, right_weight
+    slip = body.turn_rate - limbs.turn_rate
     off = (rest * lx + right_weight * rx, rest * ly + right_weight * ry)
     turned = (-slip * (rest * lay + right_weight * ray), slip * (rest * lax + right_weight * rax))
-    filter_error(sensing, off, (walk.zmp_shift_x, walk.zmp_shift_y), turned, robot)
-    feet, w = limbs.feet, robot.omega
-    left, right = feet[0], feet[1]
-    x, y, load = pressure(sensing, (left.x, left.y, left.yaw), (right.x, right.y, right.yaw))
+    filter_error(error, off, (walk.zmp_shift.x, walk.zmp_shift.y), turned, robot)
+    x, y, load = pressure(body, (left.x, left.y, left.yaw), (right.x, right.y, right.yaw))
     if load > 0.0:
-        x, y = rotate_back(frame[2], x - pendulum.zmp_x, y - pendulum.zmp_y)
-    sensing.pressure_x, sensing.pressure_y = x, y
-    sensing.dcm_x, sensing.dcm_y = sensing.x + sensing.vx / w, sensing.y + sensing.vy / w
+        x, y = rotate_back(limbs.pelvis.yaw, x - pendulum.zmp_x, y - pendulum.zmp_y)
+    error.pressure_x, error.pressure_y = x, y
+    error.dcm_x, error.dcm_y = dcm(error.x, error.vx, robot), dcm(error.y, error.vy, robot)
 
 
 @compiled
-def estimate(
-    walk: Record, odometry: Record, right_weight: float, stepping: bool, robot: Record
-) -> None:
+def estimate(walk: Data, odometry: DeadReckoning, robot: Model) -> None:
     """Run one tick of odometry and of the errors against the plan, after `measure`."""
-    sensing = walk.sensing
-    left, right = sensing.feet[0], sensing.feet[1]
+    body = walk.body
+    left, right = body.feet[LEFT], body.feet[RIGHT]
     feet = ((left.x, left.y), (right.x, right.y))
-    reckon(odometry, sensing.heading, feet, sensing.right_load, stepping)
-    compare_with_plan(sensing, walk, robot, right_weight)
+    reckon(odometry, body.heading, feet, body.right_load, walk.plan.gait.stepping)
+    compare_with_plan(walk, robot)
 
 
 @compiled
-def roll_pitch_yaw(w: float, x: float, y: float, z: float) -> Vector:
-    """Return roll, pitch and heading of an attitude R = Rz(yaw) Ry(pitch) Rx(roll) [rad]."""
+def roll_pitch_yaw(orientation: Array) -> Vector:
+    """Return roll, pitch and heading of an attitude R = Rz(yaw) Ry(pitch) Rx(roll) [rad].
+
+    Args:
+        orientation: attitude, quaternion w-x-y-z (4,).
+    """
+    w, x, y, z = orientation[0], orientation[1], orientation[2], orientation[3]
     sine = 2.0 * (w * y - x * z)
     cosine = sqrt(max(0.0, 1.0 - sine * sine))
     return (
@@ -229,20 +202,20 @@ def roll_pitch_yaw(w: float, x: float, y: float, z: float) -> Vector:
 
 
 @compiled
-def follow_tilt(sensing: Record, roll: float, pitch: float, gyro: Array, gain: float) -> None:
+def follow_tilt(body: Body, roll: float, pitch: float, gyro: Array, gain: float) -> None:
     """Update the complementary filter of roll and pitch.
 
     The gyro is integrated, with the coupling of roll and pitch by the yaw rate, and corrected
     towards the attitude of the IMU.
 
     Args:
-        sensing: changed.
+        body: changed.
         roll: roll of the IMU [rad].
         pitch: pitch of the IMU [rad].
         gyro: angular velocity (3,) [rad/s].
         gain: correction per tick [1].
     """
-    s = sensing
+    s = body
     if not s.started:
         s.started, s.roll, s.pitch = True, roll, pitch
         return
@@ -253,7 +226,7 @@ def follow_tilt(sensing: Record, roll: float, pitch: float, gyro: Array, gain: f
 
 
 @compiled
-def load_of(pads: Array, sole: Record) -> Vector:
+def load_of(pads: Array, sole: Sole) -> Vector:
     """Return the load on a sole [N] and its centre of pressure in the foot frame x, y [m]."""
     front_left, front_right, back_left, back_right = pads[0], pads[1], pads[2], pads[3]
     force = front_left + front_right + back_left + back_right
@@ -267,11 +240,11 @@ def load_of(pads: Array, sole: Record) -> Vector:
 
 
 @compiled
-def pressure(sensing: Record, left: Vector, right: Vector) -> Vector:
+def pressure(body: Body, left: Vector, right: Vector) -> Vector:
     """Return centre of pressure (0, 0 in the air) x, y [m] and load [N] of feet at x, y, yaw."""
     x = y = load = 0.0
     for side in range(2):
-        frame, foot = right if side == 1 else left, sensing.feet[side]
+        frame, foot = right if side == RIGHT else left, body.feet[side]
         px, py = from_frame(frame, foot.pressure_x, foot.pressure_y)
         x += foot.load * px
         y += foot.load * py
@@ -281,26 +254,26 @@ def pressure(sensing: Record, left: Vector, right: Vector) -> Vector:
 
 @compiled
 def filter_error(
-    sensing: Record, measured: Point, zmp_shift: Point, slip: Point, robot: Record
+    error: PlanError, measured: Point, zmp_shift: Point, slip: Point, robot: Model
 ) -> None:
     """Update the filter of the CoM error.
 
     Args:
-        sensing: x, y, vx, vy are changed.
+        error: x, y, vx, vy are changed.
         measured: error of the centre of mass [m].
         zmp_shift: d, shift of the ZMP by the ankles [m].
         slip: velocity of the body from a stance foot that turns on the floor, not measured by the
             encoders [m/s].
         robot: constants.
     """
-    s = sensing
-    s.x, s.vx = _filter_axis(s.x, s.vx, measured[0], zmp_shift[0], slip[0], robot)
-    s.y, s.vy = _filter_axis(s.y, s.vy, measured[1], zmp_shift[1], slip[1], robot)
+    e, (x, y), (dx, dy), (vx, vy) = error, measured, zmp_shift, slip
+    e.x, e.vx = _filter_axis(e.x, e.vx, x, dx, vx, robot)
+    e.y, e.vy = _filter_axis(e.y, e.vy, y, dy, vy, robot)
 
 
 @compiled
 def _filter_axis(
-    now: float, rate: float, measured: float, zmp_shift: float, slip: float, robot: Record
+    now: float, rate: float, measured: float, zmp_shift: float, slip: float, robot: Model
 ) -> Point:
     w, period = robot.omega, CONTROL_PERIOD
     change = w * w * (now - zmp_shift)
@@ -314,7 +287,7 @@ def _filter_axis(
 
 @compiled
 def _com_error(
-    sensing: Record, side: int, reference: Record, planned: Point
+    body: Body, side: int, reference: FootReference, planned: Point
 ) -> tuple[float, float, float, float]:
     """Return the error of the centre of mass, given a foot at its planned position.
 
@@ -322,9 +295,9 @@ def _com_error(
         measured minus planned centre of mass, and measured centre of mass minus foot, in the plan
         frame x, y, x, y [m].
     """
-    foot = sensing.feet[side]
+    foot = body.feet[side]
     turned = reference.yaw - foot.yaw
-    x, y = rotate(turned, sensing.com[0] - foot.x, sensing.com[1] - foot.y)
+    x, y = rotate(turned, body.com_x - foot.x, body.com_y - foot.y)
     return x + reference.x - planned[0], y + reference.y - planned[1], x, y
 
 

@@ -6,56 +6,37 @@ the DCM error and damp the trunk.
 """
 
 from compilation import compiled
-from compilation.record import record_type
+from compilation.record import Records
+from walking.data import Data, Pose
+from walking.model import RIGHT, Joint, Model
 from walking.parameters import CONTROL_PERIOD
-from walking.plane import Array, Point, Vector, clamp, rotate_back
-from walking.records import Record
-
-JOINT = record_type(
-    lower=float,
-    upper=float,
-    lag=float,
-    compliance=float,
-    ready=float,
-    in_q=int,
-    in_v=int,
-    angle=float,
-    rate=float,
-    rate_ahead=float,
-    offset=float,
-)
-"""Joint: limits [rad], velocity lag [s], compliance [rad/(N m)], angle of the ready posture [rad],
-indices in position and velocity of the dynamic model; planned angle [rad] and rate [rad/s], rate
-for the feed-forward [rad/s], feed-forward offset [rad]."""
+from walking.plane import Array, Point, Vector, clamp, rotate_back, within
 
 LEG_JOINTS = 6
 
 
 @compiled
 def set_motion(
-    joints: Record,
+    joints: Records[Joint],
     angles: Array,
-    q: Array,
-    v: Array,
-    a: Array,
+    motion: tuple[Array, Array, Array],
     yaw: float,
     acceleration: Point,
-    robot: Record,
+    robot: Model,
 ) -> None:
     """Differentiate the joint angles and set the motion of the dynamic model.
 
     Args:
         joints: planned angles and rates, changed (n,).
         angles: planned angles of this tick (n,) [rad].
-        q: position of the dynamic model, set.
-        v: velocity of the dynamic model, set.
-        a: acceleration of the dynamic model, set.
+        motion: position, velocity and acceleration of the dynamic model, set.
         yaw: heading of the pelvis in the plan frame [rad].
         acceleration: planned acceleration of the base in the plan frame [m/s²].
         robot: constants.
     """
-    p = robot.stabilizer
-    a[0], a[1] = rotate_back(yaw, acceleration[0], acceleration[1])
+    p, (q, v, a) = robot.stabilizer, motion
+    ax, ay = acceleration
+    a[0], a[1] = rotate_back(yaw, ax, ay)
     for k in range(angles.size):
         joint = joints[k]
         rate = (angles[k] - joint.angle) / CONTROL_PERIOD
@@ -68,12 +49,12 @@ def set_motion(
 
 @compiled
 def set_offsets(
-    joints: Record,
-    walk: Record,
+    joints: Records[Joint],
+    walk: Data,
     forces: Array,
     gyro: Array,
     foot_zmps: tuple[Point, Point],
-    robot: Record,
+    robot: Model,
 ) -> None:
     """Set the feed-forward offsets of all setpoints.
 
@@ -93,15 +74,16 @@ def set_offsets(
     for k in range(joints.size):
         joints[k].offset = forces[joints[k].in_v]
     fx, fy, fz, nx, ny = forces[0], forces[1], forces[2], forces[3], forces[4]
-    lx, ly = _in_base(limbs.pelvis, foot_zmps[0])
-    rx, ry = _in_base(limbs.pelvis, foot_zmps[1])
+    left_zmp, right_zmp = foot_zmps
+    lx, ly = _in_base(limbs.pelvis, left_zmp)
+    rx, ry = _in_base(limbs.pelvis, right_zmp)
     # ZMP of the whole body relative to the load-weighted mean of the foot ZMPs.
     dx = -(ny + height * fx) / fz - left_load * lx - right_load * rx
     dy = (nx - height * fy) / fz - left_load * ly - right_load * ry
     for side in range(2):
-        load = right_load if side == 1 else left_load
+        load = right_load if side == RIGHT else left_load
         if load > 0.0:
-            x, y = (rx, ry) if side == 1 else (lx, ly)
+            x, y = (rx, ry) if side == RIGHT else (lx, ly)
             point = (x + dx, y + dy, -height)
             force = (load * fx, load * fy, load * fz)
             for k in range(LEG_JOINTS):
@@ -110,9 +92,9 @@ def set_offsets(
     for k in range(joints.size):
         joint = joints[k]
         joint.offset = joint.offset * joint.compliance + joint.rate_ahead * joint.lag
-    shift = rotate_back(limbs.pelvis[2], walk.zmp_shift_x, walk.zmp_shift_y)
+    shift = rotate_back(limbs.pelvis.yaw, walk.zmp_shift.x, walk.zmp_shift.y)
     for side in range(2):
-        load = right_load if side == 1 else left_load
+        load = right_load if side == RIGHT else left_load
         if load > 0.0:
             for k in range(robot.ankle, LEG_JOINTS):
                 joint = joints[LEG_JOINTS * side + k]
@@ -131,8 +113,8 @@ def support_torque(axis: Array, origin: Array, point: Vector, force: Vector) -> 
         point: point of contact, in the base frame [m].
         force: force of the floor on the foot, in the base frame [N].
     """
-    x, y, z = point[0] - origin[0], point[1] - origin[1], point[2] - origin[2]
-    fx, fy, fz = force
+    (px, py, pz), (fx, fy, fz) = point, force
+    x, y, z = px - origin[0], py - origin[1], pz - origin[2]
     torque: float = -(
         axis[0] * (y * fz - z * fy) + axis[1] * (z * fx - x * fz) + axis[2] * (x * fy - y * fx)
     )
@@ -140,7 +122,7 @@ def support_torque(axis: Array, origin: Array, point: Vector, force: Vector) -> 
 
 
 @compiled
-def ankle_offset(axis: Array, shift: Point, gyro: Array, compliance: float, robot: Record) -> float:
+def ankle_offset(axis: Array, shift: Point, gyro: Array, compliance: float, robot: Model) -> float:
     """Return the offset of an ankle joint [rad] that shifts the ZMP of a foot and damps the trunk.
 
     Args:
@@ -150,15 +132,16 @@ def ankle_offset(axis: Array, shift: Point, gyro: Array, compliance: float, robo
         compliance: compliance of the servo [rad/(N m)].
         robot: constants.
     """
-    moved = robot.weight * compliance * (axis[1] * shift[0] - axis[0] * shift[1])
+    dx, dy = shift
+    moved = robot.weight * compliance * (axis[1] * dx - axis[0] * dy)
     damping = robot.stabilizer.gyro_gain * (axis[0] * gyro[0] + axis[1] * gyro[1])
     offset: float = moved + damping
     return offset
 
 
 @compiled
-def set_setpoints(
-    joints: Record, angles: Array, measured: Array, setpoint: Array, robot: Record
+def set_within_range(
+    joints: Records[Joint], angles: Array, measured: Array, setpoint: Array, robot: Model
 ) -> None:
     """Set the setpoints of the servos within the ranges of the joints.
 
@@ -171,13 +154,14 @@ def set_setpoints(
     """
     for k in range(joints.size):
         joint = joints[k]
-        goal = min(joint.upper, max(joint.lower, angles[k] + joint.offset))
+        goal = within(angles[k] + joint.offset, joint.lower, joint.upper)
         if robot.stiffening > 1.0 and k < 2 * LEG_JOINTS:
             goal += (robot.stiffening - 1.0) * (goal - measured[k])
         setpoint[k] = goal
 
 
 @compiled
-def _in_base(pelvis: Array, point: Point) -> Point:
+def _in_base(pelvis: Pose, point: Point) -> Point:
     """Express a point of the plan frame in the base frame [m]."""
-    return rotate_back(pelvis[2], point[0] - pelvis[0], point[1] - pelvis[1])
+    x, y = point
+    return rotate_back(pelvis.yaw, x - pelvis.x, y - pelvis.y)

@@ -9,26 +9,21 @@ from math import cos, sin, sqrt
 from typing import NamedTuple
 
 from compilation import compiled
-from compilation.record import record_type
+from walking.body.tree import Sole
 from walking.command import CLEARANCE, REACH, STEP_LENGTH, STEP_SIDE, STEP_TURN
+from walking.data import StepCommand, Timing
+from walking.model import FootholdRecord, Model, Strides
 from walking.parameters import CONTROL_PERIOD
-from walking.plane import Array, Point, Vector, clamp, from_frame, rotate_back
-from walking.records import Record
-
-FOOTHOLD = record_type(left=bool, x=float, y=float, yaw=float)
-"""`Foothold`."""
-
-STRIDES = record_type(right=FOOTHOLD, left=FOOTHOLD)
-"""Landing of either foot in the frame of the other."""
+from walking.plane import Point, Vector, clamp, from_frame, rotate_back
 
 POSITION_TOLERANCE = 0.024  # of equal footholds, per half stance [1]
 YAW_TOLERANCE = 1e-3  # of equal footholds [rad]
 STANCE_TOLERANCE = 0.6  # of a parallel stance, per half stance [1]
 STANCE_YAW_TOLERANCE = 0.05  # of a parallel stance [rad]
 STILL = (0.0, 0.0, 0.0)
-RIGHT, LEFT = -1.0, 1.0  # side of a foot
+RIGHT, LEFT = -1.0, 1.0  # side of the body
 
-Command = tuple[float, float, float, float, float, float]
+StepValues = tuple[float, float, float, float, float, float]
 """Fields of a `walking.command.CommandState` in order."""
 
 
@@ -48,14 +43,14 @@ class Foothold(NamedTuple):
 
 
 @compiled
-def foothold(record: Record) -> Foothold:
-    """Return the value of a record `FOOTHOLD`."""
+def foothold(record: FootholdRecord) -> Foothold:
+    """Return the value of a record."""
     return Foothold(record.left, record.x, record.y, record.yaw)
 
 
 @compiled
-def put(record: Record, foot: Foothold) -> None:
-    """Set a record `FOOTHOLD`."""
+def put(record: FootholdRecord, foot: Foothold) -> None:
+    """Set a record."""
     record.left, record.x, record.y, record.yaw = foot.left, foot.x, foot.y, foot.yaw
 
 
@@ -84,14 +79,14 @@ def equal(one: Foothold, other: Foothold) -> bool:
 
 
 @compiled
-def landing_of(support: Foothold, strides: Record) -> Foothold:
+def landing_of(support: Foothold, strides: Strides) -> Foothold:
     """Return the next foothold of the swing foot."""
     placement = strides.right if support.left else strides.left
     return placed(support, placement.x, placement.y, placement.yaw)
 
 
 @compiled
-def is_parallel(support: Foothold, other: Foothold, robot: Record) -> bool:
+def is_parallel(support: Foothold, other: Foothold, robot: Model) -> bool:
     """Whether the stance is parallel within tolerance.
 
     After an early touchdown or a capture step the foot is off its planned landing, with the
@@ -106,7 +101,7 @@ def is_parallel(support: Foothold, other: Foothold, robot: Record) -> bool:
 
 
 @compiled
-def is_same(one: Foothold, other: Foothold, robot: Record) -> bool:
+def is_same(one: Foothold, other: Foothold, robot: Model) -> bool:
     """Whether two footholds of a foot are equal within tolerance."""
     near = POSITION_TOLERANCE * robot.gait.half_stance
     return (
@@ -143,7 +138,7 @@ def stance_after(dx: float, dy: float, turned: float, stance: float) -> Point:
 
 
 @compiled
-def clear_of(y: float, turned: float, side: float, gap: float, sole: Record) -> float:
+def clear_of(y: float, turned: float, side: float, gap: float, sole: Sole) -> float:
     """Return the lateral landing with every corner clear of the strip of the support foot.
 
     Args:
@@ -162,7 +157,7 @@ def clear_of(y: float, turned: float, side: float, gap: float, sole: Record) -> 
 
 
 @compiled
-def within_reach(x: float, y: float, side: float, robot: Record) -> Point:
+def within_reach(x: float, y: float, side: float, robot: Model) -> Point:
     """Scale a landing in the frame of the support foot into the ellipse of reach [m]."""
     limits = robot.limits
     centre = side * 2.0 * robot.gait.half_stance
@@ -175,7 +170,7 @@ def within_reach(x: float, y: float, side: float, robot: Record) -> Point:
 
 
 @compiled
-def velocity_strides(strides: Record, velocity: Vector, time: float, robot: Record) -> bool:
+def velocity_strides(strides: Strides, velocity: Vector, time: float, robot: Model) -> bool:
     """Set the strides of a velocity.
 
     Args:
@@ -197,12 +192,12 @@ def velocity_strides(strides: Record, velocity: Vector, time: float, robot: Reco
 
 
 @compiled
-def _put_stride(strides: Record, side: float, x: float, y: float, turned: float) -> None:
+def _put_stride(strides: Strides, side: float, x: float, y: float, turned: float) -> None:
     put(strides.right if side == RIGHT else strides.left, Foothold(side == LEFT, x, y, turned))
 
 
 @compiled
-def _opened(velocity: Vector, time: float, side: float, robot: Record) -> Vector:
+def _opened(velocity: Vector, time: float, side: float, robot: Model) -> Vector:
     """Return the landing on a side; it opens the stance if the motion is to that side."""
     limits, (vx, vy, wz) = robot.limits, velocity
     dx = clamp(vx * time, limits.step_forward)
@@ -213,10 +208,10 @@ def _opened(velocity: Vector, time: float, side: float, robot: Record) -> Vector
 
 
 @compiled
-def command_strides(strides: Record, command: Array, turn: float, robot: Record) -> int:
+def command_strides(strides: Strides, command: StepCommand, turn: float, robot: Model) -> int:
     """Set the strides of a command state, turned by `turn` [rad]; return the limits that bind."""
     limits, gap, bound = robot.limits, robot.gait.foot_clearance, 0
-    forward, side_by, direction = command[2], command[3], command[4]
+    forward, side_by, direction = command.forward, command.side, command.direction
     dx = clamp(forward, limits.step_forward)
     apart = min(2.0 * robot.gait.half_stance + limits.step_side, side_by)
     turned = clamp(direction + turn, limits.step_turn)
@@ -239,7 +234,7 @@ def command_strides(strides: Record, command: Array, turn: float, robot: Record)
 
 
 @compiled
-def command_of(strides: Record, timing: Record) -> Command:
+def command_of(strides: Strides, timing: Timing) -> StepValues:
     """Return the command state of strides and timing, inverse of `command_strides`."""
     placement = strides.left
     forward, lateral = rotate_back(0.5 * placement.yaw, placement.x, placement.y)
@@ -254,7 +249,7 @@ def command_of(strides: Record, timing: Record) -> Command:
 
 
 @compiled
-def stride_limits(strides: Record, velocity: Vector, time: float, robot: Record) -> int:
+def stride_limits(strides: Strides, velocity: Vector, time: float, robot: Model) -> int:
     """Return the limits that bind on footsteps of a velocity.
 
     Args:
@@ -276,7 +271,7 @@ def stride_limits(strides: Record, velocity: Vector, time: float, robot: Record)
 
 
 @compiled
-def mean_velocity(strides: Record, time: float, robot: Record) -> Vector:
+def mean_velocity(strides: Strides, time: float, robot: Model) -> Vector:
     """Return the mean velocity of strides of duration `time` [s], inverse of `velocity_strides`."""
     vx = vy = wz = 0.0
     for side in (RIGHT, LEFT):
@@ -292,14 +287,14 @@ def mean_velocity(strides: Record, time: float, robot: Record) -> Vector:
 
 
 @compiled
-def towards_strides(strides: Record, one: Record, other: Record, fraction: float) -> None:
+def towards_strides(strides: Strides, one: Strides, other: Strides, fraction: float) -> None:
     """Set strides between two others, interpolated linearly."""
     put(strides.right, towards(foothold(one.right), foothold(other.right), fraction))
     put(strides.left, towards(foothold(one.left), foothold(other.left), fraction))
 
 
 @compiled
-def equal_strides(one: Record, other: Record) -> bool:
+def equal_strides(one: Strides, other: Strides) -> bool:
     """Whether strides are the same number by number."""
     return equal(foothold(one.right), foothold(other.right)) and equal(
         foothold(one.left), foothold(other.left)
@@ -307,9 +302,7 @@ def equal_strides(one: Record, other: Record) -> bool:
 
 
 @compiled
-def reachable(
-    support: Foothold, landing: Foothold, dx: float, dy: float, robot: Record
-) -> Foothold:
+def reachable(support: Foothold, landing: Foothold, dx: float, dy: float, robot: Model) -> Foothold:
     """Shift a landing by dx, dy [m], within reach and clear of the support foot."""
     side = LEFT if landing.left else RIGHT
     wx, wy = landing.x + dx - support.x, landing.y + dy - support.y
@@ -321,7 +314,7 @@ def reachable(
 
 
 @compiled
-def tendency(velocity: Vector, robot: Record) -> float:
+def tendency(velocity: Vector, robot: Model) -> float:
     """Return the motion across the stance: positive if the left foot opens it, zero for none."""
     _, vy, wz = velocity
     sideways: float = vy / robot.limits.vy + wz / robot.limits.wz

@@ -6,14 +6,14 @@ first stance. Times are control ticks.
 """
 
 from compilation import compiled
-from compilation.record import record_type
-from walking.footsteps import FOOTHOLD, Foothold, foothold, is_parallel, landing_of, put
+from compilation.record import Records
+from walking.data import FootReference, Gait, Plan, Timing
+from walking.footsteps import Foothold, foothold, is_parallel, landing_of, put
+from walking.model import LEFT, RIGHT, Model
 from walking.parameters import CONTROL_PERIOD
 from walking.plane import Point, clamp, from_frame
-from walking.records import Record
 from walking.swing import lift_profile, min_swing_ticks, move_foot, moved, rest_at
 from walking.timing import (
-    CLOCK,
     phase_of,
     put_shift,
     put_single_support,
@@ -22,39 +22,11 @@ from walking.timing import (
     ticks_of,
 )
 
-GAIT = record_type(
-    stepping=bool,
-    support=int,
-    completed=int,
-    landed_early=bool,
-    shortened=bool,
-    shift_fixed=bool,
-    footholds=(FOOTHOLD, 2),
-    landing=FOOTHOLD,
-    clock=CLOCK,
-    tick=int,
-    swing_height=float,
-    # Of clock and tick, see `walking.gait.update_phase`.
-    elapsed=int,
-    double=bool,
-    right_weight=float,
-    ticks_left=int,
-    swing_phase=float,
-    adjustable=bool,
-)
-"""Gait, see `walking.gait`: whether a footstep is under way; index of the support foot; completed
-footsteps; whether the swing foot touched down early, this is a capture step shorter than its
-timing, and the weight shift must keep its timing; present or last foothold of each foot; landing of
-the swing foot; clock, and ticks since the begin of the footstep; height of this swing [m]; then
-ticks since the begin of single support, whether double support is planned, planned load fraction of
-the right foot [1], ticks until the end of single support, phase of the swing [1], whether the
-landing may change."""
-
 # Clock
 
 
 @compiled
-def update_phase(gait: Record, robot: Record) -> None:
+def update_phase(gait: Gait, robot: Model) -> None:
     """Update the phase after a change of clock, tick or `landed_early`."""
     shift, single, stepping = gait.clock.shift, gait.clock.single, gait.stepping
     elapsed = gait.tick - shift.end
@@ -73,26 +45,25 @@ def update_phase(gait: Record, robot: Record) -> None:
 
 
 @compiled
-def swing_of(gait: Record) -> int:
+def swing_of(gait: Gait) -> int:
     """Return the index of the swing foot of this footstep."""
-    swing: int = 1 - gait.support
-    return swing
+    return 1 - gait.support
 
 
 @compiled
-def support_foot(gait: Record) -> Foothold:
+def support_foot(gait: Gait) -> Foothold:
     """Return the support foot of this footstep."""
     return foothold(gait.footholds[gait.support])
 
 
 @compiled
-def swing_foot(gait: Record) -> Foothold:
+def swing_foot(gait: Gait) -> Foothold:
     """Return the last foothold of the swing foot."""
     return foothold(gait.footholds[swing_of(gait)])
 
 
 @compiled
-def is_airborne(gait: Record) -> bool:
+def is_airborne(gait: Gait) -> bool:
     """Whether the swing foot is in the air."""
     airborne: bool = (
         gait.stepping and not gait.landed_early and not gait.double and 0.0 < gait.swing_phase < 1.0
@@ -101,7 +72,7 @@ def is_airborne(gait: Record) -> bool:
 
 
 @compiled
-def zmp_under(foot: Foothold, robot: Record) -> Point:
+def zmp_under(foot: Foothold, robot: Model) -> Point:
     """Return the ZMP of single support on a foot [m]."""
     pattern = robot.pattern
     inward = -pattern.zmp_inward if foot.left else pattern.zmp_inward
@@ -111,7 +82,7 @@ def zmp_under(foot: Foothold, robot: Record) -> Point:
 
 
 @compiled
-def zmp_between(one: Foothold, other: Foothold, robot: Record) -> Point:
+def zmp_between(one: Foothold, other: Foothold, robot: Model) -> Point:
     """Return the ZMP of equal loads on two feet [m]."""
     ax, ay = zmp_under(one, robot)
     bx, by = zmp_under(other, robot)
@@ -119,12 +90,12 @@ def zmp_between(one: Foothold, other: Foothold, robot: Record) -> Point:
 
 
 @compiled
-def scheduled_zmp(gait: Record, robot: Record) -> Point:
+def scheduled_zmp(gait: Gait, robot: Model) -> Point:
     """Return the scheduled ZMP [m]."""
     if gait.stepping:
         x, y = zmp_under(support_foot(gait), robot)
     else:
-        left, right = foothold(gait.footholds[0]), foothold(gait.footholds[1])
+        left, right = foothold(gait.footholds[LEFT]), foothold(gait.footholds[RIGHT])
         x, y = zmp_between(left, right, robot)
     shift = gait.clock.shift
     fraction = shift_fraction(shift, gait.tick)
@@ -138,9 +109,9 @@ def scheduled_zmp(gait: Record, robot: Record) -> Point:
 
 
 @compiled
-def stand(gait: Record, robot: Record) -> None:
+def stand(gait: Gait, robot: Model) -> None:
     """Begin to stand on the footholds, with the usual timing in `gait.clock.timing`."""
-    left, right = foothold(gait.footholds[0]), foothold(gait.footholds[1])
+    left, right = foothold(gait.footholds[LEFT]), foothold(gait.footholds[RIGHT])
     gait.tick = stop_ticks(robot)
     put_shift(gait.clock.shift, 0, gait.tick, zmp_between(left, right, robot), 0.5)
     put_single_support(gait.clock.single, gait.clock.timing.single, robot)
@@ -151,13 +122,13 @@ def stand(gait: Record, robot: Record) -> None:
 
 
 @compiled
-def stop_ticks(robot: Record) -> int:
+def stop_ticks(robot: Model) -> int:
     """Return the control ticks of the last double support."""
     return max(1, ticks_of(robot.gait.stop_time))
 
 
 @compiled
-def start(gait: Record, support: int, at_once: bool, robot: Record) -> None:
+def start(gait: Gait, support: int, at_once: bool, robot: Model) -> None:
     """Start to walk.
 
     Args:
@@ -176,7 +147,7 @@ def start(gait: Record, support: int, at_once: bool, robot: Record) -> None:
 
 @compiled
 def _begin(
-    gait: Record, support: int, double: int, zmp: Point, right_weight: float, robot: Record
+    gait: Gait, support: int, double: int, zmp: Point, right_weight: float, robot: Model
 ) -> None:
     gait.stepping, gait.support = True, support
     gait.landed_early = gait.shortened = gait.shift_fixed = False
@@ -189,7 +160,7 @@ def _begin(
 
 
 @compiled
-def retime(gait: Record, timing: Record, robot: Record) -> bool:
+def retime(gait: Gait, timing: Timing, robot: Model) -> bool:
     """Change the timing as far as the present footstep allows.
 
     A double support ends in the next tick at the earliest, a foot in the air takes at least
@@ -216,7 +187,9 @@ def retime(gait: Record, timing: Record, robot: Record) -> bool:
 
 
 @compiled
-def shorten(gait: Record, feet: Record, ticks: int, landing: Foothold, robot: Record) -> bool:
+def shorten(
+    gait: Gait, feet: Records[FootReference], ticks: int, landing: Foothold, robot: Model
+) -> bool:
     """Shorten the footstep for a capture step.
 
     Args:
@@ -255,14 +228,14 @@ def shorten(gait: Record, feet: Record, ticks: int, landing: Foothold, robot: Re
 
 
 @compiled
-def _shift_until(gait: Record, end: int, robot: Record) -> None:
+def _shift_until(gait: Gait, end: int, robot: Model) -> None:
     """Give the present weight shift another end."""
     zmp = scheduled_zmp(gait, robot)
     put_shift(gait.clock.shift, gait.tick, end, zmp, gait.right_weight)
 
 
 @compiled
-def aimed(gait: Record, landing: Foothold, wanted: Foothold, robot: Record) -> Foothold:
+def aimed(gait: Gait, landing: Foothold, wanted: Foothold, robot: Model) -> Foothold:
     """Return a landing moved towards `wanted` by at most one tick's change."""
     if gait.swing_phase == 0.0:
         return wanted
@@ -272,17 +245,17 @@ def aimed(gait: Record, landing: Foothold, wanted: Foothold, robot: Record) -> F
 
 
 @compiled
-def touch_down(gait: Record, feet: Record, robot: Record) -> None:
+def touch_down(gait: Gait, feet: Records[FootReference], robot: Model) -> None:
     """Stop the swing foot at an early touchdown."""
     swing = swing_of(gait)
     foot = feet[swing]
     gait.landed_early = True
-    put(gait.landing, Foothold(swing == 0, foot.x, foot.y, foot.yaw))
+    put(gait.landing, Foothold(swing == LEFT, foot.x, foot.y, foot.yaw))
     update_phase(gait, robot)
 
 
 @compiled
-def advance(plan: Record, feet: Record, robot: Record) -> None:
+def advance(plan: Plan, feet: Records[FootReference], robot: Model) -> None:
     """Move the feet by one tick and start the next footstep at the end of this one.
 
     Args:
@@ -307,7 +280,7 @@ def advance(plan: Record, feet: Record, robot: Record) -> None:
 
 
 @compiled
-def _land(plan: Record, feet: Record, robot: Record) -> None:
+def _land(plan: Plan, feet: Records[FootReference], robot: Model) -> None:
     gait = plan.gait
     support, swing, landing = gait.support, swing_of(gait), foothold(gait.landing)
     put(gait.footholds[swing], landing)

@@ -18,28 +18,14 @@ from math import exp, inf, log, sqrt
 from typing import NamedTuple
 
 from compilation import compiled
-from compilation.record import record_type
+from compilation.record import Records
+from walking.data import Pendulum, Ramp, ZmpFunctions
+from walking.model import Model
 from walking.parameters import CONTROL_PERIOD
 from walking.pendulum import dcm_of, dcm_reference, hold, ramp_weights, track_reference
-from walking.plane import Point, clamp, rotate
-from walking.records import MWPG, Record
+from walking.plane import Point, clamp, rotate, within
 from walking.reference import is_single
 from walking.support import Region
-
-ZMP_FUNCTIONS = record_type(
-    aimed=bool,
-    xi=(float, 2),
-    zeta=(float, 2),
-    free=bool,
-    level=(float, 2),
-    switch=(float, 2),
-    missed_x=float,
-    missed_y=float,
-)
-"""ZMP functions, see `walking.mwpg`: whether there is a target, DCM and convergent
-component at the end of single support along and across the foot [m] (whether the latter is free);
-level [m] and time of the switch before the end [s] of each function; part of the DCM that is out of
-reach [m]."""
 
 SAME_TARGET = 1e-7  # rounding error of a walking state [m]
 
@@ -58,7 +44,7 @@ class WalkingTarget(NamedTuple):
     free: bool
 
 
-class ZmpFunctions(NamedTuple):
+class TwoLevel(NamedTuple):
     """Two-level ZMP functions: `level` until the switch, then -`level`.
 
     Attributes:
@@ -68,13 +54,6 @@ class ZmpFunctions(NamedTuple):
 
     level: Point
     switch: Point
-
-
-@compiled
-def is_selected(robot: Record) -> bool:
-    """Whether a robot walks with this generator."""
-    selected: bool = robot.pattern.generator == MWPG
-    return selected
 
 
 @compiled
@@ -100,7 +79,7 @@ def zmp_function(omega: float, time: float, a: float, b: float) -> Point:
     one = 2.0 * a / q if q != 0.0 else inf
     other = q / (2.0 * b) if b != 0.0 else inf
     z = one if max(1.0 - one, one - growth) <= max(1.0 - other, other - growth) else other
-    z = min(growth, max(1.0, z))
+    z = within(z, 1.0, growth)
     unit_a, unit_b = 1.0 + growth - 2.0 * z, 2.0 / z - 1.0 / growth - 1.0
     # Least squares of the two ratios, which differ by rounding only.
     level = (a * unit_a + b * unit_b) / (unit_a * unit_a + unit_b * unit_b)
@@ -108,7 +87,7 @@ def zmp_function(omega: float, time: float, a: float, b: float) -> Point:
 
 
 @compiled
-def walking_target(ramps: Record, robot: Record) -> WalkingTarget:
+def walking_target(ramps: Records[Ramp], robot: Model) -> WalkingTarget:
     """Return the DCM of the planned footholds, and ζ of the periodic walk they lead to."""
     if len(ramps) == 1:
         return WalkingTarget((0.0, 0.0), (0.0, 0.0), True)
@@ -120,7 +99,7 @@ def walking_target(ramps: Record, robot: Record) -> WalkingTarget:
 
 
 @compiled
-def _periodic(ramps: Record, robot: Record) -> tuple[Point, bool]:
+def _periodic(ramps: Records[Ramp], robot: Model) -> tuple[Point, bool]:
     """Return ζ at the end of the last single support on this side, in the frame of its foot."""
     x, y, wh = ramps[0].bx, ramps[0].by, robot.omega * CONTROL_PERIOD
     zeta, free = (0.0, 0.0), True
@@ -138,7 +117,7 @@ def _periodic(ramps: Record, robot: Record) -> tuple[Point, bool]:
 
 @compiled
 def admits_target(
-    trial: Record, pendulum: Record, ramps: Record, region: Region, robot: Record
+    trial: ZmpFunctions, pendulum: Pendulum, ramps: Records[Ramp], region: Region, robot: Model
 ) -> bool:
     """Aim at the walking state of a reference; return whether the ZMP can stay in the sole.
 
@@ -164,14 +143,14 @@ def admits_target(
 
 
 @compiled
-def reaches_target(live: Record) -> bool:
+def reaches_target(live: ZmpFunctions) -> bool:
     """Whether the functions lead to the DCM of their target."""
     reached: bool = live.missed_x == 0.0 and live.missed_y == 0.0
     return reached
 
 
 @compiled
-def reset_target(live: Record) -> None:
+def reset_target(live: ZmpFunctions) -> None:
     """Drop the present target."""
     live.aimed = False
     live.missed_x = live.missed_y = 0.0
@@ -179,7 +158,7 @@ def reset_target(live: Record) -> None:
 
 @compiled
 def advance_functions(
-    live: Record, pendulum: Record, ramps: Record, region: Region, robot: Record
+    live: ZmpFunctions, pendulum: Pendulum, ramps: Records[Ramp], region: Region, robot: Model
 ) -> None:
     """Advance the pendulum by a tick along the ZMP functions, in double support along the DCM.
 
@@ -201,40 +180,43 @@ def advance_functions(
 
 
 @compiled
-def reachable_dcm(live: Record, pendulum: Record, robot: Record) -> Point:
+def reachable_dcm(live: ZmpFunctions, pendulum: Pendulum, robot: Model) -> Point:
     """Return the reference of the DCM for balance feedback [m]."""
     x, y = dcm_of(pendulum, robot)
     return x - live.missed_x, y - live.missed_y
 
 
 @compiled
-def _is_near(plan: Record, target: WalkingTarget) -> bool:
+def _is_near(plan: ZmpFunctions, target: WalkingTarget) -> bool:
     """Whether the target of a plan differs by rounding only."""
     if not plan.aimed or plan.free != target.free:
         return False
-    gap = max(abs(target.xi[0] - plan.xi[0]), abs(target.xi[1] - plan.xi[1]))
+    x, y = target.xi
+    gap = max(abs(x - plan.xi.x), abs(y - plan.xi.y))
     if not target.free:
-        gap = max(gap, abs(target.zeta[0] - plan.zeta[0]), abs(target.zeta[1] - plan.zeta[1]))
+        x, y = target.zeta
+        gap = max(gap, abs(x - plan.zeta.x), abs(y - plan.zeta.y))
     near: bool = gap < SAME_TARGET
     return near
 
 
 @compiled
-def _put_functions(plan: Record, target: WalkingTarget, functions: ZmpFunctions) -> None:
+def _put_functions(plan: ZmpFunctions, target: WalkingTarget, functions: TwoLevel) -> None:
     plan.aimed, plan.free = True, target.free
-    for axis in range(2):
-        plan.xi[axis], plan.zeta[axis] = target.xi[axis], target.zeta[axis]
-        plan.level[axis], plan.switch[axis] = functions.level[axis], functions.switch[axis]
+    plan.xi.x, plan.xi.y = target.xi
+    plan.zeta.x, plan.zeta.y = target.zeta
+    plan.level.x, plan.level.y = functions.level
+    plan.switch.x, plan.switch.y = functions.switch
 
 
 @compiled
-def _solve(pendulum: Record, ramp: Record, target: WalkingTarget, robot: Record) -> ZmpFunctions:
+def _solve(pendulum: Pendulum, ramp: Ramp, target: WalkingTarget, robot: Model) -> TwoLevel:
     w, time, yaw = robot.omega, ramp.ticks * CONTROL_PERIOD, ramp.unloading.yaw
     x, y = rotate(-yaw, pendulum.x - ramp.ax, pendulum.y - ramp.ay)
     vx, vy = rotate(-yaw, pendulum.vx / w, pendulum.vy / w)
     along, along_switch = _solve_axis(w, time, x, vx, target.xi[0], target.zeta[0], target.free)
     across, switch = _solve_axis(w, time, y, vy, target.xi[1], target.zeta[1], target.free)
-    return ZmpFunctions((along, across), (along_switch, switch))
+    return TwoLevel((along, across), (along_switch, switch))
 
 
 @compiled
@@ -251,7 +233,7 @@ def _solve_axis(
 
 @compiled
 def _approximate(
-    live: Record, pendulum: Record, ramps: Record, region: Region, robot: Record
+    live: ZmpFunctions, pendulum: Pendulum, ramps: Records[Ramp], region: Region, robot: Model
 ) -> None:
     """Approximate the DCM of an infeasible reference by a constant ZMP."""
     ramp = ramps[0]
@@ -260,26 +242,27 @@ def _approximate(
     wanted, (along, across) = _solve(pendulum, ramp, target, robot), _room(ramp, region)
     u, v = wanted.level
     level = (clamp(u, along), clamp(v, across))
-    _put_functions(live, target, ZmpFunctions(level, (0.0, 0.0)))
+    _put_functions(live, target, TwoLevel(level, (0.0, 0.0)))
     missed_u = (u - level[0]) * (growth - 1.0) / growth
     missed_v = (v - level[1]) * (growth - 1.0) / growth
     live.missed_x, live.missed_y = rotate(ramp.unloading.yaw, missed_u, missed_v)
 
 
 @compiled
-def _follow(live: Record, pendulum: Record, ramp: Record, robot: Record) -> None:
+def _follow(live: ZmpFunctions, pendulum: Pendulum, ramp: Ramp, robot: Model) -> None:
     """Advance by a tick under the ZMP functions, with a switch within the tick if needed."""
     left = ramp.ticks * CONTROL_PERIOD
     end = left - CONTROL_PERIOD
-    late, early = min(live.switch[0], live.switch[1]), max(live.switch[0], live.switch[1])
+    level, switch = live.level, live.switch
+    late, early = min(switch.x, switch.y), max(switch.x, switch.y)
     times = (early, late, end)
     for k in range(3):
         until = times[k]
         if k < 2 and not end < until < left:
             continue
         middle = 0.5 * (left + until)
-        u = live.level[0] if middle > live.switch[0] else -live.level[0]
-        v = live.level[1] if middle > live.switch[1] else -live.level[1]
+        u = level.x if middle > switch.x else -level.x
+        v = level.y if middle > switch.y else -level.y
         dx, dy = rotate(ramp.unloading.yaw, u, v)
         p, px, py, time = pendulum, ramp.ax + dx, ramp.ay + dy, left - until
         p.x, p.vx = hold(robot.omega, p.x, p.vx, px, time)
@@ -289,7 +272,7 @@ def _follow(live: Record, pendulum: Record, ramp: Record, robot: Record) -> None
 
 
 @compiled
-def _room(ramp: Record, region: Region) -> Point:
+def _room(ramp: Ramp, region: Region) -> Point:
     """Return the range of the ZMP about its nominal point along and across the sole [m]."""
     u, v = rotate(-ramp.unloading.yaw, ramp.ax - region.bx, ramp.ay - region.by)
     return max(0.0, region.length - abs(u)), max(0.0, region.width - abs(v))

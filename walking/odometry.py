@@ -12,44 +12,11 @@ from math import cos, pi, sin
 import numpy as np
 
 from compilation import compiled
-from compilation.record import record_type
+from compilation.record import records
 from compilation.value import value
+from walking.data import DeadReckoning
 from walking.parameters import CONTROL_PERIOD, OdometryParameters
 from walking.plane import Array, Point, norm
-from walking.records import Record
-
-ODOMETRY = record_type(
-    x=float,
-    y=float,
-    yaw=float,
-    turned=bool,
-    imu_yaw=float,
-    placed=bool,
-    left_x=float,
-    left_y=float,
-    right_x=float,
-    right_y=float,
-    right_stance=bool,
-    sliding=bool,
-    apart_x=float,
-    apart_y=float,
-    xx=float,
-    xy=float,
-    xw=float,
-    yy=float,
-    yw=float,
-    ww=float,
-    # Unmeasured variance per tick forward, lateral [m²] and of the yaw [rad²]; slip of the stance
-    # foot per relative slip of the feet [1].
-    forward_variance=float,
-    lateral_variance=float,
-    yaw_variance=float,
-    slip_ratio=float,
-)
-"""Dead reckoning: pose, heading unwrapped; whether the yaw of the IMU is known, and its value;
-whether the vectors from foot to body are known, and their values in the odometry frame; whether the
-right foot is the stance foot; distance of the feet at the begin of a double support; covariance of
-the error; constants."""
 
 RELEASED = 0.2  # load fraction below which a foot is not the stance foot [1]
 
@@ -111,11 +78,11 @@ class LegOdometry:
         parameters: unmeasured motion.
 
     Attributes:
-        records: state and constants, see `ODOMETRY` (1,).
+        records: state and constants, see `DeadReckoning` (1,).
     """
 
     def __init__(self, parameters: OdometryParameters) -> None:
-        self.records = np.zeros(1, ODOMETRY)
+        self.records = records(DeadReckoning)
         self._state = state = self.records[0]
         state.forward_variance = parameters.forward_noise**2 * CONTROL_PERIOD
         state.lateral_variance = parameters.lateral_noise**2 * CONTROL_PERIOD
@@ -151,7 +118,7 @@ class LegOdometry:
 
 @compiled
 def reckon(
-    odometry: Record, heading: float, feet: tuple[Point, Point], load: float, stepping: bool
+    odometry: DeadReckoning, heading: float, feet: tuple[Point, Point], load: float, stepping: bool
 ) -> None:
     """Run one tick of dead reckoning.
 
@@ -191,7 +158,7 @@ def reckon(
 
 
 @compiled
-def add_motion(odometry: Record, displacement: float, turn: float) -> None:
+def add_motion(odometry: DeadReckoning, displacement: float, turn: float) -> None:
     """Add an unmeasured motion: standard deviation per axis [m] and of the yaw [rad]."""
     _add_turn(odometry, turn * turn)
     odometry.xx += displacement * displacement
@@ -199,7 +166,7 @@ def add_motion(odometry: Record, displacement: float, turn: float) -> None:
 
 
 @compiled
-def _add_turn(odometry: Record, variance: float) -> None:
+def _add_turn(odometry: DeadReckoning, variance: float) -> None:
     """Add an unmeasured turn about the present position [rad²]."""
     o, x, y = odometry, odometry.x, odometry.y
     o.xx += y * y * variance
@@ -211,7 +178,7 @@ def _add_turn(odometry: Record, variance: float) -> None:
 
 
 @compiled
-def _watch_slip(odometry: Record, x: float, y: float, load: float) -> None:
+def _watch_slip(odometry: DeadReckoning, x: float, y: float, load: float) -> None:
     """Add the slip of a double support to the covariance.
 
     A change of the distance (x, y) between the feet is slip of either foot; the slip of the stance

@@ -6,14 +6,12 @@ Kajita et al., IROS 2001; divergent component of motion ξ = x + x'/ω: Takenaka
 from math import cosh, exp, sinh, sqrt
 
 from compilation import compiled
-from compilation.record import record_type
+from compilation.record import Records
+from walking.data import Data, Pendulum, Ramp
+from walking.model import Model
 from walking.parameters import CONTROL_PERIOD, GRAVITY
 from walking.plane import Point, Vector
-from walking.records import Record
 from walking.support import Region, clip
-
-PENDULUM = record_type(x=float, y=float, vx=float, vy=float, zmp_x=float, zmp_y=float)
-"""Pendulum in the plan frame: position [m], velocity [m/s], ZMP of the last tick [m]."""
 
 
 def natural_frequency(height: float) -> float:
@@ -22,15 +20,21 @@ def natural_frequency(height: float) -> float:
 
 
 @compiled
-def plan_pendulum(walk: Record) -> Record:
+def plan_pendulum(walk: Data) -> Pendulum:
     """Return the pendulum of the plan: that of the body unless off plan."""
     return walk.planned if walk.off_plan else walk.pendulum
 
 
 @compiled
-def dcm_of(pendulum: Record, robot: Record) -> Point:
+def dcm(position: float, velocity: float, robot: Model) -> float:
+    """Return the divergent component of motion of an axis [m]."""
+    return position + velocity / robot.omega
+
+
+@compiled
+def dcm_of(pendulum: Pendulum, robot: Model) -> Point:
     """Return the divergent component of motion [m]."""
-    return pendulum.x + pendulum.vx / robot.omega, pendulum.y + pendulum.vy / robot.omega
+    return dcm(pendulum.x, pendulum.vx, robot), dcm(pendulum.y, pendulum.vy, robot)
 
 
 @compiled
@@ -51,7 +55,7 @@ def ramp_weights(wh: float, ticks: int) -> Vector:
 
 
 @compiled
-def dcm_reference(ramps: Record, robot: Record) -> Point:
+def dcm_reference(ramps: Records[Ramp], robot: Model) -> Point:
     """Return the DCM from which a reference can be walked for ever: the backward recursion [m].
 
     Beyond the last ramp the ZMP stays and the DCM rests on it. A reference s seconds ahead has the
@@ -80,7 +84,7 @@ def hold(omega: float, position: float, velocity: float, zmp: float, time: float
 
 
 @compiled
-def hold_tick(robot: Record, position: float, velocity: float, zmp: float) -> Point:
+def hold_tick(robot: Model, position: float, velocity: float, zmp: float) -> Point:
     """Return position [m] and velocity [m/s] one control tick later under a constant ZMP [m]."""
     d, w = position - zmp, robot.omega
     return (
@@ -90,7 +94,7 @@ def hold_tick(robot: Record, position: float, velocity: float, zmp: float) -> Po
 
 
 @compiled
-def step_pendulum(pendulum: Record, robot: Record, zmp: Point, region: Region) -> None:
+def step_pendulum(pendulum: Pendulum, robot: Model, zmp: Point, region: Region) -> None:
     """Advance by a tick under a constant ZMP [m], clipped to a region."""
     px, py = clip(region, zmp[0], zmp[1])
     pendulum.x, pendulum.vx = hold_tick(robot, pendulum.x, pendulum.vx, px)
@@ -100,7 +104,7 @@ def step_pendulum(pendulum: Record, robot: Record, zmp: Point, region: Region) -
 
 @compiled
 def track_dcm(
-    pendulum: Record, robot: Record, gain: float, dcm: Point, zmp: Point, region: Region
+    pendulum: Pendulum, robot: Model, gain: float, dcm: Point, zmp: Point, region: Region
 ) -> None:
     """Advance by a tick towards a DCM.
 
@@ -120,7 +124,7 @@ def track_dcm(
 
 @compiled
 def track_reference(
-    pendulum: Record, robot: Record, gain: float, ramps: Record, region: Region
+    pendulum: Pendulum, robot: Model, gain: float, ramps: Records[Ramp], region: Region
 ) -> None:
     """Advance by a tick towards the DCM of a reference, see `track_dcm`."""
     ramp = ramps[0]

@@ -6,26 +6,26 @@ to the actual landing. At touchdown the two become one.
 """
 
 from compilation import compiled
+from walking.data import Data
 from walking.footsteps import equal, foothold
+from walking.model import Model
 from walking.mwpg import advance_functions, reset_target
 from walking.parameters import CONTROL_PERIOD
 from walking.pendulum import dcm_of, plan_pendulum, ramp_weights, track_dcm
-from walking.records import Record
 from walking.reference import reference_of
 from walking.support import Region
 
 
 @compiled
-def advance_modified(walk: Record, plan: Record, region: Region, robot: Record) -> None:
+def advance_modified(walk: Data, region: Region, robot: Model) -> None:
     """Advance the pendulums of plan and body by one tick.
 
     Args:
         walk: state, its pendulums are changed.
-        plan: plan in force.
         region: admissible ZMP.
         robot: constants.
     """
-    body, gait = walk.pendulum, plan.gait
+    body, plan, gait = walk.pendulum, walk.plan, walk.plan.gait
     landing, planned = foothold(gait.landing), foothold(plan.landing)
     if not (gait.double or walk.off_plan or equal(landing, planned)):
         walk.planned, walk.off_plan = body, True
@@ -44,14 +44,14 @@ def advance_modified(walk: Record, plan: Record, region: Region, robot: Record) 
 
 
 @compiled
-def end_capture(walk: Record, plan: Record) -> None:
+def end_capture(walk: Data) -> None:
     """At touchdown, restart the plan from the pendulum of the body."""
-    if walk.off_plan and (plan.gait.double or not plan.gait.stepping):
+    if walk.off_plan and (walk.plan.gait.double or not walk.plan.gait.stepping):
         return_to_plan(walk)
 
 
 @compiled
-def return_to_plan(walk: Record) -> None:
+def return_to_plan(walk: Data) -> None:
     """Restart the plan from the pendulum of the body."""
     walk.off_plan = False
     reset_target(walk.functions)

@@ -45,9 +45,15 @@ def from_frame(frame: Frame, x: float, y: float) -> Point:
 
 
 @compiled
+def within(value: float, lower: float, upper: float) -> float:
+    """Clip a value to an interval."""
+    return min(upper, max(lower, value))
+
+
+@compiled
 def clamp(value: float, limit: float) -> float:
     """Clip a value to ±`limit`."""
-    return min(limit, max(-limit, value))
+    return within(value, -limit, limit)
 
 
 @compiled

@@ -1,54 +1,17 @@
 """Plan of the walk: footholds, and the ZMP reference that they give."""
 
 from compilation import compiled
-from compilation.record import record_type
-from walking.footsteps import FOOTHOLD, STRIDES, Foothold, foothold, is_parallel, landing_of, put
-from walking.gait import (
-    GAIT,
-    scheduled_zmp,
-    stop_ticks,
-    support_foot,
-    swing_foot,
-    zmp_between,
-    zmp_under,
-)
+from compilation.record import Records
+from walking.data import Plan, Ramp
+from walking.footsteps import Foothold, foothold, is_parallel, landing_of, put
+from walking.gait import scheduled_zmp, stop_ticks, support_foot, swing_foot, zmp_between, zmp_under
+from walking.model import LEFT, RIGHT, Model, Strides
 from walking.plane import Point
-from walking.records import Record
-
-RAMP = record_type(
-    ticks=int,
-    ax=float,
-    ay=float,
-    bx=float,
-    by=float,
-    unloading=FOOTHOLD,
-    loading=FOOTHOLD,
-)
-"""Linear segment of the ZMP reference: control ticks; ZMP at its start and its end [m]; unloading
-and loading foot, in single support twice the support foot."""
-
-STEPS = 4  # planned footholds
-
-PLAN = record_type(
-    gait=GAIT,
-    landing=FOOTHOLD,
-    following=STRIDES,
-    moving=bool,
-    ramps=(RAMP, 2 * STEPS + 2),
-    ramp_count=int,
-    steps=(FOOTHOLD, STEPS),
-    step_count=int,
-)
-"""Plan of the walk: gait with its timing; landing of the swing foot, strides after it, and whether
-the walk goes on; ZMP reference and its number of ramps; footholds and their number."""
-
-LIVE, WANTED, TRIAL, BEST = range(4)
-"""Plans: the one in force, the wanted one, one that is tried, and the best that was admitted."""
 
 
 @compiled
 def plan_walk(
-    plan: Record, landing: Foothold, following: Record, moving: bool, robot: Record
+    plan: Plan, landing: Foothold, following: Strides, moving: bool, robot: Model
 ) -> None:
     """Set footholds and ZMP reference of a plan from now on.
 
@@ -66,14 +29,14 @@ def plan_walk(
         ends = _chain_footholds(plan, robot)
         _set_ramps(plan, ends, robot)
         return
-    left, right = foothold(gait.footholds[0]), foothold(gait.footholds[1])
+    left, right = foothold(gait.footholds[LEFT]), foothold(gait.footholds[RIGHT])
     zmp, centre = scheduled_zmp(gait, robot), zmp_between(left, right, robot)
     set_ramp(ramps[0], max(1, -gait.elapsed), zmp, centre, support_foot(gait), swing_foot(gait))
     plan.ramp_count, plan.step_count = 1, 0
 
 
 @compiled
-def _chain_footholds(plan: Record, robot: Record) -> bool:
+def _chain_footholds(plan: Plan, robot: Model) -> bool:
     """Set the footholds, that of the swing foot first; return whether the walk ends with them."""
     steps, before, last = plan.steps, support_foot(plan.gait), foothold(plan.landing)
     for k in range(len(steps)):
@@ -86,7 +49,7 @@ def _chain_footholds(plan: Record, robot: Record) -> bool:
 
 
 @compiled
-def _set_ramps(plan: Record, ends: bool, robot: Record) -> None:
+def _set_ramps(plan: Plan, ends: bool, robot: Model) -> None:
     """Set the reference; it ends with equal loads after the last foothold if the walk `ends`."""
     gait, ramps, timing, row = plan.gait, plan.ramps, plan.gait.clock.timing, 0
     before, left = support_foot(gait), gait.ticks_left
@@ -113,7 +76,7 @@ def _set_ramps(plan: Record, ends: bool, robot: Record) -> None:
 
 
 @compiled
-def copy_plan(copy: Record, plan: Record) -> None:
+def copy_plan(copy: Plan, plan: Plan) -> None:
     """Copy a plan."""
     copy.gait, copy.landing, copy.following = plan.gait, plan.landing, plan.following
     copy.moving, copy.ramp_count, copy.step_count = plan.moving, plan.ramp_count, plan.step_count
@@ -124,15 +87,14 @@ def copy_plan(copy: Record, plan: Record) -> None:
 
 
 @compiled
-def reference_of(plan: Record) -> Record:
-    """Return the ramps of a plan from now on, see `RAMP` (n,)."""
-    reference: Record = plan.ramps[: plan.ramp_count]
-    return reference
+def reference_of(plan: Plan) -> Records[Ramp]:
+    """Return the ramps of a plan from now on, see `Ramp` (n,)."""
+    return plan.ramps[: plan.ramp_count]
 
 
 @compiled
 def set_ramp(
-    ramp: Record, ticks: int, start: Point, end: Point, unloading: Foothold, loading: Foothold
+    ramp: Ramp, ticks: int, start: Point, end: Point, unloading: Foothold, loading: Foothold
 ) -> None:
     """Set a ramp of the ZMP from `start` to `end` [m]."""
     ramp.ticks = ticks
@@ -143,7 +105,7 @@ def set_ramp(
 
 
 @compiled
-def is_single(ramp: Record) -> bool:
+def is_single(ramp: Ramp) -> bool:
     """Whether a ramp is a single support."""
     left: bool = ramp.unloading.left == ramp.loading.left
     return left

@@ -6,59 +6,74 @@ Velocity commands and command states may follow in any order.
 from math import sqrt
 
 from compilation import compiled
-from compilation.record import record_type
 from walking.command import ACCELERATION, BALANCE, COMBINED_SPEED, SETTLING, SPEED
+from walking.data import CommandRecord, Steering, StepCommand, Timing, Twist
 from walking.footsteps import (
     STILL,
-    STRIDES,
+    StepValues,
     command_of,
     command_strides,
     stride_limits,
     velocity_strides,
 )
-from walking.mwpg import is_selected
+from walking.model import Model
 from walking.parameters import CONTROL_PERIOD
-from walking.plane import Vector, clamp
-from walking.records import Record
-from walking.timing import TIMING, cadence, command_timing, duration, put_timing
-
-COMMAND = record_type(explicit=bool, values=(float, 6))
-"""Velocity (vx, vy, wz), or the fields of a command state in order, see `walking.command`."""
-
-STEERING = record_type(
-    command=COMMAND,
-    state=COMMAND,
-    velocity=(float, 3),
-    peak=(float, 3),
-    timing=TIMING,
-    wanted=STRIDES,
-    scratch=STRIDES,
-    bound=int,
-)
-"""Steering: present command; command state in force, if `explicit`; wanted velocity (vx, vy, wz)
-[m/s, m/s, rad/s], and its last peak per axis; wanted timing and strides; strides for intermediate
-results; limits that bind, as bits."""
+from walking.plane import Point, Vector, clamp, within
+from walking.timing import cadence, command_timing, duration, put_timing
 
 SAME_SPEED = 1e-9  # rounding error of velocities [m/s, rad/s]
 
 
 @compiled
-def wanted_velocity(steering: Record) -> Vector:
+def twist_of(record: Twist) -> Vector:
+    """Return the value of a record (vx, vy, wz) [m/s, m/s, rad/s]."""
+    return record.vx, record.vy, record.wz
+
+
+@compiled
+def put_twist(record: Twist, velocity: Vector) -> None:
+    """Set a record."""
+    record.vx, record.vy, record.wz = velocity
+
+
+@compiled
+def put_command(record: CommandRecord, command: StepValues, explicit: bool) -> None:
+    """Set a record to a velocity (vx, vy, wz), or to an explicit footstep."""
+    record.explicit, step = explicit, record.step
+    if explicit:
+        step.single_support, step.double_support, step.forward = command[:3]
+        step.side, step.direction, step.swing_height = command[3:]
+    else:
+        put_twist(record.velocity, command[:3])
+
+
+@compiled
+def step_values(record: StepCommand) -> StepValues:
+    """Return the fields of an explicit footstep in order."""
+    return (
+        record.single_support,
+        record.double_support,
+        record.forward,
+        record.side,
+        record.direction,
+        record.swing_height,
+    )
+
+
+@compiled
+def wanted_velocity(steering: Steering) -> Vector:
     """Return the wanted velocity (vx, vy, wz) [m/s, m/s, rad/s]."""
-    v = steering.velocity
-    return v[0], v[1], v[2]
+    return twist_of(steering.velocity)
 
 
 @compiled
-def moves(steering: Record) -> bool:
+def moves(steering: Steering) -> bool:
     """Whether a motion is wanted."""
-    v = steering.velocity
-    moving: bool = steering.state.explicit or v[0] != 0.0 or v[1] != 0.0 or v[2] != 0.0
-    return moving
+    return steering.state.explicit or twist_of(steering.velocity) != STILL
 
 
 @compiled
-def limited(velocity: Vector, robot: Record) -> Vector:
+def limited(velocity: Vector, robot: Model) -> Vector:
     """Clip a velocity to the limits of each component and to the ellipsoid of all.
 
     Returns:
@@ -77,32 +92,29 @@ def limited(velocity: Vector, robot: Record) -> Vector:
 
 
 @compiled
-def speed_limits(velocity: Vector, robot: Record) -> int:
+def speed_limits(velocity: Vector, robot: Model) -> int:
     """Return the speed limits that bind on a velocity command."""
-    bound, within = 0, _within(velocity, robot)
-    if within != velocity:
+    bound, each = 0, _within(velocity, robot)
+    if each != velocity:
         bound |= SPEED
-    if limited(velocity, robot) != within:
+    if limited(velocity, robot) != each:
         bound |= COMBINED_SPEED
     return bound
 
 
 @compiled
-def _within(velocity: Vector, robot: Record) -> Vector:
+def _within(velocity: Vector, robot: Model) -> Vector:
     """Clip every component to its limit."""
-    limits = robot.limits
-    return (
-        min(limits.vx, max(-limits.vx_backward, velocity[0])),
-        clamp(velocity[1], limits.vy),
-        clamp(velocity[2], limits.wz),
-    )
+    limits, (vx, vy, wz) = robot.limits, velocity
+    vx = within(vx, -limits.vx_backward, limits.vx)
+    return vx, clamp(vy, limits.vy), clamp(wz, limits.wz)
 
 
 @compiled
 def follow_command(
-    steering: Record, speed_ratio: float, settled: bool, balanced: bool, robot: Record
-) -> None:
-    """Follow the command of this tick.
+    steering: Steering, speed_ratio: float, settled: bool, balanced: bool, robot: Model
+) -> int:
+    """Follow the command of this tick; return the limits that bind.
 
     Args:
         steering: changed.
@@ -111,23 +123,19 @@ def follow_command(
         balanced: whether the motion may change.
         robot: constants.
     """
-    steering.bound = 0
-    explicit, values = steering.command.explicit, steering.command.values
-    velocity = (values[0], values[1], values[2])
+    explicit, velocity = steering.command.explicit, twist_of(steering.command.velocity)
     if not balanced:
-        _hold(steering, robot)
-    elif not settled:
-        if explicit or velocity != STILL:
-            steering.bound |= SETTLING
+        return _hold(steering, robot)
+    if not settled:
         _approach(steering, STILL, robot)
-    elif explicit:
-        _follow_state(steering, robot)
-    else:
-        _follow_velocity(steering, velocity, speed_ratio, robot)
+        return SETTLING if explicit or velocity != STILL else 0
+    if explicit:
+        return _follow_state(steering, robot)
+    return _follow_velocity(steering, velocity, speed_ratio, robot)
 
 
 @compiled
-def use_next_timing(timing: Record, steering: Record, before: Record, stepping: bool) -> None:
+def use_next_timing(timing: Timing, steering: Steering, before: Timing, stepping: bool) -> None:
     """Set the timing of the next footsteps.
 
     Footsteps that close the stance are at least as fast as the walk was: during a slow footstep the
@@ -146,7 +154,7 @@ def use_next_timing(timing: Record, steering: Record, before: Record, stepping: 
 
 
 @compiled
-def set_wanted_strides(steering: Record, correction: Vector, robot: Record) -> None:
+def set_wanted_strides(steering: Steering, correction: Vector, robot: Model) -> None:
     """Set the wanted strides.
 
     Args:
@@ -155,119 +163,100 @@ def set_wanted_strides(steering: Record, correction: Vector, robot: Record) -> N
             only wz.
         robot: constants.
     """
-    time = duration(steering.timing)
+    time, (dx, dy, turn) = duration(steering.timing), correction
     if steering.state.explicit:
-        command_strides(steering.wanted, steering.state.values, correction[2] * time, robot)
+        command_strides(steering.wanted, steering.state.step, turn * time, robot)
     else:
         vx, vy, wz = wanted_velocity(steering)
-        velocity = (vx + correction[0], vy + correction[1], wz + correction[2])
-        velocity_strides(steering.wanted, velocity, time, robot)
+        velocity_strides(steering.wanted, (vx + dx, vy + dy, wz + turn), time, robot)
 
 
 @compiled
-def _hold(steering: Record, robot: Record) -> None:
+def _hold(steering: Steering, robot: Model) -> int:
     """Keep the present motion; balance limits any other command."""
     command, state = steering.command, steering.state
     if command.explicit:
-        same = state.explicit
-        for k in range(6):
-            same = same and command.values[k] == state.values[k]
-        if not same:
-            steering.bound |= BALANCE
-            return
-        steering.bound |= command_strides(steering.scratch, command.values, 0.0, robot)
-        steering.bound |= command_timing(command.values, robot)[1]
-        return
-    velocity = (command.values[0], command.values[1], command.values[2])
+        if not (state.explicit and step_values(command.step) == step_values(state.step)):
+            return BALANCE
+        _, late = command_timing(command.step, robot)
+        return command_strides(steering.scratch, command.step, 0.0, robot) | late
+    velocity = twist_of(command.velocity)
+    bound = speed_limits(velocity, robot)
     if state.explicit or _differs(steering, limited(velocity, robot)):
-        steering.bound |= BALANCE
-    steering.bound |= speed_limits(velocity, robot)
+        bound |= BALANCE
     if not state.explicit:
         time, wanted = duration(steering.timing), wanted_velocity(steering)
-        steering.bound |= stride_limits(steering.scratch, wanted, time, robot)
+        bound |= stride_limits(steering.scratch, wanted, time, robot)
+    return bound
 
 
 @compiled
-def _differs(steering: Record, wanted: Vector) -> bool:
+def _differs(steering: Steering, wanted: Vector) -> bool:
     """Whether a velocity differs from the wanted one; at rest any does."""
-    vx, vy, wz = wanted_velocity(steering)
+    (vx, vy, wz), (x, y, turn) = wanted_velocity(steering), wanted
     if wanted == STILL:
         return vx != 0.0 or vy != 0.0 or wz != 0.0
-    return (
-        abs(vx - wanted[0]) > SAME_SPEED
-        or abs(vy - wanted[1]) > SAME_SPEED
-        or abs(wz - wanted[2]) > SAME_SPEED
-    )
+    return abs(vx - x) > SAME_SPEED or abs(vy - y) > SAME_SPEED or abs(wz - turn) > SAME_SPEED
 
 
 @compiled
-def _follow_velocity(steering: Record, velocity: Vector, speed_ratio: float, robot: Record) -> None:
+def _follow_velocity(steering: Steering, velocity: Vector, speed_ratio: float, robot: Model) -> int:
     steering.state.explicit = False
-    wanted = velocity
+    wanted, bound = velocity, speed_limits(velocity, robot)
     if speed_ratio < 1.0 and velocity != STILL:
         vx, vy, wz = limited(velocity, robot)
         wanted = (speed_ratio * vx, speed_ratio * vy, speed_ratio * wz)
-        steering.bound |= BALANCE
-    if is_selected(robot) and velocity == STILL:
+        bound |= BALANCE
+    if robot.modifiable and velocity == STILL:
         # This generator limits the change itself.
-        _jump(steering, STILL)
+        put_twist(steering.velocity, STILL)
     limit = _approach(steering, wanted, robot)
-    steering.bound |= speed_limits(velocity, robot)
     now = wanted_velocity(steering)
     put_timing(steering.timing, cadence(now, robot))
     if _differs(steering, limit):
-        steering.bound |= ACCELERATION
-    time = duration(steering.timing)
-    steering.bound |= stride_limits(steering.scratch, now, time, robot)
+        bound |= ACCELERATION
+    return bound | stride_limits(steering.scratch, now, duration(steering.timing), robot)
 
 
 @compiled
-def _follow_state(steering: Record, robot: Record) -> None:
-    command = steering.command.values
+def _follow_state(steering: Steering, robot: Model) -> int:
+    command = steering.command.step
     steering.state = steering.command
     timing, late = command_timing(command, robot)
     put_timing(steering.timing, timing)
-    steering.bound |= command_strides(steering.scratch, command, 0.0, robot) | late
+    bound = command_strides(steering.scratch, command, 0.0, robot)
     time = duration(steering.timing)
     # A later velocity command starts from this velocity.
-    start = command_of(steering.scratch, steering.timing)
-    _jump(steering, (start[2] / time, 0.0, start[4] / time))
+    _, _, forward, _, direction, _ = command_of(steering.scratch, steering.timing)
+    put_twist(steering.velocity, (forward / time, 0.0, direction / time))
+    return bound | late
 
 
 @compiled
-def _jump(steering: Record, velocity: Vector) -> None:
-    for k in range(3):
-        steering.velocity[k] = velocity[k]
-
-
-@compiled
-def _approach(steering: Record, velocity: Vector, robot: Record) -> Vector:
+def _approach(steering: Steering, velocity: Vector, robot: Model) -> Vector:
     """Approach a velocity by one tick; return it within the speed limits."""
     limits, wanted = robot.limits, limited(velocity, robot)
     braking = CONTROL_PERIOD / limits.braking_time
-    acceleration = (
-        limits.forward_acceleration * CONTROL_PERIOD,
-        limits.lateral_acceleration * CONTROL_PERIOD,
-        limits.turn_acceleration * CONTROL_PERIOD,
-    )
-    for axis in range(3):
-        steering.velocity[axis] = _rate_limited(
-            steering.peak, axis, steering.velocity[axis], wanted[axis], acceleration[axis], braking
-        )
+    now, peak, (vx, vy, wz) = steering.velocity, steering.peak, wanted
+    forward = limits.forward_acceleration * CONTROL_PERIOD
+    now.vx, peak.vx = _rate_limited(now.vx, peak.vx, vx, forward, braking)
+    lateral = limits.lateral_acceleration * CONTROL_PERIOD
+    now.vy, peak.vy = _rate_limited(now.vy, peak.vy, vy, lateral, braking)
+    turn = limits.turn_acceleration * CONTROL_PERIOD
+    now.wz, peak.wz = _rate_limited(now.wz, peak.wz, wz, turn, braking)
     return wanted
 
 
 @compiled
 def _rate_limited(
-    peak: Record, axis: int, now: float, wanted: float, acceleration: float, braking: float
-) -> float:
-    """Return a component a tick later; braking is a part of its last peak per tick [1]."""
+    now: float, peak: float, wanted: float, acceleration: float, braking: float
+) -> Point:
+    """Return a component and its last peak a tick later; braking is a part of the peak [1]."""
     change = wanted - now
     if now * change >= 0.0:
-        peak[axis] = abs(now)
-        return now + clamp(change, acceleration)
-    peak[axis] = max(peak[axis], abs(now))
-    step = max(acceleration, braking * peak[axis])
+        return now + clamp(change, acceleration), abs(now)
+    peak = max(peak, abs(now))
+    step = max(acceleration, braking * peak)
     if abs(now) < min(step, abs(change)):
-        return 0.0  # a reversal passes through rest
-    return now + clamp(change, step)
+        return 0.0, peak  # a reversal passes through rest
+    return now + clamp(change, step), peak

@@ -10,9 +10,9 @@ from typing import NamedTuple
 import numpy as np
 
 from compilation import compiled
+from walking.body.tree import Sole
 from walking.footsteps import Foothold
-from walking.plane import Array, Point, from_frame, norm
-from walking.records import Record
+from walking.plane import Array, Point, clamp, from_frame, norm, within
 
 SAME = 1e-9  # distance of equal corners [m]
 CORNERS = 8  # of two soles
@@ -42,7 +42,7 @@ class Region(NamedTuple):
 
 
 @compiled
-def support_region(sole: Record, one: Foothold, other: Foothold, margin: float) -> Region:
+def support_region(sole: Sole, one: Foothold, other: Foothold, margin: float) -> Region:
     """Return the region of two feet, or of one foot passed twice, with a margin [m]."""
     ac, as_, bc, bs = cos(one.yaw), sin(one.yaw), cos(other.yaw), sin(other.yaw)
     centre = sole.centre
@@ -68,7 +68,7 @@ def load_fraction(region: Region, x: float, y: float) -> float:
     if square == 0.0:
         return 0.0
     along = (x - region.ax) * dx + (y - region.ay) * dy
-    return min(1.0, max(0.0, along / square))
+    return within(along / square, 0.0, 1.0)
 
 
 @compiled
@@ -84,13 +84,13 @@ def clip(region: Region, x: float, y: float) -> Point:
     v = (c * dy - n * dx) / scale
     if -region.length <= u <= region.length and -region.width <= v <= region.width:
         return x, y
-    u = min(region.length, max(-region.length, u))
-    v = min(region.width, max(-region.width, v))
+    u = clamp(u, region.length)
+    v = clamp(v, region.width)
     return cx + c * u - n * v, cy + n * u + c * v
 
 
 @compiled
-def polygon(sole: Record, one: Foothold, other: Foothold, single: bool) -> Array:
+def polygon(sole: Sole, one: Foothold, other: Foothold, single: bool) -> Array:
     """Return the corners of the support polygon, counter-clockwise (n, 2) [m].
 
     Args:
@@ -109,7 +109,7 @@ def polygon(sole: Record, one: Foothold, other: Foothold, single: bool) -> Array
 
 
 @compiled
-def _set_corners(corners: Array, sole: Record, foot: Foothold) -> None:
+def _set_corners(corners: Array, sole: Sole, foot: Foothold) -> None:
     front, back = sole.centre + sole.half_length, sole.centre - sole.half_length
     side, frame = sole.half_width, (foot.x, foot.y, foot.yaw)
     corners[0, 0], corners[0, 1] = from_frame(frame, front, -side)

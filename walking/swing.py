@@ -7,17 +7,10 @@ to a landing at rest, replanned in every tick.
 from math import ceil
 
 from compilation import compiled
-from compilation.record import record_type
+from walking.data import FootReference
 from walking.footsteps import Foothold, towards
 from walking.parameters import CONTROL_PERIOD
-from walking.plane import norm
-from walking.records import Record
-
-REFERENCE = record_type(
-    x=float, y=float, yaw=float, height=float, rate=(float, 3), acceleration=(float, 3)
-)
-"""Reference of a foot in the plan frame: position [m], yaw [rad], height above the floor [m]; rates
-and accelerations of x, y and yaw."""
+from walking.plane import Vector, norm, within
 
 PEAK = 1.875  # peak speed over mean speed of a minimum-jerk motion from rest to rest [1]
 ROUNDING = 1e-7  # rounding error, relative to the maximum change [1]
@@ -26,16 +19,17 @@ ROUNDING = 1e-7  # rounding error, relative to the maximum change [1]
 @compiled
 def minimum_jerk(time: float) -> float:
     """Return the fraction of the distance at a fraction of the time [1]."""
-    s = min(1.0, max(0.0, time))
+    s = within(time, 0.0, 1.0)
     return s * s * s * (10.0 + s * (6.0 * s - 15.0))
 
 
 @compiled
-def rest_at(foot: Record, foothold: Foothold) -> None:
+def rest_at(foot: FootReference, foothold: Foothold) -> None:
     """Set a foot reference to rest at a foothold, at its present height."""
     foot.x, foot.y, foot.yaw = foothold.x, foothold.y, foothold.yaw
-    for axis in range(3):
-        foot.rate[axis] = foot.acceleration[axis] = 0.0
+    rate, acceleration = foot.rate, foot.acceleration
+    rate.x = rate.y = rate.yaw = 0.0
+    acceleration.x = acceleration.y = acceleration.yaw = 0.0
 
 
 @compiled
@@ -46,7 +40,7 @@ def lift_profile(phase: float) -> float:
 
 
 @compiled
-def move_foot(foot: Record, landing: Foothold, ticks_left: int, height: float) -> None:
+def move_foot(foot: FootReference, landing: Foothold, ticks_left: int, height: float) -> None:
     """Move the swing foot by one tick.
 
     Args:
@@ -55,33 +49,36 @@ def move_foot(foot: Record, landing: Foothold, ticks_left: int, height: float) -
         ticks_left: control ticks until touchdown [1].
         height: height of the foot after this tick [m].
     """
-    foot.x = _towards(foot, 0, foot.x, landing.x, ticks_left)
-    foot.y = _towards(foot, 1, foot.y, landing.y, ticks_left)
-    foot.yaw = _towards(foot, 2, foot.yaw, landing.yaw, ticks_left)
+    v, a = foot.rate, foot.acceleration
+    foot.x, v.x, a.x = _towards(foot.x, v.x, a.x, landing.x, ticks_left)
+    foot.y, v.y, a.y = _towards(foot.y, v.y, a.y, landing.y, ticks_left)
+    foot.yaw, v.yaw, a.yaw = _towards(foot.yaw, v.yaw, a.yaw, landing.yaw, ticks_left)
     foot.height = height
 
 
 @compiled
-def _towards(foot: Record, axis: int, now: float, target: float, ticks_left: int) -> float:
-    """Return a coordinate after a tick of the motion to a target at rest; change its rates."""
+def _towards(
+    now: float, rate: float, acceleration: float, target: float, ticks_left: int
+) -> Vector:
+    """Return a coordinate and its rates after a tick of the motion to a target at rest."""
     if ticks_left <= 1:
-        foot.rate[axis] = foot.acceleration[axis] = 0.0
-        return target
+        return target, 0.0, 0.0
     time = ticks_left * CONTROL_PERIOD
     e = target - now
-    v, a = foot.rate[axis] * time, foot.acceleration[axis] * time * time
+    v, a = rate * time, acceleration * time * time
     c3 = 10.0 * e - 6.0 * v - 1.5 * a
     c4 = -15.0 * e + 8.0 * v + 1.5 * a
     c5 = 6.0 * e - 3.0 * v - 0.5 * a
     s = 1.0 / ticks_left
-    foot.rate[axis] = (v + s * (a + s * (3.0 * c3 + s * (4.0 * c4 + s * 5.0 * c5)))) / time
-    foot.acceleration[axis] = (a + s * (6.0 * c3 + s * (12.0 * c4 + s * 20.0 * c5))) / (time * time)
-    moved_by: float = s * (v + s * (0.5 * a + s * (c3 + s * (c4 + s * c5))))
-    return now + moved_by
+    return (
+        now + s * (v + s * (0.5 * a + s * (c3 + s * (c4 + s * c5)))),
+        (v + s * (a + s * (3.0 * c3 + s * (4.0 * c4 + s * 5.0 * c5)))) / time,
+        (a + s * (6.0 * c3 + s * (12.0 * c4 + s * 20.0 * c5))) / (time * time),
+    )
 
 
 @compiled
-def min_swing_ticks(foot: Record, landing: Foothold, speed: float) -> int:
+def min_swing_ticks(foot: FootReference, landing: Foothold, speed: float) -> int:
     """Return the control ticks of a swing to `landing` with a peak speed [m/s]."""
     distance = norm(landing.x - foot.x, landing.y - foot.y)
     return ceil(PEAK * distance / (speed * CONTROL_PERIOD))

@@ -26,12 +26,13 @@ from compilation import compiled
 from walking.body.kinematics import FootPose
 from walking.body.robot_model import RobotModel
 from walking.body.tree import LEFT_LEG, RIGHT_LEG
+from walking.data import Limbs, Plan
 from walking.footsteps import Foothold, foothold
 from walking.gait import support_foot, swing_foot, zmp_under
+from walking.model import Model
 from walking.parameters import CONTROL_PERIOD, GRAVITY
 from walking.pendulum import ramp_weights
 from walking.plane import Point, Vector
-from walking.records import Record
 
 SMALL = 1e-4  # step of finite differences [m]
 
@@ -105,7 +106,7 @@ def accelerations(ticks: int, tick: int) -> Moments:
 
 
 @compiled
-def previewed(ticks: int, tick: int, robot: Record) -> Moments:
+def previewed(ticks: int, tick: int, robot: Model) -> Moments:
     """Return ∫ ω e^{-ωs} of the accelerations over the rest of a swing, linear between ticks."""
     growth, first, last = ramp_weights(robot.omega * CONTROL_PERIOD, 1)
     forward = up = both = 0.0
@@ -120,7 +121,7 @@ def previewed(ticks: int, tick: int, robot: Record) -> Moments:
 
 
 @compiled
-def compensate(limbs: Record, plan: Record, robot: Record) -> None:
+def compensate(limbs: Limbs, plan: Plan, robot: Model) -> None:
     """Run one tick of the compensation along a plan.
 
     Args:
@@ -132,15 +133,15 @@ def compensate(limbs: Record, plan: Record, robot: Record) -> None:
     ahead_x, ahead_y, now_x, now_y = _previewed_shift(plan, robot)
     gain = 1.0 - exp(-w * CONTROL_PERIOD)
     offset, ahead = limbs.offset, limbs.ahead
-    x = offset[0] + gain * (0.5 * (ahead[0] + ahead_x) - offset[0])
-    y = offset[1] + gain * (0.5 * (ahead[1] + ahead_y) - offset[1])
-    offset[0], offset[1], ahead[0], ahead[1] = x, y, ahead_x, ahead_y
-    limbs.offset_acceleration[0] = w * w * (x + now_x)
-    limbs.offset_acceleration[1] = w * w * (y + now_y)
+    offset.x = offset.x + gain * (0.5 * (ahead.x + ahead_x) - offset.x)
+    offset.y = offset.y + gain * (0.5 * (ahead.y + ahead_y) - offset.y)
+    ahead.x, ahead.y = ahead_x, ahead_y
+    limbs.offset_acceleration.x = w * w * (offset.x + now_x)
+    limbs.offset_acceleration.y = w * w * (offset.y + now_y)
 
 
 @compiled
-def _previewed_shift(plan: Record, robot: Record) -> tuple[float, float, float, float]:
+def _previewed_shift(plan: Plan, robot: Model) -> tuple[float, float, float, float]:
     """Return ξ x, y [m] and the present shift of the ZMP x, y [m]; zero while standing."""
     gait, timing, single = plan.gait, plan.gait.clock.timing, plan.gait.clock.single
     ahead_x = ahead_y = now_x = now_y = 0.0
@@ -179,21 +180,21 @@ def _previewed_shift(plan: Record, robot: Record) -> tuple[float, float, float, 
 
 @compiled
 def _zmp_shift(
-    origin: Foothold, landing: Foothold, zmp: Point, lift: float, moments: Moments, robot: Record
+    origin: Foothold, landing: Foothold, zmp: Point, lift: float, moments: Moments, robot: Model
 ) -> Point:
     """Return the shift of the ZMP by a swing of height `lift` [m] about a ZMP [m]."""
     thrust, weight = robot.thrust, robot.lifted_weight * lift
     knee = robot.knee * lift * moments.up
     yaw = 0.5 * (origin.yaw + landing.yaw)
-    dx, dy = landing.x - origin.x, landing.y - origin.y
+    (x, y), dx, dy = zmp, landing.x - origin.x, landing.y - origin.y
     forward, up, both = moments
     return (
-        weight * (up * (origin.x - zmp[0]) + both * dx) - thrust * forward * dx - knee * cos(yaw),
-        weight * (up * (origin.y - zmp[1]) + both * dy) - thrust * forward * dy - knee * sin(yaw),
+        weight * (up * (origin.x - x) + both * dx) - thrust * forward * dx - knee * cos(yaw),
+        weight * (up * (origin.y - y) + both * dy) - thrust * forward * dy - knee * sin(yaw),
     )
 
 
 @compiled
-def _decay(begin: int, robot: Record) -> float:
+def _decay(begin: int, robot: Model) -> float:
     """Return the weight of a swing that begins some ticks ahead [1]."""
     return exp(-robot.omega * CONTROL_PERIOD * begin) if begin > 0 else 1.0

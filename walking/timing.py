@@ -7,40 +7,26 @@ support, in which the other foot swings.
 from math import sqrt
 
 from compilation import compiled
-from compilation.record import record_type
 from walking.command import SWING_HEIGHT
 from walking.command import TIMING as TIMING_LIMIT
+from walking.data import Clock, SingleSupport, StepCommand, Timing, WeightShift
+from walking.model import Model
 from walking.parameters import CONTROL_PERIOD
-from walking.plane import Array, Point, Vector
-from walking.records import Record
+from walking.plane import Point, Vector, within
 
-TIMING = record_type(double=int, single=int, swing_height=float)
-"""Control ticks in double and single support [1], height of the swing foot at mid-swing [m]."""
-
-SHIFT = record_type(begin=int, end=int, zmp_x=float, zmp_y=float, right_weight=float)
-"""Shift of ZMP and weight to the support foot: begin and end in ticks since the begin of the
-footstep; ZMP [m] and load fraction of the right foot [1] at its begin."""
-
-SINGLE = record_type(ticks=int, first=int, last=int, origin=float)
-"""Single support: duration, begin and end of the swing in ticks since its begin, and phase of the
-swing at `first`, which is the present if retimed in the air [1]."""
-
-CLOCK = record_type(timing=TIMING, shift=SHIFT, single=SINGLE)
-"""Timing of the next footsteps, weight shift and single support of this one."""
-
-Timing = tuple[int, int, float]
+StepTiming = tuple[int, int, float]
 """Control ticks in double and single support [1], swing height [m]."""
 
 
 @compiled
-def duration(timing: Record) -> float:
+def duration(timing: Timing) -> float:
     """Return the duration of a footstep [s]."""
     time: float = (timing.double + timing.single) * CONTROL_PERIOD
     return time
 
 
 @compiled
-def cadence(velocity: Vector, robot: Record) -> Timing:
+def cadence(velocity: Vector, robot: Model) -> StepTiming:
     """Return the timing for a velocity (vx, vy, wz) [m/s, m/s, rad/s].
 
     Footsteps that would exceed their limits are made faster instead.
@@ -57,13 +43,14 @@ def cadence(velocity: Vector, robot: Record) -> Timing:
 
 
 @compiled
-def command_timing(command: Array, robot: Record) -> tuple[Timing, int]:
+def command_timing(command: StepCommand, robot: Model) -> tuple[StepTiming, int]:
     """Return the timing of a command state and the limits that bind."""
     limits, bound = robot.limits, 0
-    single_support, double_support, swing_height = command[0], command[1], command[5]
-    double = min(limits.max_double, max(CONTROL_PERIOD, double_support))
-    single = min(limits.max_single, max(limits.min_single, single_support))
-    height = min(limits.max_swing_height, max(0.0, swing_height))
+    single_support, double_support = command.single_support, command.double_support
+    swing_height = command.swing_height
+    double = within(double_support, CONTROL_PERIOD, limits.max_double)
+    single = within(single_support, limits.min_single, limits.max_single)
+    height = within(swing_height, 0.0, limits.max_swing_height)
     if double != double_support or single != single_support:
         bound |= TIMING_LIMIT
     if height != swing_height:
@@ -72,8 +59,8 @@ def command_timing(command: Array, robot: Record) -> tuple[Timing, int]:
 
 
 @compiled
-def put_timing(record: Record, timing: Timing) -> None:
-    """Set a record `TIMING`."""
+def put_timing(record: Timing, timing: StepTiming) -> None:
+    """Set a timing."""
     record.double, record.single, record.swing_height = timing
 
 
@@ -84,7 +71,7 @@ def ticks_of(time: float) -> int:
 
 
 @compiled
-def put_single_support(single: Record, ticks: int, robot: Record) -> None:
+def put_single_support(single: SingleSupport, ticks: int, robot: Model) -> None:
     """Set a single support of a duration in control ticks."""
     gait = robot.gait
     single.ticks, single.origin = ticks, 0.0
@@ -92,7 +79,7 @@ def put_single_support(single: Record, ticks: int, robot: Record) -> None:
 
 
 @compiled
-def phase_of(single: Record, elapsed: int) -> float:
+def phase_of(single: SingleSupport, elapsed: int) -> float:
     """Return the phase of the swing, 0 before and 1 after it [1]."""
     fraction = (elapsed - single.first) / (single.last - single.first)
     phase = single.origin + (1.0 - single.origin) * fraction
@@ -101,7 +88,7 @@ def phase_of(single: Record, elapsed: int) -> float:
 
 
 @compiled
-def retime_single_support(single: Record, elapsed: int, ticks: int, robot: Record) -> None:
+def retime_single_support(single: SingleSupport, elapsed: int, ticks: int, robot: Model) -> None:
     """Change the total duration of a single support that began `elapsed` ticks ago.
 
     The swing continues from its present phase, and takes at least the minimum ticks.
@@ -116,21 +103,21 @@ def retime_single_support(single: Record, elapsed: int, ticks: int, robot: Recor
 
 
 @compiled
-def shift_fraction(shift: Record, tick: int) -> float:
+def shift_fraction(shift: WeightShift, tick: int) -> float:
     """Return the progress of a weight shift at a tick [1]."""
     fraction: float = min(1.0, (tick - shift.begin) / (shift.end - shift.begin))
     return fraction
 
 
 @compiled
-def put_shift(shift: Record, begin: int, end: int, zmp: Point, right_weight: float) -> None:
+def put_shift(shift: WeightShift, begin: int, end: int, zmp: Point, right_weight: float) -> None:
     """Set a weight shift that begins with a ZMP [m] and a load fraction of the right foot [1]."""
     shift.begin, shift.end, shift.right_weight = begin, end, right_weight
     shift.zmp_x, shift.zmp_y = zmp
 
 
 @compiled
-def equal_clocks(one: Record, other: Record) -> bool:
+def equal_clocks(one: Clock, other: Clock) -> bool:
     """Whether two clocks are the same number by number."""
     a, b, s, t = one.timing, other.timing, one.shift, other.shift
     u, v = one.single, other.single

@@ -1,7 +1,7 @@
 """A robot model and a body without dynamics."""
 
 from math import atan2, cos, sin
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 import pytest
@@ -10,14 +10,13 @@ from hsr8.robots.loaded import load_robot
 from walking.body.robot_model import RobotModel
 from walking.body.tree import LEFT_LEG, RIGHT_LEG
 from walking.constants import robot_record
-from walking.footsteps import STILL, STRIDES, Foothold, put, velocity_strides
+from walking.data import Data
+from walking.footsteps import STILL, Foothold, put, velocity_strides
 from walking.gait import stand
+from walking.model import Strides
 from walking.parameters import CONTROL_PERIOD, PatternParameters, WalkingParameters
-from walking.records import Record
-from walking.reference import LIVE, PLAN
 from walking.state import BodySensors
 from walking.swing import rest_at
-from walking.tick import WALK
 from walking.timing import cadence, put_timing
 
 
@@ -115,7 +114,7 @@ def mirrored_joints(robot):
 class Model(NamedTuple):
     """Constants of a walk."""
 
-    robot: Record
+    robot: Any
 
 
 @pytest.fixture(scope="session")
@@ -139,7 +138,7 @@ def strides_of(model):
     """Strides of a velocity in the usual time."""
 
     def make(velocity, time=None):
-        strides = np.zeros(1, STRIDES)[0]
+        strides = np.zeros(1, Strides)[0]
         time = time or model.robot.gait.footstep_time
         velocity_strides(strides, velocity, time, model.robot)
         return strides
@@ -149,22 +148,21 @@ def strides_of(model):
 
 @pytest.fixture
 def make_walk(model):
-    """State of a walk that stands with parallel feet, and its plans."""
+    """State of a walk that stands with parallel feet."""
 
     def make(stance=None):
         half = float(model.robot.gait.half_stance)
         stance = stance or (Foothold(True, 0.0, half, 0.0), Foothold(False, 0.0, -half, 0.0))
-        walk = np.zeros(1, WALK)[0]
-        plans = np.zeros(4, PLAN)
-        gait = plans[LIVE].gait
+        walk = np.zeros(1, Data)[0]
+        gait = walk.plan.gait
         for side, foot in enumerate(stance):
             put(gait.footholds[side], foot)
             rest_at(walk.limbs.feet[side], foot)
         for timing in (gait.clock.timing, walk.steering.timing):
             put_timing(timing, cadence(STILL, model.robot))
         stand(gait, model.robot)
-        walk.admission.clock, plans[LIVE].landing = gait.clock, gait.landing
+        walk.admission.clock, walk.plan.landing = gait.clock, gait.landing
         walk.admission.fraction = 1.0
-        return walk, plans
+        return walk
 
     return make

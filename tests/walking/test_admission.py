@@ -9,7 +9,7 @@ from walking.footsteps import STILL, foothold, landing_of, put
 from walking.gait import start, support_foot, update_phase
 from walking.mwpg import admits_target, walking_target
 from walking.parameters import CONTROL_PERIOD
-from walking.reference import LIVE, plan_walk
+from walking.reference import plan_walk
 from walking.support import support_region
 
 FAST = (0.1, -0.2, 0.0)
@@ -20,8 +20,8 @@ class Admission:
 
     def __init__(self, model, make_walk, elapsed=10):
         self.model = model
-        self.walk, self.plans = make_walk()
-        self.live = self.plans[LIVE]
+        self.walk = make_walk()
+        self.live = self.walk.plan
         self.gait = self.live.gait
         start(self.gait, 0, True, model.robot)
         self.gait.tick = self.gait.clock.shift.end + elapsed
@@ -52,9 +52,9 @@ class Admission:
     def admit(self, strides, *, moving=True):
         """Fraction of the wanted change."""
         walk = self.walk
-        remember(walk.admission, self.gait)
-        walk.steering.wanted, walk.steering.velocity[0] = strides, moving
-        admit_modified(walk, self.plans, self.region, self.model.robot)
+        remember(walk)
+        walk.steering.wanted, walk.steering.velocity.vx = strides, moving
+        admit_modified(walk, self.region, self.model.robot)
         return walk.admission.fraction
 
     def feasible(self):

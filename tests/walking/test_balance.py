@@ -9,28 +9,15 @@ from hypothesis import assume, given
 from hypothesis import strategies as st
 
 from walking.admission import remember
-from walking.balance import (
-    ankle_gain,
-    capture_step,
-    capture_time,
-    exceeds,
-    place_foot,
-    zmp_shift,
-)
+from walking.balance import ankle_gain, capture_step, capture_time, exceeds, place_foot, zmp_shift
 from walking.command import BALANCE
 from walking.footsteps import STILL, Foothold, foothold, is_same, landing_of, reachable
 from walking.gait import advance, retime, start, support_foot, swing_foot, swing_of
-from walking.generator import advance as advance_pendulum
+from walking.generator import advance_pendulum
 from walking.parameters import CONTROL_PERIOD, StabilizerParameters
 from walking.pendulum import hold_tick
 from walking.plan_departure import end_capture
-from walking.reference import LIVE
-from walking.steering import (
-    follow_command,
-    moves,
-    set_wanted_strides,
-    use_next_timing,
-)
+from walking.steering import follow_command, moves, set_wanted_strides, use_next_timing
 from walking.support import support_region
 
 GENERATORS = ["preview", "mwpg"]
@@ -148,8 +135,8 @@ class Walk:
 
     def __init__(self, model, make_walk):
         self.model = model
-        self.walk, self.plans = make_walk()
-        self.live, self.placing = self.plans[LIVE], self.walk.placing
+        self.walk = make_walk()
+        self.live, self.placing, self.bound = self.walk.plan, self.walk.placing, 0
         self.gait, pendulum = self.live.gait, self.walk.pendulum
         shift = self.gait.clock.shift
         pendulum.x = pendulum.zmp_x = shift.zmp_x
@@ -157,13 +144,13 @@ class Walk:
 
     def steer(self, velocity):
         walk, robot = self.walk, self.model.robot
-        walk.steering.command.values[:3] = velocity
+        walk.steering.command.velocity = velocity
         follow_command(walk.steering, 1.0, True, True, robot)
 
     def tick(self, velocity, error=NONE):
         walk, gait, model = self.walk, self.gait, self.model
         robot, steering = model.robot, walk.steering
-        remember(walk.admission, gait)
+        remember(walk)
         self.steer(velocity)
         timing = walk.admission.between
         use_next_timing(timing, steering, gait.clock.timing, gait.stepping)
@@ -175,11 +162,11 @@ class Walk:
         unloading = swing_foot(gait) if gait.double else loading
         margin = robot.pattern.sole_margin
         region = support_region(robot.support, unloading, loading, margin)
-        walk.sensing.dcm_x, walk.sensing.dcm_y = error
-        place_foot(walk, self.plans, region, robot)
-        advance_pendulum(walk, self.live, region, robot)
+        walk.error.dcm_x, walk.error.dcm_y = error
+        self.bound = place_foot(walk, region, robot)
+        advance_pendulum(walk, region, robot)
         advance(self.live, walk.limbs.feet, robot)
-        end_capture(walk, self.live)
+        end_capture(walk)
 
     def to_swing(self, velocity, phase=0.3):
         """Walk until a foot swings, some footsteps on."""
@@ -205,9 +192,9 @@ def test_a_steady_undisturbed_walk_follows_the_wanted_strides(models, make_walk,
     walk.to_swing(velocity)
     for _ in range(200):
         walk.tick(velocity)
-        assert walk.placing.bound == 0
+        assert walk.bound == 0
         assert walk.moved == NONE
-        assert tuple(walk.placing.applied.tolist()) == velocity
+        assert walk.placing.applied.item() == velocity
         assert walk.walk.admission.fraction == 1.0
 
 
@@ -225,7 +212,7 @@ def test_a_capture_step_follows_the_error_and_reports_balance(
     walk.tick(velocity, error)
     assert walk.moved[axis] * error[axis] > 0.0
     assert abs(walk.moved[axis]) > abs(error[axis])
-    assert walk.placing.bound & BALANCE
+    assert walk.bound & BALANCE
     robot = walk.model.robot
     landing = foothold(walk.gait.landing)
     within = reachable(support_foot(walk.gait), landing, 0.0, 0.0, robot)
@@ -238,7 +225,7 @@ def test_errors_within_the_dead_zone_move_no_landing(models, make_walk, generato
     walk.to_swing(velocity)
     walk.tick(velocity, (0.005, 0.003))
     assert walk.moved == NONE
-    assert not walk.placing.bound & BALANCE
+    assert not walk.bound & BALANCE
 
 
 def test_during_a_capture_step_the_plan_goes_on_without_the_body_until_touchdown(models, make_walk):

@@ -1,17 +1,17 @@
 """Report of limited commands: limited if, and only if, the footsteps differ."""
 
 from collections import Counter
-from dataclasses import astuple, replace
+from dataclasses import asdict, replace
 
 import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
 
 from walking.command import CommandState, HeadTarget, Limit, VelocityCommand
+from walking.data import StepCommand
 from walking.engine import WalkingEngine
 from walking.footsteps import (
     STILL,
-    STRIDES,
     command_strides,
     foothold,
     is_same,
@@ -19,6 +19,7 @@ from walking.footsteps import (
     velocity_strides,
 )
 from walking.gait import support_foot
+from walking.model import Strides
 from walking.parameters import CONTROL_PERIOD, WalkingParameters
 from walking.timing import cadence, duration
 
@@ -114,7 +115,7 @@ class Observer:
         names = ("step_forward", "step_side", "step_turn", "reach_forward", "reach_side")
         limits = replace(parameters.limits, **dict.fromkeys(names, WIDE))
         gait = replace(parameters.gait, foot_clearance=-WIDE)
-        self._plan, self._gait = engine._plan, engine._plan.gait
+        self._plan, self._gait = engine._walk.plan, engine._walk.plan.gait
         self._usual = make_model(parameters=parameters).robot
         free = replace(parameters, limits=limits, gait=gait)
         self._free = make_model(parameters=free).robot
@@ -136,9 +137,12 @@ class Observer:
 
     def _as_commanded(self, command):
         """Whether the footsteps to come are those of the command."""
-        timing, wanted = self._gait.clock.timing, np.zeros(1, STRIDES)[0]
+        timing, wanted = self._gait.clock.timing, np.zeros(1, Strides)[0]
         if isinstance(command, CommandState):
-            command_strides(wanted, np.array(astuple(command)), 0.0, self._free)
+            step = np.zeros(1, StepCommand)[0]
+            for name, value in asdict(command).items():
+                step[name] = value
+            command_strides(wanted, step, 0.0, self._free)
             timely = (
                 abs(timing.double * CONTROL_PERIOD - command.double_support) < HALF_TICK
                 and abs(timing.single * CONTROL_PERIOD - command.single_support) < HALF_TICK

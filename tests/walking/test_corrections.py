@@ -10,7 +10,6 @@ from hypothesis import strategies as st
 
 from walking.constants import parameters_record
 from walking.corrections import (
-    CORRECTIONS,
     correct_offset,
     cycle_begins,
     detects_touchdown,
@@ -20,6 +19,7 @@ from walking.corrections import (
     speed_correction,
     speed_ratio,
 )
+from walking.data import Corrections
 from walking.parameters import CONTROL_PERIOD, StabilizerParameters, WalkingParameters
 
 LIMITS = StabilizerParameters()
@@ -29,7 +29,7 @@ slips, offs = st.floats(-0.015, 0.015), st.floats(-0.012, 0.012)
 
 
 def corrections():
-    record = np.zeros(1, CORRECTIONS)[0]
+    record = np.zeros(1, Corrections)[0]
     restart_cycle(record)
     return record
 

@@ -7,8 +7,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from walking.data import Body, Data, PlanError
 from walking.estimation import (
-    SENSING,
     compare_with_plan,
     filter_error,
     follow_tilt,
@@ -20,7 +20,6 @@ from walking.estimation import (
 )
 from walking.parameters import CONTROL_PERIOD, EstimatorParameters
 from walking.pendulum import hold_tick
-from walking.tick import WALK
 
 PARAMETERS = EstimatorParameters()
 SEEDS = st.integers(0, 10**6)
@@ -42,23 +41,23 @@ def quaternion(roll, pitch, yaw):
 def test_an_attitude_there_and_back_with_either_sign(roll, pitch, yaw):
     q = quaternion(roll, pitch, yaw)
     for sign in (1.0, -1.0):
-        result = roll_pitch_yaw(*(sign * value for value in q))
+        result = roll_pitch_yaw(sign * np.array(q))
         assert result == pytest.approx((roll, pitch, yaw), abs=1e-6)
 
 
 def test_straight_up_the_pitch_is_a_right_angle():
-    assert roll_pitch_yaw(*quaternion(0.0, 0.5 * pi, 0.0))[1] == pytest.approx(0.5 * pi)
+    assert roll_pitch_yaw(np.array(quaternion(0.0, 0.5 * pi, 0.0)))[1] == pytest.approx(0.5 * pi)
 
 
 class Tilt:
     """Roll and pitch of a trunk."""
 
     def __init__(self, gain=PARAMETERS.tilt_gain):
-        self.gain, self.sensing = gain, np.zeros(1, SENSING)[0]
+        self.gain, self.body = gain, np.zeros(1, Body)[0]
 
     def update(self, roll, pitch, gyro):
-        follow_tilt(self.sensing, roll, pitch, np.array(gyro), self.gain)
-        return [self.sensing.roll, self.sensing.pitch]
+        follow_tilt(self.body, roll, pitch, np.array(gyro), self.gain)
+        return [self.body.roll, self.body.pitch]
 
 
 def test_the_tilt_starts_at_the_imu_and_settles_on_it():
@@ -118,7 +117,7 @@ class Error:
     """Error of the CoM, filtered."""
 
     def __init__(self, model, x=0.0, y=0.0, vx=0.0):
-        self.robot, self.state = model.robot, np.zeros(1, SENSING)[0]
+        self.robot, self.state = model.robot, np.zeros(1, PlanError)[0]
         self.state.x, self.state.y, self.state.vx = x, y, vx
 
     def follow(self, measured, zmp_shift=(0.0, 0.0), slip=(0.0, 0.0)):
@@ -153,51 +152,53 @@ def test_the_filter_predicts_with_the_pendulum(model):
     assert state.vx == pytest.approx(v, abs=1e-4)
 
 
-class Body:
+class StillBody:
     """Walk whose plan is compared with one reading of the sensors."""
 
     def __init__(self, robot, model, sensors):
         self.model, self.sensors = model, sensors
-        self.walk = np.zeros(1, WALK)[0]
-        self.sensing, self.limbs = self.walk.sensing, self.walk.limbs
+        self.walk = np.zeros(1, Data)[0]
+        self.body, self.limbs = self.walk.body, self.walk.limbs
         self.com = tuple(robot.com(sensors.joint_position).tolist())
         for side, foot in enumerate(robot.tree.feet):
             rotation, position = robot.frame_pose(foot, sensors.joint_position)
-            self.sensing.frames[side] = [*rotation.ravel(), *position]
+            self.body.frames[side] = [*rotation.ravel(), *position]
         self.measure()
         for side, foot in enumerate(self.limbs.feet):
-            seen = self.sensing.feet[side]
+            seen = self.body.feet[side]
             foot.x, foot.y, foot.yaw = seen.x, seen.y, seen.yaw
-        self.limbs.com = self.sensing.com[:2]
+        self.limbs.com_x, self.limbs.com_y = self.body.com_x, self.body.com_y
 
     def measure(self, orientation=None, pads=None):
         s, model = self.sensors, self.model
         orientation = s.orientation if orientation is None else orientation
         pads = s.foot_force if pads is None else pads
-        self.sensing.started = False
+        self.body.started = False
         rest = (s.gyro, pads, model.robot)
-        measure(self.sensing, self.com, orientation, *rest)
-        return self.sensing
+        measure(self.body, self.com, orientation, *rest)
+        return self.body
 
     def compare(self, right=0.5):
-        compare_with_plan(self.sensing, self.walk, self.model.robot, right)
-        return self.sensing
+        self.walk.plan.gait.right_weight = right
+        compare_with_plan(self.walk, self.model.robot)
+        return self.walk.error
 
 
 @pytest.fixture
 def body(robot, model, ideal_body):
-    return Body(robot, model, ideal_body.sense())
+    return StillBody(robot, model, ideal_body.sense())
 
 
 def test_a_tilted_body_over_flat_feet_is_measured_level(body):
-    com, foot = body.sensing.com.copy(), body.sensing.feet[0].copy()
+    before = body.body.copy()
+    foot = before.feet[0]
     sensing = body.measure(orientation=np.array(quaternion(0.0, 0.1, 0.0)))
     assert (sensing.roll, sensing.pitch) == pytest.approx((0.0, 0.1))
     # Pitching forward carries the mass centre ahead of the feet.
-    ahead = sensing.com[0] - sensing.feet[0].x
-    assert ahead > com[0] - foot.x + 0.01
-    arm = np.hypot(com[0] - foot.x, com[2] - foot.z)
-    assert np.hypot(ahead, sensing.com[2] - sensing.feet[0].z) == pytest.approx(arm)
+    ahead = sensing.com_x - sensing.feet[0].x
+    assert ahead > before.com_x - foot.x + 0.01
+    arm = np.hypot(before.com_x - foot.x, before.com_z - foot.z)
+    assert np.hypot(ahead, sensing.com_z - sensing.feet[0].z) == pytest.approx(arm)
 
 
 def test_light_pad_noise_is_not_a_load(body):
@@ -244,17 +245,17 @@ def test_a_body_on_its_plan_has_no_error_in_any_frame(body, right):
         c, s = np.cos(angle), np.sin(angle)
         return np.array([c * point[0] - s * point[1], s * point[0] + c * point[1]])
 
-    limbs, sensing, origin = body.limbs, body.sensing, np.array([0.11, 0.07])
+    limbs, sensing, origin = body.limbs, body.body, np.array([0.11, 0.07])
     for side, foot in enumerate(limbs.feet):
         seen = sensing.feet[side]
         foot.x, foot.y = place + turned(turn, (seen.x, seen.y))
         foot.yaw = turn + seen.yaw
-    planned = turned(-yaw, place + turned(turn, sensing.com[:2]) - origin)
-    limbs.pelvis = *origin, yaw
+    planned = turned(-yaw, place + turned(turn, (sensing.com_x, sensing.com_y)) - origin)
+    limbs.pelvis = (*origin, yaw)
     for off in ((0.0, 0.0), (0.004, -0.003)):
-        limbs.com = planned - off
+        limbs.com_x, limbs.com_y = planned - off
         for _ in range(300):
-            body.compare(right)
+            error = body.compare(right)
         # A steady error: nothing holds the body against it, so it shows as a rate, too.
         expected = turned(yaw, off)
-        assert [sensing.x, sensing.y] == pytest.approx(expected, abs=3e-4)
+        assert [error.x, error.y] == pytest.approx(expected, abs=3e-4)

@@ -9,15 +9,15 @@ from hypothesis import strategies as st
 
 from walking.body.tree import LEFT_LEG, RIGHT_LEG
 from walking.constants import joint_records
+from walking.data import Data
 from walking.feedforward import (
     ankle_offset,
     set_motion,
     set_offsets,
-    set_setpoints,
+    set_within_range,
     support_torque,
 )
 from walking.parameters import CONTROL_PERIOD, StabilizerParameters, WalkingParameters
-from walking.tick import WALK
 
 PAN = 12
 SOLES = ((0.01, 0.042), (0.01, -0.042))
@@ -36,7 +36,7 @@ class Feed:
         self.joints["angle"] = robot.ready
         legs = zip(robot.legs, (LEFT_LEG, RIGHT_LEG), strict=True)
         axes, origins = zip(*(leg.joints(robot.ready[part]) for leg, part in legs), strict=True)
-        self.walk = np.zeros(1, WALK)[0]
+        self.walk = np.zeros(1, Data)[0]
         self.walk.limbs.axes, self.walk.limbs.origins = axes, origins
 
     def offsets(
@@ -54,9 +54,9 @@ class Feed:
         angles = self.robot.ready if angles is None else angles
         walk, dynamics = self.walk, self.robot.dynamics
         motion = (dynamics.q, dynamics.v, dynamics.a)
-        set_motion(self.joints, angles, *motion, pelvis[2], acceleration, self.constants)
+        set_motion(self.joints, angles, motion, pelvis[2], acceleration, self.constants)
         walk.limbs.pelvis, walk.limbs.load = pelvis, right_load
-        walk.zmp_shift_x, walk.zmp_shift_y = shift
+        walk.zmp_shift = shift
         forces = dynamics.forces()
         set_offsets(self.joints, walk, forces, np.array(gyro), soles, self.constants)
         return self.joints["offset"].copy()
@@ -193,6 +193,6 @@ def test_soft_legs_are_stiffened_by_the_measured_angles(feed, robot, model):
     ahead.joints["offset"] = 0.0
     constants, setpoint = model.robot.copy(), np.zeros_like(angles)
     constants.stiffening = 1.5
-    set_setpoints(ahead.joints, angles, measured, setpoint, constants)
+    set_within_range(ahead.joints, angles, measured, setpoint, constants)
     np.testing.assert_allclose(setpoint[:12], angles[:12] + 0.005)
     np.testing.assert_allclose(setpoint[12:], angles[12:].clip(robot.lower[12:], robot.upper[12:]))

@@ -1,6 +1,6 @@
 """Velocities and command states to strides, timing and footholds."""
 
-from dataclasses import astuple, replace
+from dataclasses import asdict, replace
 from math import cos, pi, sin
 
 import numpy as np
@@ -10,9 +10,9 @@ from hypothesis import strategies as st
 
 from walking.command import CLEARANCE, CommandState
 from walking.constants import parameters_record
+from walking.data import StepCommand, Timing
 from walking.footsteps import (
     STILL,
-    STRIDES,
     Foothold,
     clear_of,
     command_of,
@@ -24,8 +24,9 @@ from walking.footsteps import (
     tendency,
     towards_strides,
 )
+from walking.model import Strides
 from walking.parameters import CONTROL_PERIOD, GaitParameters, LimitParameters, WalkingParameters
-from walking.timing import TIMING, cadence, command_timing, put_timing
+from walking.timing import cadence, command_timing, put_timing
 
 GAIT, LIMITS = GaitParameters(), LimitParameters()
 LEFT = Foothold(True, 0.0, GAIT.half_stance, 0.0)
@@ -48,7 +49,7 @@ def time_of(timing):
 
 
 def limits_of(model, velocity, time):
-    scratch = np.zeros(1, STRIDES)[0]
+    scratch = np.zeros(1, Strides)[0]
     return stride_limits(scratch, velocity, time, model.robot)
 
 
@@ -143,13 +144,15 @@ def test_the_shortest_footstep_has_a_tick_of_either_support(time, fraction):
 @pytest.mark.parametrize("forward", [-0.05, 0.1])
 @pytest.mark.parametrize("direction", [-0.1, 0.0, 0.1])
 def test_strides_and_timing_are_read_back_as_the_command_state(model, forward, direction):
-    command = np.array(astuple(CommandState(0.3, 0.1, forward, 0.13, direction, 0.02)))
-    strides, timing = np.zeros(1, STRIDES)[0], np.zeros(1, TIMING)[0]
+    command = np.zeros(1, StepCommand)[0]
+    for name, value in asdict(CommandState(0.3, 0.1, forward, 0.13, direction, 0.02)).items():
+        command[name] = value
+    strides, timing = np.zeros(1, Strides)[0], np.zeros(1, Timing)[0]
     assert command_strides(strides, command, 0.0, model.robot) == 0
     ticks, late = command_timing(command, PARAMETERS)
     put_timing(timing, ticks)
     assert late == 0
-    assert command_of(strides, timing) == pytest.approx(command)
+    assert command_of(strides, timing) == pytest.approx(command.item())
 
 
 def test_strides_between_two_others_are_linear(strides_of):

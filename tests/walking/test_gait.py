@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from walking.constants import parameters_record
+from walking.data import SingleSupport, Timing
 from walking.footsteps import STILL, foothold, is_parallel, landing_of, put
 from walking.gait import (
     advance,
@@ -19,16 +20,9 @@ from walking.gait import (
     touch_down,
 )
 from walking.parameters import CONTROL_PERIOD, WalkingParameters
-from walking.reference import LIVE, plan_walk
+from walking.reference import plan_walk
 from walking.steering import follow_command, moves, set_wanted_strides, use_next_timing
-from walking.timing import (
-    SINGLE,
-    TIMING,
-    phase_of,
-    put_single_support,
-    put_timing,
-    retime_single_support,
-)
+from walking.timing import phase_of, put_single_support, put_timing, retime_single_support
 
 PARAMETERS = WalkingParameters()
 GAIT, LIMITS = PARAMETERS.gait, PARAMETERS.limits
@@ -44,8 +38,8 @@ class Walk:
 
     def __init__(self, model, strides_of, make_walk):
         self.model, self.strides_of = model, strides_of
-        self.walk, self.plans = make_walk()
-        self.plan = self.plans[LIVE]
+        self.walk = make_walk()
+        self.plan = self.walk.plan
         self.gait, self.feet = self.plan.gait, self.walk.limbs.feet
 
     def start(self, support=0):
@@ -69,7 +63,7 @@ class Walk:
         return self
 
     def retime(self, double, single, height=0.025):
-        timing = np.zeros(1, TIMING)[0]
+        timing = np.zeros(1, Timing)[0]
         put_timing(timing, (double, single, height))
         return retime(self.gait, timing, self.model.robot)
 
@@ -91,7 +85,7 @@ def walk(model, strides_of, make_walk):
 
 
 def single_support(ticks):
-    single = np.zeros(1, SINGLE)[0]
+    single = np.zeros(1, SingleSupport)[0]
     put_single_support(single, ticks, RECORD)
     return single
 
@@ -257,10 +251,10 @@ def test_a_double_support_under_way_changes_its_length(walk):
 
 def stop(walk, velocity, stop_at):
     """Footsteps completed between the command to stop and the time of standing."""
-    model, steering, timing = walk.model, walk.walk.steering, np.zeros(1, TIMING)[0]
+    model, steering, timing = walk.model, walk.walk.steering, np.zeros(1, Timing)[0]
     walk.start()
     for tick in range(stop_at + 400):
-        steering.command.values[:3] = velocity if tick < stop_at else STILL
+        steering.command.velocity = velocity if tick < stop_at else STILL
         if tick == stop_at:
             completed = int(walk.gait.completed)
         follow_command(steering, 1.0, True, True, model.robot)

@@ -7,11 +7,12 @@ import pytest
 from scipy.integrate import quad
 from scipy.linalg import solve_discrete_are
 
+from walking.data import Ramp
 from walking.footsteps import Foothold
-from walking.generator import advance
+from walking.generator import advance_pendulum
 from walking.parameters import CONTROL_PERIOD
 from walking.pendulum import dcm_of, dcm_reference
-from walking.reference import LIVE, RAMP, set_ramp
+from walking.reference import set_ramp
 from walking.support import clip, support_region
 
 LEFT, RIGHT = Foothold(True, 0.0, 0.042, 0.0), Foothold(False, 0.0, -0.042, 0.0)
@@ -22,22 +23,22 @@ class Tracker:
 
     def __init__(self, model, make_walk, x, y, vy=0.0):
         self.robot = model.robot
-        self.walk, plans = make_walk()
-        self.plan, self.pendulum = plans[LIVE], self.walk.pendulum
+        self.walk = make_walk()
+        self.plan, self.pendulum = self.walk.plan, self.walk.pendulum
         p = self.pendulum
         p.x, p.y, p.vy, p.zmp_x, p.zmp_y = x, y, vy, x, y
         self.region = support_region(model.robot.support, RIGHT, LEFT, 0.005)
 
     def advance(self, ramps):
         self.plan.ramps[: len(ramps)], self.plan.ramp_count = ramps, len(ramps)
-        advance(self.walk, self.plan, self.region, self.robot)
+        advance_pendulum(self.walk, self.region, self.robot)
         zmp = (self.pendulum.zmp_x, self.pendulum.zmp_y)
         assert clip(self.region, *zmp) == zmp
 
 
 def shift(ticks, start, end):
     """Shift of the ZMP, then rest."""
-    ramps = np.zeros(2, RAMP)
+    ramps = np.zeros(2, Ramp)
     set_ramp(ramps[0], ticks, start, end, RIGHT, LEFT)
     set_ramp(ramps[1], 200, end, end, RIGHT, LEFT)
     return ramps

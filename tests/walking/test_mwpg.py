@@ -7,9 +7,9 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from walking.data import Pendulum, Ramp, ZmpFunctions
 from walking.footsteps import Foothold
 from walking.mwpg import (
-    ZMP_FUNCTIONS,
     admits_target,
     advance_functions,
     reachable_dcm,
@@ -17,8 +17,8 @@ from walking.mwpg import (
     zmp_function,
 )
 from walking.parameters import CONTROL_PERIOD
-from walking.pendulum import PENDULUM, dcm_of, dcm_reference, natural_frequency
-from walking.reference import RAMP, set_ramp
+from walking.pendulum import dcm_of, dcm_reference, natural_frequency
+from walking.reference import set_ramp
 from walking.support import clip, support_region
 
 W = natural_frequency(0.19)
@@ -52,7 +52,7 @@ def test_no_other_two_level_function_has_a_lower_peak(time, first, fraction, rat
 
 def reference(left, stride=0.05):
     """Straight walk with `left` ticks of the first single support to go."""
-    ramps, feet = np.zeros(RAMPS, RAMP), []
+    ramps, feet = np.zeros(RAMPS, Ramp), []
     for k in range(9):
         feet.append(Foothold(k % 2 == 0, k * stride, 0.042 * (-1.0) ** k, 0.0))
         place = (feet[k].x + 0.01, feet[k].y)
@@ -69,7 +69,7 @@ class Mwpg:
     def __init__(self, make_model):
         self.model = make_model("mwpg")
         robot, ramps = self.model.robot, reference(54)
-        self.plan, self.pendulum = np.zeros(1, ZMP_FUNCTIONS)[0], np.zeros(1, PENDULUM)[0]
+        self.plan, self.pendulum = np.zeros(1, ZmpFunctions)[0], np.zeros(1, Pendulum)[0]
         growth = exp(W * 54 * CONTROL_PERIOD)
         # Under a ZMP at rest ζ only decays.
         zeta = [growth * z for z in walking_target(ramps, robot).zeta]

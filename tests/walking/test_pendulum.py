@@ -6,10 +6,10 @@ from hypothesis import given
 from hypothesis import strategies as st
 from scipy.integrate import solve_ivp
 
+from walking.data import Pendulum, Ramp
 from walking.footsteps import Foothold
 from walking.parameters import CONTROL_PERIOD
 from walking.pendulum import (
-    PENDULUM,
     dcm_of,
     dcm_reference,
     hold,
@@ -19,10 +19,9 @@ from walking.pendulum import (
     track_reference,
 )
 from walking.plane import clamp, dead_zone
-from walking.reference import RAMP
 from walking.support import support_region
 
-RAMPS = np.zeros(3, RAMP)
+RAMPS = np.zeros(3, Ramp)
 RAMPS["ticks"] = 20, 54, 14
 RAMPS["ax"], RAMPS["bx"] = (0.0, 0.01, 0.01), (0.01, 0.01, 0.05)
 RAMPS["ay"], RAMPS["by"] = (0.0, 0.03, 0.03), (0.03, 0.03, -0.03)
@@ -48,7 +47,7 @@ def both(model):
 
 
 def pendulum(x, y, vx=0.0, vy=0.0):
-    record = np.zeros(1, PENDULUM)[0]
+    record = np.zeros(1, Pendulum)[0]
     record.x, record.y, record.vx, record.vy = x, y, vx, vy
     return record
 

@@ -9,7 +9,6 @@ from walking.footsteps import Foothold
 from walking.gait import advance, start
 from walking.parameters import WalkingParameters
 from walking.posture import pelvis_over, set_posture
-from walking.reference import LIVE
 
 PARAMETERS = WalkingParameters()
 NONE = (0.0, 0.0)
@@ -21,17 +20,17 @@ class Body:
     def __init__(self, robot, model, make_walk):
         feet = (Foothold(True, 0.01, 0.045, 0.15), Foothold(False, -0.01, -0.04, -0.05))
         self.feet, self.robot, self.model = feet, robot, model
-        self.walk, self.plans = make_walk(feet)
-        self.gait, self.limbs = self.plans[LIVE].gait, self.walk.limbs
+        self.walk = make_walk(feet)
+        self.gait, self.limbs = self.walk.plan.gait, self.walk.limbs
         self.limbs.leg_angles = robot.ready[:12]
         self.joints = joint_records(robot, PARAMETERS)
 
     def posture(self, com=NONE, tilt=NONE, head=NONE):
         """Joint angles (n,) and pelvis x, y, heading."""
         q, walk, model = np.empty(self.robot.ready.size), self.walk, self.model
-        walk.sensing.roll, walk.sensing.pitch = tilt
-        set_posture(q, walk, self.gait, com, head, self.joints, model.robot)
-        return q, self.limbs.pelvis.tolist()
+        walk.body.roll, walk.body.pitch = tilt
+        set_posture(q, walk, com, head, self.joints, model.robot)
+        return q, self.limbs.pelvis.item()
 
 
 @pytest.fixture
@@ -58,7 +57,7 @@ def test_the_pendulum_is_at_the_centre_of_mass_of_the_ready_posture(robot, model
     place = (c * com[0] - s * com[1], s * com[0] + c * com[1])
     pelvis = pelvis_over(body.limbs.feet, place, float(model.robot.com_ahead))
     assert pelvis[:2] == pytest.approx((0.0, 0.0), abs=1e-9)
-    assert body.posture(place)[1] == list(pelvis)
+    assert body.posture(place)[1] == pelvis
 
 
 def test_a_foot_on_the_floor_ignores_the_tilt(body):
@@ -70,7 +69,7 @@ def test_a_foot_in_the_air_stays_level_under_a_tilted_trunk(robot, model, body):
     gait = body.gait
     start(gait, 0, False, model.robot)
     while gait.swing_phase < 0.5:
-        advance(body.plans[LIVE], body.limbs.feet, model.robot)
+        advance(body.walk.plan, body.limbs.feet, model.robot)
     for _ in range(30):
         angles = body.posture(tilt=(0.0, 0.15))[0][RIGHT_LEG]
     stabilizer = PARAMETERS.stabilizer

@@ -7,23 +7,24 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from walking.data import Plan
 from walking.footsteps import STILL, Foothold, foothold, is_parallel, landing_of, put
 from walking.gait import scheduled_zmp, stand, start, update_phase, zmp_between, zmp_under
 from walking.parameters import PatternParameters, WalkingParameters
-from walking.reference import LIVE, PLAN, is_single, plan_walk
+from walking.reference import is_single, plan_walk
 from walking.timing import put_timing
 
 LEFT, RIGHT = Foothold(True, 0.0, 0.042, 0.1), Foothold(False, 0.05, -0.042, -0.1)
-DOUBLE, SINGLE, STOP = 14, 54, 60
+DOUBLE, SingleSupport, STOP = 14, 54, 60
 
 
 def planned(model, tick, landing, strides, *, moving, support=LEFT, swing=RIGHT):
     """Plan from a tick of the first footstep on, with given landing, strides and timing."""
-    plan = np.zeros(1, PLAN)[0]
+    plan = np.zeros(1, Plan)[0]
     gait, first = plan.gait, 0 if support.left else 1
     put(gait.footholds[first], support)
     put(gait.footholds[1 - first], swing)
-    put_timing(gait.clock.timing, (DOUBLE, SINGLE, 0.02))
+    put_timing(gait.clock.timing, (DOUBLE, SingleSupport, 0.02))
     stand(gait, model.robot)
     start(gait, first, True, model.robot)
     gait.tick = tick
@@ -60,7 +61,7 @@ def test_the_zmp_turns_with_the_foot_and_is_ahead_of_the_ankle_and_inward(robot,
 
 
 @pytest.mark.parametrize("moving", [True, False])
-@pytest.mark.parametrize(("tick", "left"), [(DOUBLE + 24, (30,)), (DOUBLE - 5, (5, SINGLE))])
+@pytest.mark.parametrize(("tick", "left"), [(DOUBLE + 24, (30,)), (DOUBLE - 5, (5, SingleSupport))])
 def test_it_goes_from_foot_to_foot_without_jumps(model, strides_of, moving, tick, left):
     robot, strides = model.robot, strides_of(STILL)
     plan = planned(
@@ -74,14 +75,14 @@ def test_it_goes_from_foot_to_foot_without_jumps(model, strides_of, moving, tick
     assert count == (4 if moving else 2)
     end = zmp_under(steps[-1], robot) if moving else zmp_between(*steps[-2:], robot)
     assert (ramps[-1].bx, ramps[-1].by) == end
-    rest = [STOP] if not moving else [DOUBLE, SINGLE]
-    assert ramps["ticks"].tolist() == [*left, *[DOUBLE, SINGLE] * (count - 1), *rest]
+    rest = [STOP] if not moving else [DOUBLE, SingleSupport]
+    assert ramps["ticks"].tolist() == [*left, *[DOUBLE, SingleSupport] * (count - 1), *rest]
     assert all(is_single(r) for r in ramps if (r.ax, r.ay) == (r.bx, r.by))
     assert all(foothold(a.loading) == foothold(b.unloading) for a, b in pairwise(ramps))
 
 
 def test_standing_the_zmp_goes_between_the_feet(model, make_walk, strides_of):
-    plan = make_walk((LEFT, RIGHT))[1][LIVE]
+    plan = make_walk((LEFT, RIGHT)).plan
     plan.gait.tick -= 3
     update_phase(plan.gait, model.robot)
     plan_walk(plan, RIGHT, strides_of(STILL), False, model.robot)

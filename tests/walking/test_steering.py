@@ -7,12 +7,11 @@ from hypothesis import strategies as st
 
 from walking.command import ACCELERATION, BALANCE, STRIDE_LIMITS
 from walking.constants import parameters_record
+from walking.data import Data, Steering, Timing
 from walking.footsteps import STILL, mean_velocity
 from walking.parameters import CONTROL_PERIOD, WalkingParameters
-from walking.published import PUBLISHED, publish_limits
-from walking.reference import PLAN
+from walking.published import Published, publish_limits
 from walking.steering import (
-    STEERING,
     follow_command,
     limited,
     moves,
@@ -20,8 +19,7 @@ from walking.steering import (
     use_next_timing,
     wanted_velocity,
 )
-from walking.tick import WALK
-from walking.timing import TIMING, cadence, duration, put_timing
+from walking.timing import cadence, duration, put_timing
 
 LIMITS = WalkingParameters().limits
 LONG = 250  # control ticks in which any velocity is reached
@@ -32,33 +30,29 @@ speeds = st.floats(-2.0, 2.0)
 PARAMETERS = parameters_record(WalkingParameters())[0]
 
 
-class Steering:
+class Steered:
     """Steering record that follows commands."""
 
     def __init__(self, model):
         self.model = model
-        self.record = np.zeros(1, STEERING)[0]
+        self.record, self.bound = np.zeros(1, Steering)[0], 0
         put_timing(self.record.timing, cadence(STILL, model.robot))
 
     def follow(self, velocity, *, ticks=1, fraction=1.0, balanced=True):
-        self.record.command.values[:3] = velocity
+        self.record.command.velocity = velocity
         model = self.model
         for _ in range(ticks):
-            follow_command(self.record, fraction, True, balanced, model.robot)
+            self.bound = follow_command(self.record, fraction, True, balanced, model.robot)
 
     @property
     def velocity(self):
         return wanted_velocity(self.record)
 
-    @property
-    def bound(self):
-        return int(self.record.bound)
-
 
 @pytest.fixture(scope="module")
 def steer(make_model):
     models = {name: make_model(name) for name in ("preview", "mwpg")}
-    return lambda generator="preview": Steering(models[generator])
+    return lambda generator="preview": Steered(models[generator])
 
 
 @given(speeds, speeds, speeds)
@@ -97,8 +91,8 @@ def test_a_command_within_the_limits_is_followed_exactly(steer, vx, vy, wz, gene
 @settings(max_examples=40)
 @given(walks, generators)
 def test_a_command_is_reported_as_limited_if_and_only_if_it_is(steer, walk, generator):
-    steering, state = steer(generator), np.zeros(1, WALK)[0]
-    plan, published = np.zeros(1, PLAN)[0], np.zeros(1, PUBLISHED)[0]
+    steering, state = steer(generator), np.zeros(1, Data)[0]
+    published = np.zeros(1, Published)[0]
     record, model = steering.record, steering.model
     for command, ticks in walk:
         for _ in range(ticks):
@@ -107,8 +101,8 @@ def test_a_command_is_reported_as_limited_if_and_only_if_it_is(steer, walk, gene
             at_rest = command != STILL or steering.velocity == STILL
             assert bool(steering.bound & ~STRIDE_LIMITS) is (error > 1e-9 or not at_rest)
             state.steering, state.placing.applied = record, steering.velocity
-            plan.gait.clock.timing = record.timing
-            publish_limits(published, state, plan, model.robot)
+            state.plan.gait.clock.timing, state.limits = record.timing, steering.bound
+            publish_limits(published, state, model.robot)
             if steering.bound and not steering.bound & STRIDE_LIMITS:
                 assert tuple(published.applied[:3]) == pytest.approx(steering.velocity, abs=1e-9)
 
@@ -176,11 +170,11 @@ def test_a_robot_off_balance_keeps_its_motion(steer):
 
 
 def test_footsteps_that_close_the_stance_keep_the_time_of_the_walk(steer):
-    steering, timing = steer("mwpg"), np.zeros(1, TIMING)[0]
+    steering, timing = steer("mwpg"), np.zeros(1, Timing)[0]
     record = steering.record
     usual = cadence(STILL, PARAMETERS)
     steering.follow((LIMITS.vx, 0.0, 0.0), ticks=LONG)
-    quick = np.zeros(1, TIMING)[0]
+    quick = np.zeros(1, Timing)[0]
     put_timing(quick, record.timing.item())
     steering.follow(STILL)
     for stepping, expected in ((True, quick.item()), (False, usual)):

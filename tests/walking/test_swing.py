@@ -5,11 +5,11 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from walking.data import FootReference
 from walking.footsteps import Foothold
 from walking.parameters import CONTROL_PERIOD
 from walking.swing import (
     PEAK,
-    REFERENCE,
     lift_profile,
     min_swing_ticks,
     minimum_jerk,
@@ -35,12 +35,12 @@ def test_minimum_jerk_starts_and_ends_at_rest_and_peaks_in_the_middle():
 
 def run(start, targets):
     """Position, velocity and acceleration of x of the right foot."""
-    feet = np.zeros(2, REFERENCE)
+    feet = np.zeros(2, FootReference)
     feet[1].x = start
     rows = []
     for k, target in enumerate(targets):
         move_foot(feet[1], Foothold(False, target, 0.0, 0.0), len(targets) - k, 0.02)
-        rows.append((feet[1].x, feet[1].rate[0], feet[1].acceleration[0]))
+        rows.append((feet[1].x, feet[1].rate.x, feet[1].acceleration.x))
     return np.array(rows)
 
 
@@ -70,16 +70,15 @@ def test_the_lift_starts_and_ends_at_rest_and_peaks_in_the_middle():
 
 
 def test_a_foot_that_stands_rests_on_its_foothold_at_the_height_it_has():
-    foot = np.zeros(1, REFERENCE)[0]
-    foot.height, foot.rate, foot.acceleration = 1.0, 1.0, 1.0
+    foot = np.zeros(1, FootReference)[0]
+    foot.height, foot.rate, foot.acceleration = 1.0, (1.0, 1.0, 1.0), (1.0, 1.0, 1.0)
     rest_at(foot, Foothold(False, 0.1, -0.04, -0.2))
     assert (foot.x, foot.y, foot.yaw, foot.height) == (0.1, -0.04, -0.2, 1.0)
-    assert not foot.rate.any()
-    assert not foot.acceleration.any()
+    assert foot.rate.item() == foot.acceleration.item() == (0.0, 0.0, 0.0)
 
 
 def test_the_swing_time_respects_the_peak_speed():
-    foot = np.zeros(1, REFERENCE)[0]
+    foot = np.zeros(1, FootReference)[0]
     ticks = min_swing_ticks(foot, Foothold(True, 0.03, 0.04, 0.0), 0.5)
     assert (ticks - 1) * CONTROL_PERIOD < PEAK * 0.05 / 0.5 <= ticks * CONTROL_PERIOD
 

@@ -7,12 +7,12 @@ import pytest
 
 from compilation.record import record_type
 from walking.command import HeadTarget, VelocityCommand
+from walking.data import Gait, Limbs, Plan
 from walking.engine import WalkingEngine
-from walking.footsteps import FOOTHOLD, Foothold, put
-from walking.gait import GAIT
+from walking.footsteps import Foothold, put
+from walking.model import FootholdRecord
 from walking.parameters import CONTROL_PERIOD, WalkingParameters
-from walking.posture import LIMBS
-from walking.reference import PLAN, zmp_under
+from walking.reference import zmp_under
 from walking.swing_reaction import compensate
 
 DOUBLE, SINGLE = 10, 50  # control ticks of a footstep
@@ -30,7 +30,7 @@ def foothold(n, stride, *, side=1.0, angle=0.0):
 
 def plan_at(k, stride, *, steps=6, **walk):
     """Plan in tick `k` of a walk that goes on for ever."""
-    plan = np.zeros(1, record_type(gait=GAIT, steps=(FOOTHOLD, steps), step_count=int))[0]
+    plan = np.zeros(1, record_type(gait=Gait, steps=(FootholdRecord, steps), step_count=int))[0]
     gait, n = plan.gait, k // STEP
     clock, support = gait.clock, foothold(n, stride, **walk)
     gait.stepping, gait.support = True, 0 if support.left else 1
@@ -53,10 +53,10 @@ def track(model):
     """Offset and its acceleration tick by tick (n, 4)."""
 
     def run(stride, count=600, **walk):
-        limbs, rows = np.zeros(1, LIMBS)[0], []
+        limbs, rows = np.zeros(1, Limbs)[0], []
         for k in range(count):
             compensate(limbs, plan_at(k, stride, **walk), model.robot)
-            rows.append((*limbs.offset, *limbs.offset_acceleration))
+            rows.append((*limbs.offset.item(), *limbs.offset_acceleration.item()))
         return np.array(rows)
 
     return run
@@ -110,12 +110,12 @@ def test_offsets_stay_small_and_mirror(track):
 
 
 def test_standing_the_pelvis_comes_back(model):
-    limbs, standing = np.zeros(1, LIMBS)[0], np.zeros(1, PLAN)[0]
+    limbs, standing = np.zeros(1, Limbs)[0], np.zeros(1, Plan)[0]
     for k in range(200):
         compensate(limbs, plan_at(k, 0.07), model.robot)
     for _ in range(400):
         compensate(limbs, standing, model.robot)
-    assert np.abs(limbs.offset).max() < 1e-6
+    assert np.abs(limbs.offset.item()).max() < 1e-6
 
 
 def test_the_multibody_zmp_is_near_the_planned_one(robot, ideal_body):
@@ -130,7 +130,8 @@ def test_the_multibody_zmp_is_near_the_planned_one(robot, ideal_body):
         ideal_body.apply(targets)
         walk = engine._walk
         pendulum = walk.pendulum
-        rows.append([*targets.position, *walk.limbs.pelvis[:2], pendulum.zmp_x, pendulum.zmp_y])
+        x, y, _ = walk.limbs.pelvis.item()
+        rows.append([*targets.position, x, y, pendulum.zmp_x, pendulum.zmp_y])
     table = np.array(rows)
     rate = np.diff(table[:, :28], axis=0) / CONTROL_PERIOD
     change = np.diff(rate, axis=0) / CONTROL_PERIOD
