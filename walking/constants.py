@@ -7,15 +7,15 @@ from typing import Any, cast
 import numpy as np
 
 from compilation.record import Records
-from walking.balance import ankle_gain
 from walking.body.robot_model import RobotModel
+from walking.body.swing_reaction import leg_reaction
 from walking.dimension import HSR_VIII, override, scale_parameters
-from walking.estimation import steady_gains
-from walking.footsteps import STILL, velocity_strides
+from walking.estimate.body import steady_gains
 from walking.model import Joint, Model
 from walking.parameters import CONTROL_PERIOD, GRAVITY, LIGHT_LOAD, WalkingParameters
-from walking.pendulum import natural_frequency
-from walking.swing_reaction import leg_reaction
+from walking.plan.balance import ankle_gain
+from walking.plan.footsteps import STILL, velocity_strides
+from walking.plan.pendulum import natural_frequency
 
 LEGS = slice(0, 12)  # joints
 

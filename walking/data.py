@@ -74,7 +74,7 @@ class Timing:
 
 @record_class
 class Steering:
-    """Command as the walk follows it, see `walking.steering`."""
+    """Command as the walk follows it, see `walking.plan.steering`."""
 
     command: CommandRecord  # of this tick
     state: CommandRecord  # command state in force, if `explicit`
@@ -120,7 +120,7 @@ class Clock:
 
 @record_class
 class Gait:
-    """Gait, see `walking.gait`."""
+    """Gait, see `walking.plan.gait`."""
 
     stepping: bool  # whether a footstep is under way
     support: int  # index of the support foot
@@ -133,13 +133,6 @@ class Gait:
     clock: Clock
     tick: int  # ticks since the begin of the footstep [1]
     swing_height: float  # of this swing [m]
-    # Of clock and tick, see `walking.gait.update_phase`:
-    elapsed: int  # ticks since the begin of single support [1]
-    double: bool  # whether double support is planned
-    right_weight: float  # planned load fraction of the right foot [1]
-    ticks_left: int  # ticks until the end of single support [1]
-    swing_phase: float  # [1]
-    adjustable: bool  # whether the landing may change
 
 
 @record_class
@@ -172,7 +165,7 @@ class Ramp:
 
 @record_class
 class Plan:
-    """Plan of the walk, see `walking.reference`."""
+    """Plan of the walk, see `walking.plan.reference`."""
 
     gait: Gait
     landing: FootholdRecord  # of the swing foot
@@ -198,7 +191,7 @@ class Pendulum:
 
 @record_class
 class ZmpFunctions:
-    """ZMP functions along and across the support foot, see `walking.mwpg`."""
+    """ZMP functions along and across the support foot, see `walking.plan.mwpg`."""
 
     aimed: bool  # whether there is a target
     xi: Planar  # DCM at the end of single support [m]
@@ -212,7 +205,7 @@ class ZmpFunctions:
 
 @record_class
 class Admission:
-    """Admission of a plan, see `walking.admission`."""
+    """Admission of a plan, see `walking.plan.admission`."""
 
     stepping: bool  # whether the gait was stepping in the last tick
     completed: int  # footsteps completed then
@@ -227,7 +220,7 @@ class Admission:
 
 @record_class
 class Placing:
-    """Foot placement, see `walking.balance`."""
+    """Foot placement, see `walking.plan.balance`."""
 
     applied: Twist  # velocity that the footsteps follow
     moved_x: float  # shift of the landing by a capture step [m]
@@ -252,7 +245,7 @@ class MeasuredFoot:
 
 @record_class
 class Body:
-    """Measured body, see `walking.estimation`."""
+    """Measured body, see `walking.estimate.body`."""
 
     started: bool  # whether the tilt is known
     roll: float  # filtered [rad]
@@ -285,7 +278,7 @@ class PlanError:
 
 @record_class
 class Corrections:
-    """Slow corrections, see `walking.corrections`."""
+    """Slow corrections, see `walking.plan.corrections`."""
 
     first: int  # first support foot of the gait cycle, -1 for none
     support: int  # last support foot, -1 for none
@@ -309,7 +302,7 @@ class Corrections:
 
 @record_class
 class Limbs:
-    """Planned posture, see `walking.posture`."""
+    """Planned posture, see `walking.body.posture`."""
 
     moved: bool  # whether there is a posture before this tick
     feet: Annotated[Records[FootReference], 2]
@@ -335,12 +328,12 @@ class Limbs:
 
 @record_class
 class DeadReckoning:
-    """Dead reckoning, see `walking.odometry`."""
+    """Dead reckoning, see `walking.estimate.odometry`."""
 
     x: float  # [m]
     y: float  # [m]
     yaw: float  # heading, unwrapped [rad]
-    turned: bool  # whether the yaw of the IMU is known
+    yaw_known: bool  # whether the yaw of the IMU is known
     imu_yaw: float  # [rad]
     placed: bool  # whether the vectors from foot to body are known
     left_x: float  # vector from the left foot, in the odometry frame [m]

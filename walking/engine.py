@@ -11,14 +11,14 @@ from walking.body.tree import LEFT_LEG, RIGHT_LEG
 from walking.command import Command, CommandState, HeadTarget, Limit, VelocityCommand, limits_of
 from walking.constants import joint_records, robot_record
 from walking.data import Data
-from walking.estimation import sense
-from walking.footsteps import StepValues
-from walking.odometry import LegOdometry
+from walking.estimate.odometry import LegOdometry
 from walking.parameters import WalkingParameters
+from walking.plan.footsteps import StepValues
+from walking.plan.gait import right_weight
 from walking.plane import Array
 from walking.published import Published, publish, walking_state
 from walking.state import BodySensors, JointTargets, WalkingState
-from walking.walk import Parts, plan_tick, set_setpoints, stand_ready
+from walking.walk import Parts, measure_body, plan_tick, set_setpoints, stand_ready
 
 SIZE = np.dtype(Published).itemsize  # of the published state [bytes]
 
@@ -73,7 +73,7 @@ class WalkingEngine:
     @property
     def load(self) -> float:
         """Planned load fraction of the right foot [1]."""
-        return float(self._walk.plan.gait.right_weight)
+        return right_weight(self._walk.plan.gait)
 
     @property
     def leg_angles(self) -> Array:
@@ -139,7 +139,7 @@ class WalkingEngine:
     def observe(self, sensors: BodySensors) -> None:
         """Measure the body only, in a tick in which something else moves the joints."""
         self._sensors = sensors
-        self._fallen = sense(self._walks, sensors, self._robot, self._robots)
+        self._fallen = measure_body(self._walks, sensors, self._robot, self._robots)
 
     def state(self) -> WalkingState:
         """Return the state after the last tick.

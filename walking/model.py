@@ -4,10 +4,10 @@ The sections of `WalkingParameters` are records under their names. Fields of var
 arrays next to the record, so the compiled code is the same for every robot.
 """
 
+from dataclasses import dataclass
 from typing import Annotated
 
 from compilation.record import Records, record_class
-from walking.body.tree import Sole
 from walking.parameters import (
     ArmParameters,
     EstimatorParameters,
@@ -25,9 +25,39 @@ CAMERA = 2
 """Index of the camera in `Model.frames`, after the feet."""
 
 
+@dataclass(frozen=True, slots=True)
+class Sole:
+    """Rectangle of a sole in the foot frame.
+
+    Attributes:
+        centre: middle of the sole ahead of the ankle [m].
+        half_length: half of its length [m].
+        half_width: half of its width [m].
+    """
+
+    centre: float
+    half_length: float
+    half_width: float
+
+    def pressed(self, forward: float, side: float) -> "Sole":
+        """Return the part of the sole that weak ankles can press on the floor.
+
+        A ZMP at a distance from the ankle needs a torque of that distance times the weight.
+
+        Args:
+            forward: distance from the ankle that the pitch joint can hold [m].
+            side: distance that the roll joint can hold [m].
+        """
+        front, back = self.centre + self.half_length, self.centre - self.half_length
+        if front <= forward and -back <= forward and self.half_width <= side:
+            return self
+        front, back = min(front, forward), max(back, -forward)
+        return Sole(0.5 * (front + back), 0.5 * (front - back), min(self.half_width, side))
+
+
 @record_class
 class FootholdRecord:
-    """Pose of a foot on the floor, see `walking.footsteps.Foothold`."""
+    """Pose of a foot on the floor, see `walking.plan.footsteps.Foothold`."""
 
     left: bool  # whether it is the left foot
     x: float  # [m]
@@ -149,7 +179,7 @@ class Model:
     shoulders: Annotated[Records[Shoulder], 2]
     neck: NeckRecord
     still: Strides  # of stepping in place
-    thrust: float  # B of `walking.swing_reaction` [s²]
+    thrust: float  # B of `walking.body.swing_reaction` [s²]
     lifted_weight: float  # K [s²/m]
     knee: float  # N [s²]
     position_gain: float  # of the filter of the centre of mass [1]

@@ -7,13 +7,13 @@ import numpy as np
 from compilation.record import records
 from compilation.value import value
 from walking.body.kinematics import inclined
+from walking.body.posture import advance_head, head_joints
 from walking.body.robot_model import RobotModel
 from walking.command import CommandLimits, HeadTarget, VelocityCommand
 from walking.constants import joint_records, robot_record
 from walking.data import Data, Limbs
-from walking.estimation import filter_error, pressure, sense
-from walking.footsteps import Foothold
-from walking.odometry import LegOdometry, reckon
+from walking.estimate.body import filter_error, pressure
+from walking.estimate.odometry import LegOdometry, reckon
 from walking.parameters import (
     CONTROL_PERIOD,
     GRAVITY,
@@ -21,12 +21,13 @@ from walking.parameters import (
     GaitParameters,
     WalkingParameters,
 )
-from walking.pendulum import dcm
-from walking.plane import Array, Frame, Point, from_frame, norm, rotate, rotate_back
-from walking.posture import advance_head, head_joints
+from walking.plan.footsteps import Foothold
+from walking.plan.pendulum import dcm
+from walking.plan.support import depth, polygon
+from walking.plane import Array, PlanePose, Point, from_frame, norm, rotate, rotate_back
 from walking.published import CameraRecord, publish_camera
 from walking.state import Balance, BodySensors, HeadCameraPose, Phase, WalkingState
-from walking.support import depth, polygon
+from walking.walk import measure_body
 
 CONTACT_LOAD = 2.0 * LIGHT_LOAD  # of the weight; a lifted foot with more of it has landed [1]
 VELOCITY_TIME = 0.05  # time constant of the legs in the velocity filter [s]
@@ -115,18 +116,18 @@ class RollingFeet:
         c, s = np.cos(yaw), np.sin(yaw)
         turn = np.array([[c, -s, 0.0], [s, c, 0.0], [0.0, 0.0, 1.0]])
         arms = np.column_stack([pressure, np.zeros(2)])
-        self.contact = position + _turned(rotation, arms)
-        turned, moved = turn @ rotation, position @ turn.T
+        self.contact = position + _rotated(rotation, arms)
+        rotated, moved = turn @ rotation, position @ turn.T
         if self._before is not None:
-            moved_before, turned_before = self._before
-            rolling = _turned(turned - turned_before, arms)
+            moved_before, rotation_before = self._before
+            rolling = _rotated(rotated - rotation_before, arms)
             self.motion = moved - moved_before + rolling
             self._sum = np.where(np.array(loaded)[:, None], self._sum + rolling, 0.0)
             self.rolled = (self._sum @ turn)[:, :2]
-        self._before = moved, turned
+        self._before = moved, rotated
 
 
-def _turned(rotations: Array, vectors: Array) -> Array:
+def _rotated(rotations: Array, vectors: Array) -> Array:
     """Return the vectors (n, 3), each multiplied by its matrix (n, 3, 3)."""
     product: Array = np.einsum("kij,kj->ki", rotations, vectors)
     return product
@@ -186,7 +187,7 @@ class BodyObserver:
     def observe(self, sensors: BodySensors) -> None:
         """Update only the attitude, in a tick in which the robot is off its feet."""
         self._sensors = sensors
-        self._fallen = sense(self._walks, sensors, self._robot, self._robots)
+        self._fallen = measure_body(self._walks, sensors, self._robot, self._robots)
 
     def update(self, sensors: BodySensors) -> BodyEstimate:
         """Run one tick; return the estimate."""
@@ -272,7 +273,7 @@ class BodyObserver:
         return HeadCameraPose(*camera.item())
 
     @property
-    def _pose(self) -> Frame:
+    def _pose(self) -> PlanePose:
         odometry = self._odometry.records[0]
         return float(odometry.x), float(odometry.y), float(odometry.yaw)
 
@@ -315,7 +316,7 @@ class BodyObserver:
         gain = min(1.0, carried) * CONTROL_PERIOD / (VELOCITY_TIME + CONTROL_PERIOD)
         self._velocity += gain * (by_legs - self._velocity)
 
-    def _follow_com(self, pose: Frame) -> None:
+    def _follow_com(self, pose: PlanePose) -> None:
         """Filter the centre of mass as an inverted pendulum over the centre of pressure."""
         body, error = self._body, self._error
         com = from_frame(pose, body.com_x, body.com_y)

@@ -7,7 +7,7 @@ from numpy.typing import NDArray
 
 from compilation import compiled
 from compilation.record import Records, record_class
-from walking.body.kinematics import MOVE, inclined, rotation_of, times, turned
+from walking.body.kinematics import MOVE, inclined, rotated, rotation_of, times
 from walking.command import (
     STRIDE_LIMITS,
     Command,
@@ -17,8 +17,11 @@ from walking.command import (
     limits_of,
 )
 from walking.data import STEPS, Body, Data, DeadReckoning, Gait, MeasuredFoot
-from walking.estimation import base_height, is_fallen
-from walking.footsteps import (
+from walking.estimate.body import base_height
+from walking.estimate.odometry import Odometry
+from walking.model import CAMERA, RIGHT, FootholdRecord, Model, Strides
+from walking.plan.balance import is_fallen
+from walking.plan.footsteps import (
     Foothold,
     command_of,
     command_strides,
@@ -27,15 +30,13 @@ from walking.footsteps import (
     put,
     velocity_strides,
 )
-from walking.gait import support_foot, swing_foot
-from walking.model import CAMERA, RIGHT, FootholdRecord, Model, Strides
-from walking.odometry import Odometry
-from walking.pendulum import dcm, dcm_of
-from walking.plane import Array, Frame, clamp, from_frame
+from walking.plan.gait import is_double, support_foot, swing_foot
+from walking.plan.pendulum import dcm, dcm_of
+from walking.plan.steering import twist_of
+from walking.plan.support import CORNERS, polygon
+from walking.plan.timing import duration
+from walking.plane import Array, PlanePose, clamp, from_frame
 from walking.state import Balance, HeadCameraPose, Phase, WalkingState
-from walking.steering import twist_of
-from walking.support import CORNERS, polygon
-from walking.timing import duration
 
 PHASES = (Phase.STANDING, Phase.DOUBLE_SUPPORT, Phase.LEFT_SUPPORT, Phase.RIGHT_SUPPORT)
 STANDING, DOUBLE_SUPPORT, LEFT_SUPPORT, RIGHT_SUPPORT = range(len(PHASES))
@@ -56,7 +57,7 @@ class CameraRecord:
 
 @record_class
 class OdometryRecord:
-    """`walking.odometry.Odometry`, in the same order."""
+    """`walking.estimate.odometry.Odometry`, in the same order."""
 
     x: float  # [m]
     y: float  # [m]
@@ -98,7 +99,7 @@ class Published:
     bound: int  # limits that bind, as bits
     explicit: bool  # whether the applied command is a command state
     applied: Annotated[Array, 6]  # its numbers
-    strides: Strides  # scratch
+    scratch: Strides  # intermediate result
 
 
 def walking_state(published: Records[Published], commanded: Command) -> WalkingState:
@@ -218,7 +219,7 @@ def publish_limits(published: Published, walk: Data, robot: Model) -> None:
         strides = walk.plan.following
         if walk.admission.fraction == 1.0:
             # The footsteps follow the wanted strides, corrected for slip.
-            strides = out.strides
+            strides = out.scratch
             command_strides(strides, steering.state.step, 0.0, robot)
         command = command_of(strides, timing)
         for k, value in enumerate(command):
@@ -227,8 +228,8 @@ def publish_limits(published: Published, walk: Data, robot: Model) -> None:
     velocity = twist_of(walk.placing.applied)
     if out.bound & STRIDE_LIMITS:
         time = duration(timing)
-        velocity_strides(out.strides, velocity, time, robot)
-        velocity = mean_velocity(out.strides, time, robot)
+        velocity_strides(out.scratch, velocity, time, robot)
+        velocity = mean_velocity(out.scratch, time, robot)
     for k, value in enumerate(velocity):
         out.applied[k] = value
 
@@ -266,26 +267,26 @@ def publish_camera(
         camera.tilt_rate = neck.tilt.sign * rates[neck.tilt.joint]
     tilt = inclined(body.roll, body.pitch)
     rotation = times(tilt, mounted)
-    position = turned(tilt, frame[MOVE], frame[MOVE + 1], frame[MOVE + 2])
+    position = rotated(tilt, frame[MOVE], frame[MOVE + 1], frame[MOVE + 2])
     for i in range(3):
         for j in range(3):
             camera.rotation[i, j] = rotation[3 * i + j]
         camera.position[i] = position[i]
     camera.position[2] += height
-    camera.yaw_rate = turned(tilt, gyro[0], gyro[1], gyro[2])[2]
+    camera.yaw_rate = rotated(tilt, gyro[0], gyro[1], gyro[2])[2]
 
 
 @compiled
 def _phase(gait: Gait) -> int:
     if not gait.stepping:
         return STANDING
-    if gait.double:
+    if is_double(gait):
         return DOUBLE_SUPPORT
     return RIGHT_SUPPORT if gait.support == RIGHT else LEFT_SUPPORT
 
 
 @compiled
-def _plan_frame(planned: Foothold, foot: MeasuredFoot, odometry: Frame) -> Frame:
+def _plan_frame(planned: Foothold, foot: MeasuredFoot, odometry: PlanePose) -> PlanePose:
     """Return the plan frame, given the support foot in the plan and as measured."""
     x, y = from_frame(odometry, foot.x, foot.y)
     yaw = odometry[2] + foot.yaw - planned.yaw
@@ -294,12 +295,12 @@ def _plan_frame(planned: Foothold, foot: MeasuredFoot, odometry: Frame) -> Frame
 
 
 @compiled
-def _put_foothold(record: FootholdRecord, frame: Frame, foot: Foothold) -> None:
+def _put_foothold(record: FootholdRecord, frame: PlanePose, foot: Foothold) -> None:
     x, y = from_frame(frame, foot.x, foot.y)
     put(record, Foothold(foot.left, x, y, foot.yaw + frame[2]))
 
 
 @compiled
-def _put_point(point: Array, frame: Frame, x: float, y: float) -> None:
+def _put_point(point: Array, frame: PlanePose, x: float, y: float) -> None:
     """Set a point to that at x, y [m] in a frame."""
     point[0], point[1] = from_frame(frame, x, y)

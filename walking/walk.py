@@ -1,6 +1,6 @@
 """Control tick of the walk: plan, inverse dynamics, setpoints.
 
-`walking.estimation.watch` measures the body; `plan_tick` estimates, decides, plans, and sets the
+`measure_body` measures the body; `plan_tick` estimates, decides, plans, and sets the
 posture and its rates; after inverse dynamics `set_setpoints` adds the feed-forward.
 """
 
@@ -10,28 +10,30 @@ import numpy as np
 
 from compilation import compiled
 from compilation.record import Records
-from walking.admission import remember
-from walking.balance import place_foot, zmp_shift
+from walking.body.feedforward import set_motion, set_offsets, set_within_range
 from walking.body.kinematics import tree_pass
+from walking.body.posture import advance_head, head_joints, pelvis_over, set_posture
+from walking.body.robot_model import RobotModel
+from walking.body.swing_reaction import compensate
 from walking.command import SWING_HEIGHT
-from walking.corrections import restart_cycle
 from walking.data import Data, DeadReckoning, Gait
-from walking.decision import detect_touchdown, follow, start_walk, want_strides
-from walking.estimation import estimate
-from walking.feedforward import set_motion, set_offsets, set_within_range
-from walking.footsteps import STILL, Foothold, StepValues, foothold, put
-from walking.gait import advance, stand, support_foot, swing_foot, zmp_under
-from walking.generator import advance_pendulum
+from walking.estimate.body import measure, reckon_body, update_error
 from walking.model import LEFT, RIGHT, Joint, Link, Model
 from walking.parameters import CONTROL_PERIOD
-from walking.plan_departure import end_capture
+from walking.plan.admission import remember
+from walking.plan.balance import place_foot, zmp_shift
+from walking.plan.corrections import restart_cycle
+from walking.plan.decision import detect_touchdown, follow, start_walk, want_strides
+from walking.plan.departure import end_capture
+from walking.plan.footsteps import STILL, Foothold, StepValues, foothold, put
+from walking.plan.gait import advance, is_double, stand, support_foot, swing_foot, zmp_under
+from walking.plan.generator import advance_pendulum
+from walking.plan.reference import plan_walk
+from walking.plan.support import Region, depth, load_fraction, polygon, support_region
+from walking.plan.swing import rest_at
+from walking.plan.timing import cadence, put_timing
 from walking.plane import Array, Indices, Point, rotate
-from walking.posture import advance_head, head_joints, pelvis_over, set_posture
-from walking.reference import plan_walk
-from walking.support import Region, depth, load_fraction, polygon, support_region
-from walking.swing import rest_at
-from walking.swing_reaction import compensate
-from walking.timing import cadence, put_timing
+from walking.state import BodySensors
 
 SAME_HEIGHT = 1e-9  # rounding error of swing heights [m]
 DIVERGED = 1e6  # distance of the pendulum from the support foot per length of the leg [1]
@@ -87,6 +89,29 @@ def stand_ready(walks: Records[Data], stance: Array, robots: Records[Model]) -> 
     )
 
 
+def measure_body(
+    walks: Records[Data], sensors: BodySensors, robot: RobotModel, robots: Records[Model]
+) -> bool:
+    """Measure the body; return whether the robot is fallen.
+
+    Args:
+        walks: state (1,), changed.
+        sensors: read in this tick.
+        robot: model of the robot.
+        robots: constants (1,).
+    """
+    return measure(
+        walks,
+        sensors.joint_position,
+        sensors.orientation,
+        sensors.gyro,
+        sensors.foot_force,
+        robot.links,
+        robot.order,
+        robots,
+    )
+
+
 @compiled
 def plan_tick(
     walks: Records[Data],
@@ -98,7 +123,7 @@ def plan_tick(
     explicit: bool,
     head: Point,
 ) -> float:
-    """Run a tick up to the motion of the dynamic model, after `watch`.
+    """Run a tick up to the motion of the dynamic model, after `measure_body`.
 
     Args:
         walks: state (1,), changed.
@@ -115,7 +140,8 @@ def plan_tick(
     """
     walk, robot, plan = walks[0], robots[0], walks[0].plan
     gait = plan.gait
-    estimate(walk, odometry[0], robot)
+    reckon_body(odometry[0], walk.body, gait.stepping)
+    update_error(walk, robot)
     remember(walk)
     limits = follow(walk, command, explicit, robot)
     want_strides(walk, odometry[0], robot)
@@ -129,7 +155,10 @@ def plan_tick(
         return distance
     _balance(walk, region, robot)
     advance(plan, walk.limbs.feet, robot)
-    if not gait.double and abs(gait.swing_height - gait.clock.timing.swing_height) > SAME_HEIGHT:
+    if (
+        not is_double(gait)
+        and abs(gait.swing_height - gait.clock.timing.swing_height) > SAME_HEIGHT
+    ):
         limits |= SWING_HEIGHT
     end_capture(walk)
     walk.limits = limits
@@ -177,9 +206,9 @@ def set_setpoints(
 def _contact_region(walk: Data, margin: float, robot: Model) -> Region:
     """Return the region of the feet in contact, and remember these feet."""
     gait = walk.plan.gait
-    walk.single = not gait.double
+    walk.single = not is_double(gait)
     loading = support_foot(gait)
-    unloading = swing_foot(gait) if gait.double else loading
+    unloading = loading if walk.single else swing_foot(gait)
     put(walk.loading, loading)
     put(walk.unloading, unloading)
     return support_region(robot.support, unloading, loading, margin)
@@ -209,7 +238,7 @@ def _balance(walk: Data, region: Region, robot: Model) -> None:
 def _right_load(gait: Gait, region: Region, zmp: Point) -> float:
     """Return the planned load fraction of the right foot [1]."""
     x, y = zmp
-    loading = load_fraction(region, x, y) if gait.double else 1.0
+    loading = load_fraction(region, x, y) if is_double(gait) else 1.0
     return loading if gait.support == RIGHT else 1.0 - loading
 
 
@@ -220,13 +249,13 @@ def _move_body(
     """Move the pelvis with the pendulum, and set the posture."""
     limbs, pendulum = walk.limbs, walk.pendulum
     advance_head(limbs, head, robot)
-    turned = head_joints(limbs.pan, limbs.tilt, joints, robot)
+    head_angles = head_joints(limbs.pan, limbs.tilt, joints, robot)
     before = limbs.pelvis.yaw
     compensate(limbs, walk.plan, robot)
     offset = walk.corrections.com_offset
     dx, dy = rotate(before, offset.x, offset.y)
     com = (pendulum.x + (limbs.offset.x + dx), pendulum.y + (limbs.offset.y + dy))
-    set_posture(angles, walk, com, turned, joints, robot)
+    set_posture(angles, walk, com, head_angles, joints, robot)
     limbs.turn_rate = (limbs.pelvis.yaw - before) / CONTROL_PERIOD
     if not limbs.moved:
         limbs.moved = True

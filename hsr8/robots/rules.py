@@ -9,11 +9,11 @@ from math import sqrt
 
 import numpy as np
 
+from walking.body.feedforward import support_torque
 from walking.body.kinematics import FootPose
 from walking.body.robot_model import RobotModel
 from walking.body.tree import LEFT_LEG, RIGHT_LEG
 from walking.dimension import HSR_VIII
-from walking.feedforward import support_torque
 from walking.parameters import (
     CONTROL_PERIOD,
     GRAVITY,

@@ -11,13 +11,13 @@ from walking.body.robot_model import RobotModel
 from walking.body.tree import LEFT_LEG, RIGHT_LEG
 from walking.constants import robot_record
 from walking.data import Data
-from walking.footsteps import STILL, Foothold, put, velocity_strides
-from walking.gait import stand
 from walking.model import Strides
 from walking.parameters import CONTROL_PERIOD, PatternParameters, WalkingParameters
+from walking.plan.footsteps import STILL, Foothold, put, velocity_strides
+from walking.plan.gait import stand
+from walking.plan.swing import rest_at
+from walking.plan.timing import cadence, put_timing
 from walking.state import BodySensors
-from walking.swing import rest_at
-from walking.timing import cadence, put_timing
 
 
 @pytest.fixture(scope="session")

@@ -10,7 +10,9 @@ from scipy.spatial.transform import Rotation
 from walking.command import CommandState, HeadTarget, Limit, VelocityCommand
 from walking.data import StepCommand
 from walking.engine import WalkingEngine
-from walking.footsteps import (
+from walking.model import Strides
+from walking.parameters import CONTROL_PERIOD, WalkingParameters
+from walking.plan.footsteps import (
     STILL,
     command_strides,
     foothold,
@@ -18,10 +20,8 @@ from walking.footsteps import (
     landing_of,
     velocity_strides,
 )
-from walking.gait import support_foot
-from walking.model import Strides
-from walking.parameters import CONTROL_PERIOD, WalkingParameters
-from walking.timing import cadence, duration
+from walking.plan.gait import is_double, support_foot
+from walking.plan.timing import cadence, duration
 
 AHEAD = HeadTarget()
 LIMITS = WalkingParameters().limits
@@ -125,7 +125,7 @@ class Observer:
         """Whether the last tick obeyed; None if its support phase ended with it."""
         gait = self._gait
         stepped, self._stepped = self._stepped, bool(gait.stepping)
-        phase, self._phase = self._phase, (int(gait.completed), bool(gait.double))
+        phase, self._phase = self._phase, (int(gait.completed), is_double(gait))
         if self._phase != phase:
             return None
         if not gait.stepping:
@@ -167,9 +167,9 @@ class Observer:
         gait, timing = self._gait, self._gait.clock.timing
         nominal = landing_of(support_foot(gait), self._plan.following)
         return bool(
-            (not gait.double or gait.clock.shift.end == timing.double)
+            (not is_double(gait) or gait.clock.shift.end == timing.double)
             and gait.clock.single.ticks == timing.single
-            and (gait.double or abs(gait.swing_height - timing.swing_height) < ROUNDING)
+            and (is_double(gait) or abs(gait.swing_height - timing.swing_height) < ROUNDING)
             and is_same(nominal, foothold(gait.landing), self._usual)
         )
 

@@ -10,8 +10,8 @@ from scipy.spatial import ConvexHull
 from walking.body.tree import HEAD
 from walking.command import CommandState, HeadTarget, VelocityCommand
 from walking.engine import WalkingEngine
-from walking.footsteps import STANCE_YAW_TOLERANCE
 from walking.parameters import CONTROL_PERIOD, HeadParameters, WalkingParameters
+from walking.plan.footsteps import STANCE_YAW_TOLERANCE
 from walking.state import Phase
 
 AHEAD = HeadTarget()

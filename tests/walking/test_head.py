@@ -7,11 +7,11 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from walking.body.posture import advance_head
 from walking.command import HeadTarget
 from walking.data import Limbs
 from walking.observer import Head
 from walking.parameters import CONTROL_PERIOD, HeadParameters, WalkingParameters
-from walking.posture import advance_head
 
 HEAD = HeadParameters(max_rate=6.0, max_acceleration=60.0)
 PARAMETERS = replace(WalkingParameters(), head=HEAD)

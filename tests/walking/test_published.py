@@ -9,12 +9,12 @@ from scipy.spatial.transform import Rotation
 from walking.body.tree import HEAD
 from walking.command import VelocityCommand
 from walking.data import Body, DeadReckoning
-from walking.estimation import base_height
-from walking.footsteps import foothold
-from walking.gait import start
+from walking.estimate.body import base_height
 from walking.model import CAMERA
+from walking.plan.footsteps import foothold
+from walking.plan.gait import start
+from walking.plan.reference import plan_walk
 from walking.published import CameraRecord, Published, publish_camera, publish_plan, walking_state
-from walking.reference import plan_walk
 from walking.state import Phase
 
 FEET = ((0.01, 0.042, -0.22, 0.1), (-0.01, -0.042, -0.21, -0.05))  # x, y, z, yaw

@@ -9,9 +9,9 @@ from compilation.record import record_type
 from compilation.value import comparable_value, value
 from walking.constants import parameters_record
 from walking.data import Data, DeadReckoning, Plan
-from walking.footsteps import Foothold
 from walking.model import FootholdRecord, Joint, Model
 from walking.parameters import WalkingParameters
+from walking.plan.footsteps import Foothold
 from walking.published import Published
 
 

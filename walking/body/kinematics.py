@@ -46,7 +46,7 @@ def times(a: Matrix, b: Matrix) -> Matrix:
 
 
 @compiled
-def turned(a: Matrix, x: float, y: float, z: float) -> Vector:
+def rotated(a: Matrix, x: float, y: float, z: float) -> Vector:
     """Return a rotated vector."""
     return (
         a[0] * x + a[1] * y + a[2] * z,
@@ -108,12 +108,12 @@ def chain_pose(chain: Array, angles: Array, axes: Array, origins: Array) -> tupl
     px, py, pz = 0.0, 0.0, 0.0
     for k in range(chain.shape[0]):
         row = chain[k]
-        dx, dy, dz = turned(R, row[MOVE], row[MOVE + 1], row[MOVE + 2])
+        dx, dy, dz = rotated(R, row[MOVE], row[MOVE + 1], row[MOVE + 2])
         px, py, pz = px + dx, py + dy, pz + dz
         R = times(R, rotation_of(row))
         if k < angles.shape[0]:
             x, y, z = row[AXIS], row[AXIS + 1], row[AXIS + 2]
-            axes[k, 0], axes[k, 1], axes[k, 2] = turned(R, x, y, z)
+            axes[k, 0], axes[k, 1], axes[k, 2] = rotated(R, x, y, z)
             origins[k, 0], origins[k, 1], origins[k, 2] = px, py, pz
             R = times(R, about(x, y, z, angles[k]))
     return R, (px, py, pz)
@@ -139,11 +139,11 @@ def tree_pass(links: Records[Link], order: Indices, angles: Array, poses: Array)
         joint, parent = order[k, 0], order[k, 1]
         link, pose, before = links[joint], poses[joint], poses[parent]
         P = rotation_of(before)
-        dx, dy, dz = turned(P, link.x, link.y, link.z)
+        dx, dy, dz = rotated(P, link.x, link.y, link.z)
         x, y, z = before[MOVE] + dx, before[MOVE + 1] + dy, before[MOVE + 2] + dz
         R = times(P, about(link.axis_x, link.axis_y, link.axis_z, angles[joint]))
         put_pose(pose, R, (x, y, z))
-        m, (cx, cy, cz) = link.mass, turned(R, link.moment_x, link.moment_y, link.moment_z)
+        m, (cx, cy, cz) = link.mass, rotated(R, link.moment_x, link.moment_y, link.moment_z)
         mass += m
         mx, my, mz = mx + m * x + cx, my + m * y + cy, mz + m * z + cz
     return mx / mass, my / mass, mz / mass
@@ -159,7 +159,7 @@ def frame_pose(pose: Array, link: Array, frame: Array) -> None:
         frame: pose of the frame on the link (12,) [m].
     """
     R = rotation_of(link)
-    dx, dy, dz = turned(R, frame[MOVE], frame[MOVE + 1], frame[MOVE + 2])
+    dx, dy, dz = rotated(R, frame[MOVE], frame[MOVE + 1], frame[MOVE + 2])
     position = (link[MOVE] + dx, link[MOVE + 1] + dy, link[MOVE + 2] + dz)
     put_pose(pose, times(R, rotation_of(frame)), position)
 

@@ -12,9 +12,9 @@ import pinocchio as pin
 from compilation.record import Records
 from walking.body import kinematics
 from walking.body.kinematics import FootPose, Leg
-from walking.body.tree import LEFT_LEG, RIGHT_LEG, Frame, RobotTree, Sole
+from walking.body.tree import LEFT_LEG, RIGHT_LEG, Frame, RobotTree
 from walking.dimension import RobotMeasures
-from walking.model import Link, NeckRecord
+from walking.model import Link, NeckRecord, Sole
 from walking.parameters import GRAVITY
 from walking.plane import Array, Point, clamp, within
 

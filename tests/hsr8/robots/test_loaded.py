@@ -11,7 +11,7 @@ from tests.hsr8.robots.robot_parts import adding, part
 from tests.hsr8.robots.small_humanoid import SmallHumanoid
 from walking.constants import robot_record
 from walking.data import Data
-from walking.estimation import watch
+from walking.estimate.body import measure
 
 ROBOTS = {
     "plain": SmallHumanoid(),
@@ -67,7 +67,7 @@ def test_kinematics_and_centre_of_mass_are_those_of_mujoco(load, name):
     assert robot.model.mass == pytest.approx(model.body_subtreemass[1], rel=1e-12)
     walks, constants = np.zeros(1, Data), robot_record(robot.model, robot.parameters)
     upright, rest = np.array([1.0, 0.0, 0.0, 0.0]), (np.zeros(3), np.zeros((2, 4)))
-    watch(walks, angles, upright, *rest, robot.model.links, robot.model.order, constants)
+    measure(walks, angles, upright, *rest, robot.model.links, robot.model.order, constants)
     for measured, frame, site in zip(walks[0]["body"]["frames"], frames(robot), SITES, strict=True):
         rotation, position = robot.model.frame_pose(frame, angles)
         np.testing.assert_array_equal(measured, [*rotation.ravel(), *position])

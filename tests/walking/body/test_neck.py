@@ -8,10 +8,10 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from walking.body.posture import head_joints
 from walking.body.robot_model import Neck
 from walking.body.tree import turn
 from walking.model import Joint, Model, NeckRecord
-from walking.posture import head_joints
 
 ANGLES = st.floats(-0.6, 0.6)
 
