@@ -18,8 +18,8 @@ from hsr8.plugin_file import start_plugin
 from hsr8.plugin_method import PluginMethod, numbers, shown
 from walking.body.robot_model import RobotModel
 from walking.command import Command, HeadTarget, Limit, VelocityCommand
+from walking.estimate.odometry import LegOdometry
 from walking.observer import BodyEstimate, BodyObserver, Head
-from walking.odometry import LegOdometry
 from walking.parameters import CONTROL_PERIOD, WalkingParameters
 from walking.state import BodySensors, JointTargets, WalkingState
 

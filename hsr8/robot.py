@@ -17,7 +17,7 @@ from navigation.observation import CameraModel, CameraView, Frame
 from vision.camera import CameraPose
 from vision.detection import Detection
 from walking.command import Command, HeadTarget, VelocityCommand
-from walking.odometry import Odometry, increment
+from walking.estimate.odometry import Odometry, increment
 from walking.state import BodySensors, JointTargets, WalkingState
 from walking.walker import Walker
 

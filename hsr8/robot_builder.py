@@ -43,7 +43,7 @@ from walking.dimension import override
 from walking.parameters import CONTROL_PERIOD, WalkingParameters
 from walking.walker import Walker
 
-MARGINS = (("pattern", "sole_margin"), ("pattern", "plan_margin"), ("stabilizer", "sole_margin"))
+MARGINS = (("pattern", "sole_margin"), ("stabilizer", "sole_margin"))
 # Standard deviation of the known start position in a world of scale 1 [m] and heading [rad].
 START_SIGMA, START_HEADING_SIGMA = 0.02, 0.02
 

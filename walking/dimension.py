@@ -106,10 +106,8 @@ STANCE = Dimension(hip=1.0)  # distance across the stance
 SOLE = Dimension(sole=1.0)  # distance within the sole
 TIME = Dimension(time=1.0)  # time of the walk
 HEIGHT = TIME**2.0  # height of a pendulum under equal gravity
-CHANGE_WEIGHT = TIME**2.0  # weight of changes per control tick relative to their effect
 FORCE = Dimension(weight=1.0)  # fraction of the robot's weight
 SPEED = LENGTH / TIME  # speed of the walk
-SOLE_SPEED = SOLE / TIME  # speed within the sole
 DIFFUSION = LENGTH / TIME**0.5  # random walk per square root of time
 ACCELERATION = LENGTH / TIME**2.0  # acceleration of the walk
 RATE = TIME**-1.0  # angular velocity, or feedback gain to a velocity

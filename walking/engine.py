@@ -1,28 +1,26 @@
 """Walking engine: sensors and commands to joint targets, once per control tick."""
 
-from math import ceil
+from typing import Any, cast
 
 import numpy as np
+from numpy.typing import NDArray
 
+from compilation.record import Records, records
 from walking.body.robot_model import RobotModel
 from walking.body.tree import LEFT_LEG, RIGHT_LEG
 from walking.command import Command, CommandState, HeadTarget, Limit, VelocityCommand, limits_of
 from walking.constants import joint_records, robot_record
-from walking.estimation import sense
-from walking.odometry import LegOdometry
-from walking.parameters import CONTROL_PERIOD, WalkingParameters
-from walking.patterns import PLAN
+from walking.data import Data
+from walking.estimate.odometry import LegOdometry
+from walking.parameters import WalkingParameters
+from walking.plan.footsteps import StepValues
+from walking.plan.gait import right_weight
 from walking.plane import Array
-from walking.published import PUBLISHED, publish, walking_state
-from walking.reference import LIVE
+from walking.published import Published, publish, walking_state
 from walking.state import BodySensors, JointTargets, WalkingState
-from walking.tick import WALK, begin, finish, stand_ready
-from walking.zmp_program import max_knots
-from walking.zmp_solver import KNOT
+from walking.walk import Parts, measure_body, plan_tick, set_setpoints, stand_ready
 
-PLANS = 4  # see `walking.reference.LIVE`
-SUPPORTS = 5  # whose ZMP is planned
-MAX_STRETCH = 2.0  # of a single support by the minimum time in the air [1]
+SIZE = np.dtype(Published).itemsize  # of the published state [bytes]
 
 
 class PlanDiverged(Exception):
@@ -33,7 +31,7 @@ class WalkingEngine:
     """Walking engine of a humanoid: call `step` once per control tick of 5 ms.
 
     The engine starts in the ready posture, stands until a command moves it, and stops with the feet
-    side by side. All its state is in records, see `walking.records`; a tick is `walking.tick`.
+    side by side. All its state is in records, see `walking.data`; a tick is `walking.walk`.
 
     Args:
         robot: model of the robot.
@@ -45,47 +43,47 @@ class WalkingEngine:
         self, robot: RobotModel, parameters: WalkingParameters, odometry: LegOdometry | None = None
     ) -> None:
         self._robot = robot = robot.with_own_buffers()
-        self._robots, self._sums = robot_record(robot, parameters)
+        self._robots = robot_record(robot, parameters)
         self._joints = joint_records(robot, parameters)
         self._odometry = odometry or LegOdometry(parameters.odometry)
-        self._walks, self._plans = np.zeros(1, WALK), np.zeros(PLANS, PLAN)
-        self._knots = np.zeros((PLANS, max_knots(_longest(parameters), SUPPORTS)), KNOT)
-        self._walk, self._plan = self._walks[0], self._plans[LIVE]
+        self._walks = records(Data)
+        self._walk, dynamics = self._walks[0], robot.dynamics
+        motion = (dynamics.q, dynamics.v, dynamics.a)
+        self._parts = Parts(self._joints, robot.links, robot.order, *motion)
         self._command: Command = VelocityCommand()
         self._sensors: BodySensors | None = None
-        self._zmp_depth, self._bound, self._fallen = 0.0, 0, False
+        self._fallen = False
         self._stand(robot)
 
     @property
     def limits(self) -> tuple[Limit, ...]:
         """Constraints that limited the last command."""
-        return limits_of(self._bound)
+        return limits_of(int(self._walk.limits))
 
     @property
     def zmp_depth(self) -> float:
         """Distance of the last planned ZMP from the edge of the support polygon [m]."""
-        return self._zmp_depth
+        return float(self._walk.zmp_depth)
 
     @property
     def heading(self) -> float:
         """Planned heading of the trunk [rad]."""
-        return float(self._walk.limbs.pelvis[2])
+        return float(self._walk.limbs.pelvis.yaw)
 
     @property
     def load(self) -> float:
         """Planned load fraction of the right foot [1]."""
-        return float(self._plan.gait.right_weight)
+        return right_weight(self._walk.plan.gait)
 
     @property
     def leg_angles(self) -> Array:
         """Planned angles of the leg joints, also beyond their limits (12,) [rad]."""
-        angles: Array = self._walk.limbs.leg_angles.copy()
-        return angles
+        return self._walk.limbs.leg_angles.copy()
 
     @property
     def torques(self) -> Array:
         """Planned torques of all joints in the last tick (n,) [N m]."""
-        joints = self._joints
+        joints = cast(NDArray[Any], self._joints)
         lag = joints["rate_ahead"] * joints["lag"]
         torques: Array = (joints["offset"] - lag) / joints["compliance"]
         return torques
@@ -112,23 +110,13 @@ class WalkingEngine:
         """
         self.observe(sensors)
         self._command = command
-        dynamics, gyro = self._robot.dynamics, sensors.gyro
         angles, setpoint = np.empty((2, len(self._joints)))
-        distance, self._zmp_depth, self._bound = begin(
+        distance = plan_tick(
             self._walks,
             self._odometry.records,
-            self._plans,
-            self._knots,
-            self._joints,
             self._robots,
-            self._sums,
-            self._robot.links,
-            self._robot.order,
-            dynamics.q,
-            dynamics.v,
-            dynamics.a,
+            self._parts,
             angles,
-            gyro,
             *_values(command),
             (head.pan, head.tilt),
         )
@@ -136,13 +124,12 @@ class WalkingEngine:
             raise PlanDiverged(
                 f"the planned walk diverged: the centre of mass is {distance:.3g} m from the feet"
             )
-        finish(
+        set_setpoints(
             self._walks,
-            self._plans,
-            self._joints,
             self._robots,
-            dynamics.forces(),
-            gyro,
+            self._joints,
+            self._robot.dynamics.forces(),
+            sensors.gyro,
             angles,
             sensors.joint_position,
             setpoint,
@@ -152,7 +139,7 @@ class WalkingEngine:
     def observe(self, sensors: BodySensors) -> None:
         """Measure the body only, in a tick in which something else moves the joints."""
         self._sensors = sensors
-        self._fallen = sense(self._walks, sensors, self._robot, self._robots)
+        self._fallen = measure_body(self._walks, sensors, self._robot, self._robots)
 
     def state(self) -> WalkingState:
         """Return the state after the last tick.
@@ -163,12 +150,11 @@ class WalkingEngine:
         sensors = self._sensors
         if sensors is None:
             raise RuntimeError("the walking engine has no state before its first tick")
-        # A record over given bytes is made in a fifth of the time of `np.zeros(1, PUBLISHED)`.
-        published = np.ndarray(1, PUBLISHED, np.zeros(PUBLISHED.itemsize, np.uint8))
+        # A record over given bytes is made in a fifth of the time of `np.zeros(1, Published)`.
+        published = cast("Records[Published]", np.ndarray(1, Published, np.zeros(SIZE, np.uint8)))
         publish(
             published,
             self._walks,
-            self._plans,
             self._odometry.records,
             self._robots,
             sensors.joint_velocity,
@@ -179,10 +165,10 @@ class WalkingEngine:
     def _stand(self, robot: RobotModel) -> None:
         """Set the state of a robot that stands in the ready posture."""
         limbs = self._walk.limbs
-        limbs.com = robot.com(robot.ready)[:2]
-        limbs.leg_angles = robot.ready[:12]
-        limbs.head = robot.neck.angles(robot.ready)
-        stand_ready(self._walks, self._plans, _ready_stance(robot), self._robots)
+        limbs.com_x, limbs.com_y, _ = robot.com(robot.ready).tolist()
+        limbs.leg_angles[:] = robot.ready[:12]
+        limbs.pan, limbs.tilt = robot.neck.angles(robot.ready)
+        stand_ready(self._walks, _ready_stance(robot), self._robots)
 
 
 def _ready_stance(robot: RobotModel) -> Array:
@@ -194,19 +180,10 @@ def _ready_stance(robot: RobotModel) -> Array:
     return np.array([(foot.x, foot.y, foot.yaw) for foot in feet])
 
 
-def _values(command: Command) -> tuple[tuple[float, float, float, float, float, float], bool]:
+def _values(command: Command) -> tuple[StepValues, bool]:
     """Return the numbers of a command, and whether it is a command state."""
     if isinstance(command, CommandState):
         c = command
         supports = c.single_support, c.double_support
         return (*supports, c.forward, c.side, c.direction, c.swing_height), True
     return (command.vx, command.vy, command.wz, 0.0, 0.0, 0.0), False
-
-
-def _longest(parameters: WalkingParameters) -> int:
-    """Return an upper bound of the control ticks of a planned ZMP."""
-    gait, limits = parameters.gait, parameters.limits
-    footstep = max(gait.footstep_time, gait.min_footstep_time)
-    single = MAX_STRETCH * max(footstep, limits.max_single) + gait.min_swing_time
-    double = max(footstep, limits.max_double, gait.start_time, gait.stop_time)
-    return ceil(SUPPORTS * (single + double) / CONTROL_PERIOD)

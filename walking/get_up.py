@@ -8,9 +8,9 @@ import numpy as np
 from walking.body.robot_model import RobotModel
 from walking.get_up_motions import MOTIONS, STRAIGHT, KeyPosture, Motions
 from walking.parameters import CONTROL_PERIOD, GetUpParameters
+from walking.plan.swing import PEAK, minimum_jerk
 from walking.plane import Array, Vector
 from walking.state import BodySensors, JointTargets
-from walking.swing import PEAK, minimum_jerk
 
 STAND_TIME = 0.8  # from the squat to the ready posture [s]
 MAX_REST = 3.0  # timeout of waiting for rest [s]

@@ -1,15 +1,19 @@
 """State estimation and head under a walking controller without a plan: measurements only."""
 
+from typing import Any
+
 import numpy as np
 
+from compilation.record import records
 from compilation.value import value
 from walking.body.kinematics import inclined
+from walking.body.posture import advance_head, head_joints
 from walking.body.robot_model import RobotModel
 from walking.command import CommandLimits, HeadTarget, VelocityCommand
 from walking.constants import joint_records, robot_record
-from walking.estimation import filter_error, pressure, sense
-from walking.footsteps import Foothold
-from walking.odometry import LegOdometry, reckon
+from walking.data import Data, Limbs
+from walking.estimate.body import filter_error, pressure
+from walking.estimate.odometry import LegOdometry, reckon
 from walking.parameters import (
     CONTROL_PERIOD,
     GRAVITY,
@@ -17,12 +21,13 @@ from walking.parameters import (
     GaitParameters,
     WalkingParameters,
 )
-from walking.plane import Array, Frame, Point, from_frame, norm, rotate, rotate_back
-from walking.posture import LIMBS, advance_head, head_joints
-from walking.published import CAMERA, publish_camera
+from walking.plan.footsteps import Foothold
+from walking.plan.pendulum import dcm
+from walking.plan.support import depth, polygon
+from walking.plane import Array, PlanePose, Point, from_frame, norm, rotate, rotate_back
+from walking.published import CameraRecord, publish_camera
 from walking.state import Balance, BodySensors, HeadCameraPose, Phase, WalkingState
-from walking.support import depth, polygon
-from walking.tick import WALK
+from walking.walk import measure_body
 
 CONTACT_LOAD = 2.0 * LIGHT_LOAD  # of the weight; a lifted foot with more of it has landed [1]
 VELOCITY_TIME = 0.05  # time constant of the legs in the velocity filter [s]
@@ -111,18 +116,18 @@ class RollingFeet:
         c, s = np.cos(yaw), np.sin(yaw)
         turn = np.array([[c, -s, 0.0], [s, c, 0.0], [0.0, 0.0, 1.0]])
         arms = np.column_stack([pressure, np.zeros(2)])
-        self.contact = position + _turned(rotation, arms)
-        turned, moved = turn @ rotation, position @ turn.T
+        self.contact = position + _rotated(rotation, arms)
+        rotated, moved = turn @ rotation, position @ turn.T
         if self._before is not None:
-            moved_before, turned_before = self._before
-            rolling = _turned(turned - turned_before, arms)
+            moved_before, rotation_before = self._before
+            rolling = _rotated(rotated - rotation_before, arms)
             self.motion = moved - moved_before + rolling
             self._sum = np.where(np.array(loaded)[:, None], self._sum + rolling, 0.0)
             self.rolled = (self._sum @ turn)[:, :2]
-        self._before = moved, turned
+        self._before = moved, rotated
 
 
-def _turned(rotations: Array, vectors: Array) -> Array:
+def _rotated(rotations: Array, vectors: Array) -> Array:
     """Return the vectors (n, 3), each multiplied by its matrix (n, 3, 3)."""
     product: Array = np.einsum("kij,kj->ki", rotations, vectors)
     return product
@@ -161,9 +166,9 @@ class BodyObserver:
         self, robot: RobotModel, parameters: WalkingParameters, odometry: LegOdometry
     ) -> None:
         self._robot, self._odometry = robot, odometry
-        self._robots, _ = robot_record(robot, parameters)
-        self._walks = np.zeros(1, WALK)
-        self._sensing = self._walks[0].sensing
+        self._robots = robot_record(robot, parameters)
+        self._walks: Any = np.zeros(1, Data)
+        self._body, self._error = self._walks[0].body, self._walks[0].error
         self._contacts = FootContacts(robot.mass, parameters.gait)
         self._full_load = FULL_LOAD * robot.mass * GRAVITY
         self._zmp: Point = (0.0, 0.0)
@@ -182,15 +187,15 @@ class BodyObserver:
     def observe(self, sensors: BodySensors) -> None:
         """Update only the attitude, in a tick in which the robot is off its feet."""
         self._sensors = sensors
-        self._fallen = sense(self._walks, sensors, self._robot, self._robots)
+        self._fallen = measure_body(self._walks, sensors, self._robot, self._robots)
 
     def update(self, sensors: BodySensors) -> BodyEstimate:
         """Run one tick; return the estimate."""
         self.observe(sensors)
-        sensing, contacts = self._sensing, self._contacts
-        contacts.update(*sensing.feet["load"].tolist())
-        yaw, tilt = float(sensing.heading), self._tilt
-        measured = sensing.feet
+        body, contacts = self._body, self._contacts
+        contacts.update(*body.feet["load"].tolist())
+        yaw, tilt = float(body.heading), self._tilt
+        measured = body.feet
         feet = np.column_stack([measured[axis] for axis in ("x", "y", "z")])
         self._roll(feet, tilt, yaw)
         left, right = (feet[:, :2] + self._rolling.rolled).tolist()
@@ -198,7 +203,7 @@ class BodyObserver:
             self._odometry.records[0],
             yaw,
             ((left[0], left[1]), (right[0], right[1])),
-            sensing.right_load,
+            body.right_load,
             contacts.phase is not Phase.STANDING,
         )
         self._add_slip()
@@ -212,8 +217,8 @@ class BodyObserver:
         return BodyEstimate(
             pose=np.array(pose),
             height=height,
-            roll=float(sensing.roll),
-            pitch=float(sensing.pitch),
+            roll=float(body.roll),
+            pitch=float(body.pitch),
             velocity=np.array([*rotate_back(yaw, vx, vy), vz]) @ tilt,
             on_floor=(on_left, on_right),
         )
@@ -226,16 +231,17 @@ class BodyObserver:
         """
         if self._sensors is None:
             raise RuntimeError("the observer has no state before its first tick")
-        sensing, omega = self._sensing, float(self._robots[0].omega)
+        body, error = self._body, self._error
         feet = tuple(
             Foothold(left=side == 0, x=x, y=y, yaw=yaw)
             for side, (x, y, _, yaw) in enumerate(self._feet.tolist())
         )
-        support, other = feet if sensing.right_load < 0.5 else feet[::-1]
+        support, other = feet if body.right_load < 0.5 else feet[::-1]
         single = self._contacts.phase in (Phase.LEFT_SUPPORT, Phase.RIGHT_SUPPORT)
         corners = polygon(self._robots[0].sole, other, support, single)
-        x, y, vx, vy = (float(sensing[name]) for name in ("x", "y", "vx", "vy"))
-        dcm = np.array([x + vx / omega, y + vy / omega])
+        x, y, vx, vy = (float(error[name]) for name in ("x", "y", "vx", "vy"))
+        robot = self._robots[0]
+        divergent = np.array([dcm(x, vx, robot), dcm(y, vy, robot)])
         return WalkingState(
             phase=self._contacts.phase,
             odometry=self._odometry.pose(),
@@ -243,15 +249,15 @@ class BodyObserver:
             applied_velocity=np.array(command.velocity),
             footsteps=(support, other),
             zmp=np.array(self._zmp),
-            dcm=dcm,
-            com=np.array(from_frame(self._pose, sensing.com[0], sensing.com[1])),
-            roll=float(sensing.roll),
-            pitch=float(sensing.pitch),
+            dcm=divergent,
+            com=np.array(from_frame(self._pose, body.com_x, body.com_y)),
+            roll=float(body.roll),
+            pitch=float(body.pitch),
             step_count=self._contacts.step_count,
             fallen=self.fallen,
             balance=Balance(
                 com=np.array([x, y]),
-                dcm=dcm,
+                dcm=divergent,
                 support=corners,
                 zmp_depth=depth(corners, *self._zmp),
                 feet=self._feet.copy(),
@@ -262,31 +268,31 @@ class BodyObserver:
 
     def _camera(self, sensors: BodySensors) -> HeadCameraPose:
         """Return the camera in the robot frame."""
-        camera, rates, gyro = np.zeros(1, CAMERA), sensors.joint_velocity, sensors.gyro
-        publish_camera(camera[0], self._sensing, self._height, rates, gyro, self._robots[0])
+        camera, rates, gyro = np.zeros(1, CameraRecord), sensors.joint_velocity, sensors.gyro
+        publish_camera(camera[0], self._body, self._height, rates, gyro, self._robots[0])
         return HeadCameraPose(*camera.item())
 
     @property
-    def _pose(self) -> Frame:
+    def _pose(self) -> PlanePose:
         odometry = self._odometry.records[0]
         return float(odometry.x), float(odometry.y), float(odometry.yaw)
 
     @property
     def _tilt(self) -> Array:
         """Attitude of the trunk R_RB (3, 3)."""
-        return np.reshape(inclined(self._sensing.roll, self._sensing.pitch), (3, 3))
+        return np.reshape(inclined(self._body.roll, self._body.pitch), (3, 3))
 
     @property
     def _height(self) -> float:
         """Height of the base above the contact point of the loaded foot [m]."""
         left, right = self._rolling.contact[:, 2].tolist()
-        load = self._sensing.right_load
+        load = self._body.right_load
         return float(-(1.0 - load) * left - load * right)
 
     def _roll(self, feet: Array, tilt: Array, yaw: float) -> None:
         """Update the contact points of the feet."""
-        rotations = tilt @ self._sensing.frames[:2, :9].reshape(2, 3, 3)
-        centres = self._sensing.feet
+        rotations = tilt @ self._body.frames[:2, :9].reshape(2, 3, 3)
+        centres = self._body.feet
         pressures = np.column_stack([centres["pressure_x"], centres["pressure_y"]])
         self._rolling.update(feet, rotations, pressures, yaw, self._contacts.on_floor)
 
@@ -302,24 +308,24 @@ class BodyObserver:
         """Integrate the accelerometer, corrected by the legs over the points of contact."""
         ax, ay, az = (tilt @ sensors.accelerometer).tolist()
         self._velocity += CONTROL_PERIOD * np.array([*rotate(yaw, ax, ay), az - GRAVITY])
-        load = float(self._sensing.right_load)
+        load = float(self._body.right_load)
         weights = np.array([1.0 - load, load])
         by_legs = -weights @ self._rolling.motion / CONTROL_PERIOD
-        left, right = self._sensing.feet["load"].tolist()
+        left, right = self._body.feet["load"].tolist()
         carried = (left + right) / self._full_load
         gain = min(1.0, carried) * CONTROL_PERIOD / (VELOCITY_TIME + CONTROL_PERIOD)
         self._velocity += gain * (by_legs - self._velocity)
 
-    def _follow_com(self, pose: Frame) -> None:
+    def _follow_com(self, pose: PlanePose) -> None:
         """Filter the centre of mass as an inverted pendulum over the centre of pressure."""
-        sensing = self._sensing
-        com = from_frame(pose, sensing.com[0], sensing.com[1])
+        body, error = self._body, self._error
+        com = from_frame(pose, body.com_x, body.com_y)
         left, right = map(tuple, self._feet[:, [0, 1, 3]].tolist())
-        zmp_x, zmp_y, load = pressure(sensing, left, right)
-        if not sensing.weighted:
-            sensing.x, sensing.y, sensing.weighted = *com, True
+        zmp_x, zmp_y, load = pressure(body, left, right)
+        if not error.weighted:
+            error.x, error.y, error.weighted = *com, True
         self._zmp = (zmp_x, zmp_y) if load > 0.0 else com
-        filter_error(sensing, com, self._zmp, (0.0, 0.0), self._robots[0])
+        filter_error(error, com, self._zmp, (0.0, 0.0), self._robots[0])
 
 
 class Head:
@@ -331,15 +337,15 @@ class Head:
     """
 
     def __init__(self, robot: RobotModel, parameters: WalkingParameters) -> None:
-        self._limbs, self._robot = np.zeros(1, LIMBS)[0], robot_record(robot, parameters)[0][0]
+        self._limbs, self._robot = records(Limbs)[0], robot_record(robot, parameters)[0]
         self._joints = joint_records(robot, parameters)
-        self._limbs.head = robot.neck.angles(robot.ready)
+        self._limbs.pan, self._limbs.tilt = robot.neck.angles(robot.ready)
 
     def advance(self, target: HeadTarget) -> Array:
         """Run one tick; return the setpoints of pan and tilt joint [rad], none if it is fixed."""
         advance_head(self._limbs, (target.pan, target.tilt), self._robot)
         if not self._robot.neck.movable:
             return np.zeros(0)
-        pan, tilt = self._limbs.head.tolist()
+        pan, tilt = float(self._limbs.pan), float(self._limbs.tilt)
         joints: Array = np.array(head_joints(pan, tilt, self._joints, self._robot))
         return joints

@@ -13,7 +13,6 @@ from annotated_types import Interval, doc
 from walking.dimension import (
     ACCELERATION,
     ANKLE_TIME,
-    CHANGE_WEIGHT,
     DECAY_PER_TICK,
     DIFFUSION,
     FORCE,
@@ -25,7 +24,6 @@ from walking.dimension import (
     RATE,
     RATE_CHANGE,
     SOLE,
-    SOLE_SPEED,
     SPEED,
     STANCE,
     TIME,
@@ -81,14 +79,13 @@ class PatternParameters:
     """Pattern generator: ZMP and pendulum."""
 
     generator: Annotated[
-        Literal["dcm", "preview", "paper", "robust"],
+        Literal["preview", "mwpg"],
         doc(
-            'Experimental. Pattern generator: "dcm" tracks the DCM of the footholds, "preview" is '
-            'Kajita\'s preview control, "paper" the modifiable walking pattern with two-level ZMP '
-            'functions, "robust" a plan with the ZMP inside the soles at all times, which limits '
-            "infeasible commands."
+            'Experimental. Pattern generator: "preview" is preview control of the ZMP within the '
+            'support polygon, "mwpg" the modifiable walking pattern generator with two-level ZMP '
+            "functions, which limits infeasible commands."
         ),
-    ] = "robust"
+    ] = "preview"
     pelvis_height: Annotated[
         float, Interval(ge=0.02, le=5.0), LENGTH, doc("Height of the hips while walking [m].")
     ] = 0.204
@@ -97,13 +94,7 @@ class PatternParameters:
     zmp_forward: Annotated[float, LENGTH] = 0.0  # ZMP ahead of the centre of the sole [m]
     zmp_inward: Annotated[float, STANCE] = 0.003  # ZMP inward of the ankle [m]
     sole_margin: Annotated[float, SOLE] = 0.005  # planned ZMP to the edge of the sole [m]
-    # the same of the robust plan while undisturbed, to leave room for the ankles [m]
-    plan_margin: Annotated[float, LENGTH] = 0.018
-    zmp_rate: Annotated[float, SOLE_SPEED] = 4.0  # maximum of the robust plan, single support [m/s]
     dcm_gain: Annotated[float, NUMBER] = 3.0  # ZMP shift per error of the planned DCM [1]
-    preview_time: Annotated[float, TIME] = 1.2  # horizon of preview control [s]
-    # weight of the ZMP change per tick relative to the ZMP error in preview control [1]
-    preview_weight: Annotated[float, CHANGE_WEIGHT] = 100.0
 
 
 @dataclass(frozen=True)

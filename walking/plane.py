@@ -12,7 +12,7 @@ Indices = NDArray[np.int64]
 Point = tuple[float, float]
 Vector = tuple[float, float, float]
 
-Frame = tuple[float, float, float]
+PlanePose = tuple[float, float, float]
 """x, y [m] of the origin and yaw [rad]."""
 
 
@@ -37,7 +37,7 @@ def rotate_back(yaw: float, x: float, y: float) -> Point:
 
 
 @compiled
-def from_frame(frame: Frame, x: float, y: float) -> Point:
+def from_frame(frame: PlanePose, x: float, y: float) -> Point:
     """Express a point of a frame in the parent frame [m]."""
     ox, oy, yaw = frame
     c, s = cos(yaw), sin(yaw)
@@ -45,9 +45,15 @@ def from_frame(frame: Frame, x: float, y: float) -> Point:
 
 
 @compiled
+def within(value: float, lower: float, upper: float) -> float:
+    """Clip a value to an interval."""
+    return min(upper, max(lower, value))
+
+
+@compiled
 def clamp(value: float, limit: float) -> float:
     """Clip a value to ±`limit`."""
-    return min(limit, max(-limit, value))
+    return within(value, -limit, limit)
 
 
 @compiled

@@ -4,8 +4,8 @@ from enum import StrEnum
 
 from compilation.value import value
 from walking.command import CommandLimits
-from walking.footsteps import Foothold
-from walking.odometry import Odometry
+from walking.estimate.odometry import Odometry
+from walking.plan.footsteps import Foothold
 from walking.plane import Array
 
 

@@ -10,8 +10,8 @@ import numpy as np
 from walking.body.robot_model import RobotModel
 from walking.command import Command, CommandLimits, CommandState, HeadTarget, Limit, VelocityCommand
 from walking.engine import WalkingEngine
+from walking.estimate.odometry import LegOdometry
 from walking.get_up import GetUp, Outcome
-from walking.odometry import LegOdometry
 from walking.parameters import CONTROL_PERIOD, GRAVITY, WalkingParameters
 from walking.state import BodySensors, JointTargets, Phase, WalkingState
 

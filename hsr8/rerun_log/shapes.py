@@ -11,7 +11,7 @@ import numpy as np
 import rerun as rr
 from numpy.typing import NDArray
 
-from walking.body.tree import Sole
+from walking.model import Sole
 
 Array = NDArray[np.float64]
 Geoms = NDArray[np.intp]

@@ -21,7 +21,7 @@ from hsr8.robots.servos import physics_step
 from hsr8.robots.skeleton import BaseFrame, Posed, quaternion_of
 from hsr8.robots.soles import Rectangle
 from hsr8.robots.tree import Parts
-from walking.body.tree import Sole
+from walking.model import Sole
 
 Array = NDArray[np.float64]
 

@@ -9,23 +9,21 @@ from math import sqrt
 
 import numpy as np
 
+from walking.body.feedforward import support_torque
 from walking.body.kinematics import FootPose
 from walking.body.robot_model import RobotModel
 from walking.body.tree import LEFT_LEG, RIGHT_LEG
 from walking.dimension import HSR_VIII
-from walking.feedforward import support_torque
 from walking.parameters import (
     CONTROL_PERIOD,
     GRAVITY,
     GaitParameters,
-    PatternParameters,
     StabilizerParameters,
     WalkingParameters,
 )
 from walking.plane import Array
 
 MAX_GYRO_GAIN = 0.12  # ankle setpoint per angular velocity; above, soft ankles oscillate [s]
-PLAN_FRACTION = 0.6  # maximum margin of the planned ZMP, of the sole's half width [1]
 SOLE_FRACTION = 1.0 / 3.0  # maximum margin of the ZMP moved by the ankles, of that half width [1]
 REFERENCE_WIDTH = HSR_VIII.sole / HSR_VIII.leg  # of a sole, of the length of the leg [1]
 MAX_SLOWER = 1.4  # footstep time, of that by similarity [1]
@@ -41,7 +39,7 @@ RAISE, MAX_HEIGHT = 0.01, 0.93  # step and end of the search for a hip height, o
 def fit(robot: RobotModel, scaled: WalkingParameters) -> WalkingParameters:
     """Return the scaled parameters of a robot within all rules."""
     gait = with_clear_stance(robot, scaled.gait)
-    pattern = with_plan_margin(robot, scaled.pattern)
+    pattern = scaled.pattern
     pattern = replace(pattern, pelvis_height=hip_height(robot, gait, pattern.pelvis_height))
     gait = with_calm_landing(robot, with_servo_time(robot, gait))
     return replace(
@@ -64,12 +62,6 @@ def with_gains(robot: RobotModel, stabilizer: StabilizerParameters) -> Stabilize
         gyro_gain=min(stabilizer.gyro_gain, MAX_GYRO_GAIN),
         sole_margin=min(stabilizer.sole_margin, margin),
     )
-
-
-def with_plan_margin(robot: RobotModel, pattern: PatternParameters) -> PatternParameters:
-    """Return a planned ZMP with a support area left on the sole."""
-    most = PLAN_FRACTION * robot.support.half_width
-    return replace(pattern, plan_margin=min(pattern.plan_margin, most))
 
 
 def with_clear_stance(robot: RobotModel, gait: GaitParameters) -> GaitParameters:

@@ -10,7 +10,8 @@ from numpy.typing import NDArray
 from hsr8.robots.mechanism import TO_JOINT
 from hsr8.robots.roles import Roles
 from hsr8.robots.skeleton import HINGE, matrix_of
-from walking.body.tree import Frame, RobotTree, Sole, turn
+from walking.body.tree import Frame, RobotTree, turn
+from walking.model import Sole
 
 Array = NDArray[np.float64]
 Ints = NDArray[np.integer]

@@ -1,10 +1,12 @@
 from dataclasses import dataclass, field
+from typing import Annotated
 
 import numpy as np
 import pytest
+from numpy.typing import NDArray
 
 from compilation import compiled
-from compilation.record import WORD, record, record_type
+from compilation.record import WORD, Records, record, record_class, record_type, records
 
 PART = record_type(weight=float, used=bool)
 WHOLE = record_type(flag=bool, parts=(PART, 2), matrix=(float, 2, 3))
@@ -54,3 +56,39 @@ def test_a_record_of_parameters_has_their_numbers():
     (row,) = record(Parameters(), extra=2.0)
     assert row.dtype.names == ("count", "rate", "extra")
     assert (row.count, row.rate, row.extra) == (3.0, 0.5, 2.0)
+
+
+@record_class
+class Part:
+    weight: float
+    used: bool
+
+
+@record_class
+class Whole:
+    flag: bool
+    parts: Annotated[Records[Part], 2]
+    matrix: Annotated[NDArray[np.float64], 2, 3]
+
+
+def test_a_class_of_annotated_fields_is_the_type_of_its_records():
+    assert Whole == WHOLE
+    assert records(Whole, 2).shape == (2,)
+
+
+def test_the_numbers_of_a_dataclass_are_a_record():
+    @record_class
+    class Owner:
+        own: Parameters
+        left: Part
+
+    assert Owner["own"].names == ("count", "rate")
+    assert Owner["left"] == PART
+
+
+def test_a_field_that_is_not_a_number_is_refused():
+    with pytest.raises(TypeError, match="str"):
+
+        @record_class
+        class Named:
+            name: str

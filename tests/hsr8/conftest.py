@@ -28,8 +28,8 @@ from navigation.parameters.belief import LocalMapParameters
 from vision.detection import Detection
 from walking.body.tree import JOINT_NAMES
 from walking.command import HeadTarget, VelocityCommand
-from walking.footsteps import Foothold
-from walking.odometry import Odometry
+from walking.estimate.odometry import Odometry
+from walking.plan.footsteps import Foothold
 from walking.state import Balance, HeadCameraPose, Phase, WalkingState
 
 NQ = 33

@@ -19,7 +19,7 @@ from navigation.decision import GazeDecision
 from walking.command import CommandState, HeadTarget, VelocityCommand
 from walking.constants import parameters_for
 from walking.engine import WalkingEngine
-from walking.odometry import LegOdometry
+from walking.estimate.odometry import LegOdometry
 from walking.parameters import CONTROL_PERIOD, GRAVITY, WalkingParameters
 from walking.state import BodySensors
 

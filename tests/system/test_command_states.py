@@ -10,7 +10,7 @@ LOW, HIGH = (0.2, 0.04, -0.06, 0.075, -0.25, 0.015), (0.4, 0.12, 0.1, 0.12, 0.25
 STAND, STRETCH, COUNT = 0.6, 0.3, 10  # first stand [s], length of a stretch [s], stretches
 
 
-@pytest.mark.parametrize("generator", ["dcm", "robust"])
+@pytest.mark.parametrize("generator", ["preview", "mwpg"])
 def test_footsteps_that_change_in_mid_swing_are_walked_and_accounted_for(simulate, generator):
     rng = np.random.default_rng(5)
     states = [CommandState(*rng.uniform(LOW, HIGH).tolist()) for _ in range(COUNT)]

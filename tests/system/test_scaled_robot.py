@@ -66,7 +66,7 @@ def test_the_walk_is_the_same_in_longer_steps_and_slower_time(tmp_path, size, co
     assert tilt < np.radians(3.0)
 
 
-@pytest.mark.parametrize("generator", ["preview", "paper", "robust"])
+@pytest.mark.parametrize("generator", ["preview", "mwpg"])
 def test_every_generator_walks_a_robot_of_half_the_size(tmp_path, generator):
     pattern = replace(WalkingParameters().pattern, generator=generator)
     parameters = replace(WalkingParameters(), pattern=pattern)

@@ -1,7 +1,7 @@
 """A robot model and a body without dynamics."""
 
 from math import atan2, cos, sin
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 import pytest
@@ -10,16 +10,14 @@ from hsr8.robots.loaded import load_robot
 from walking.body.robot_model import RobotModel
 from walking.body.tree import LEFT_LEG, RIGHT_LEG
 from walking.constants import robot_record
-from walking.footsteps import STILL, STRIDES, Foothold, put, velocity_strides
-from walking.gait import stand
+from walking.data import Data
+from walking.model import Strides
 from walking.parameters import CONTROL_PERIOD, PatternParameters, WalkingParameters
-from walking.patterns import PLAN
-from walking.records import Record
-from walking.reference import LIVE
+from walking.plan.footsteps import STILL, Foothold, put, velocity_strides
+from walking.plan.gait import stand
+from walking.plan.swing import rest_at
+from walking.plan.timing import cadence, put_timing
 from walking.state import BodySensors
-from walking.swing import rest_at
-from walking.tick import WALK
-from walking.timing import cadence, put_timing
 
 
 @pytest.fixture(scope="session")
@@ -114,20 +112,18 @@ def mirrored_joints(robot):
 
 
 class Model(NamedTuple):
-    """Constants of a walk, and sums of the gains of preview control."""
+    """Constants of a walk."""
 
-    robot: Record
-    sums: Record
+    robot: Any
 
 
 @pytest.fixture(scope="session")
 def make_model(robot):
     """Constants of a walk with a pattern generator."""
 
-    def make(generator="robust", parameters=None):
+    def make(generator="preview", parameters=None):
         parameters = parameters or WalkingParameters(pattern=PatternParameters(generator=generator))
-        records, sums = robot_record(robot, parameters)
-        return Model(records[0], sums)
+        return Model(robot_record(robot, parameters)[0])
 
     return make
 
@@ -142,7 +138,7 @@ def strides_of(model):
     """Strides of a velocity in the usual time."""
 
     def make(velocity, time=None):
-        strides = np.zeros(1, STRIDES)[0]
+        strides = np.zeros(1, Strides)[0]
         time = time or model.robot.gait.footstep_time
         velocity_strides(strides, velocity, time, model.robot)
         return strides
@@ -152,22 +148,21 @@ def strides_of(model):
 
 @pytest.fixture
 def make_walk(model):
-    """State of a walk that stands with parallel feet, and its plans."""
+    """State of a walk that stands with parallel feet."""
 
     def make(stance=None):
         half = float(model.robot.gait.half_stance)
         stance = stance or (Foothold(True, 0.0, half, 0.0), Foothold(False, 0.0, -half, 0.0))
-        walk = np.zeros(1, WALK)[0]
-        plans = np.zeros(4, PLAN)
-        gait = plans[LIVE].gait
+        walk = np.zeros(1, Data)[0]
+        gait = walk.plan.gait
         for side, foot in enumerate(stance):
             put(gait.footholds[side], foot)
             rest_at(walk.limbs.feet[side], foot)
         for timing in (gait.clock.timing, walk.steering.timing):
             put_timing(timing, cadence(STILL, model.robot))
         stand(gait, model.robot)
-        walk.admission.clock, plans[LIVE].landing = gait.clock, gait.landing
+        walk.admission.clock, walk.plan.landing = gait.clock, gait.landing
         walk.admission.fraction = 1.0
-        return walk, plans
+        return walk
 
     return make

@@ -1,26 +1,27 @@
 """Report of limited commands: limited if, and only if, the footsteps differ."""
 
 from collections import Counter
-from dataclasses import astuple, replace
+from dataclasses import asdict, replace
 
 import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
 
 from walking.command import CommandState, HeadTarget, Limit, VelocityCommand
+from walking.data import StepCommand
 from walking.engine import WalkingEngine
-from walking.footsteps import (
+from walking.model import Strides
+from walking.parameters import CONTROL_PERIOD, WalkingParameters
+from walking.plan.footsteps import (
     STILL,
-    STRIDES,
     command_strides,
     foothold,
     is_same,
     landing_of,
     velocity_strides,
 )
-from walking.gait import support_foot
-from walking.parameters import CONTROL_PERIOD, WalkingParameters
-from walking.timing import cadence, duration
+from walking.plan.gait import is_double, support_foot
+from walking.plan.timing import cadence, duration
 
 AHEAD = HeadTarget()
 LIMITS = WalkingParameters().limits
@@ -114,7 +115,7 @@ class Observer:
         names = ("step_forward", "step_side", "step_turn", "reach_forward", "reach_side")
         limits = replace(parameters.limits, **dict.fromkeys(names, WIDE))
         gait = replace(parameters.gait, foot_clearance=-WIDE)
-        self._plan, self._gait = engine._plan, engine._plan.gait
+        self._plan, self._gait = engine._walk.plan, engine._walk.plan.gait
         self._usual = make_model(parameters=parameters).robot
         free = replace(parameters, limits=limits, gait=gait)
         self._free = make_model(parameters=free).robot
@@ -124,7 +125,7 @@ class Observer:
         """Whether the last tick obeyed; None if its support phase ended with it."""
         gait = self._gait
         stepped, self._stepped = self._stepped, bool(gait.stepping)
-        phase, self._phase = self._phase, (int(gait.completed), bool(gait.double))
+        phase, self._phase = self._phase, (int(gait.completed), is_double(gait))
         if self._phase != phase:
             return None
         if not gait.stepping:
@@ -136,9 +137,12 @@ class Observer:
 
     def _as_commanded(self, command):
         """Whether the footsteps to come are those of the command."""
-        timing, wanted = self._gait.clock.timing, np.zeros(1, STRIDES)[0]
+        timing, wanted = self._gait.clock.timing, np.zeros(1, Strides)[0]
         if isinstance(command, CommandState):
-            command_strides(wanted, np.array(astuple(command)), 0.0, self._free)
+            step = np.zeros(1, StepCommand)[0]
+            for name, value in asdict(command).items():
+                step[name] = value
+            command_strides(wanted, step, 0.0, self._free)
             timely = (
                 abs(timing.double * CONTROL_PERIOD - command.double_support) < HALF_TICK
                 and abs(timing.single * CONTROL_PERIOD - command.single_support) < HALF_TICK
@@ -163,14 +167,14 @@ class Observer:
         gait, timing = self._gait, self._gait.clock.timing
         nominal = landing_of(support_foot(gait), self._plan.following)
         return bool(
-            (not gait.double or gait.clock.shift.end == timing.double)
+            (not is_double(gait) or gait.clock.shift.end == timing.double)
             and gait.clock.single.ticks == timing.single
-            and (gait.double or abs(gait.swing_height - timing.swing_height) < ROUNDING)
+            and (is_double(gait) or abs(gait.swing_height - timing.swing_height) < ROUNDING)
             and is_same(nominal, foothold(gait.landing), self._usual)
         )
 
 
-@pytest.mark.parametrize("generator", ["dcm", "robust"])
+@pytest.mark.parametrize("generator", ["preview", "mwpg"])
 @pytest.mark.parametrize("every", [(0.005, 0.1), (0.2, 2.5)])
 def test_limited_is_reported_if_and_only_if_the_footsteps_differ_from_the_command(
     robot, make_model, ideal_body, generator, every

@@ -10,12 +10,12 @@ from scipy.spatial import ConvexHull
 from walking.body.tree import HEAD
 from walking.command import CommandState, HeadTarget, VelocityCommand
 from walking.engine import WalkingEngine
-from walking.footsteps import STANCE_YAW_TOLERANCE
 from walking.parameters import CONTROL_PERIOD, HeadParameters, WalkingParameters
+from walking.plan.footsteps import STANCE_YAW_TOLERANCE
 from walking.state import Phase
 
 AHEAD = HeadTarget()
-GENERATORS = ["dcm", "preview", "paper", "robust"]
+GENERATORS = ["preview", "mwpg"]
 
 
 def run(robot, body, script, seconds, parameters=None, watch=None):

@@ -10,7 +10,7 @@ from walking.command import CommandState, HeadTarget, VelocityCommand
 from walking.engine import WalkingEngine
 from walking.parameters import WalkingParameters
 
-GENERATORS = ["dcm", "preview", "paper", "robust"]
+GENERATORS = ["preview", "mwpg"]
 LEG, ARM = np.array([-1, -1, 1, 1, 1, -1]), np.array([1, -1, -1, 1, -1, -1])
 ALONG = np.array([1.0, -1.0, 1.0])  # a vector mirrored at the sagittal plane
 ABOUT = np.array([-1.0, 1.0, -1.0])  # an axial vector

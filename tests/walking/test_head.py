@@ -7,10 +7,11 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from walking.body.posture import advance_head
 from walking.command import HeadTarget
+from walking.data import Limbs
 from walking.observer import Head
 from walking.parameters import CONTROL_PERIOD, HeadParameters, WalkingParameters
-from walking.posture import LIMBS, advance_head
 
 HEAD = HeadParameters(max_rate=6.0, max_acceleration=60.0)
 PARAMETERS = replace(WalkingParameters(), head=HEAD)
@@ -27,11 +28,11 @@ def follow(head):
     """Pan and tilt tick by tick of a head that starts straight."""
 
     def run(targets):
-        limbs = np.zeros(1, LIMBS)[0]
-        path = [limbs.head.copy()]
+        limbs = np.zeros(1, Limbs)[0]
+        path = [(limbs.pan, limbs.tilt)]
         for target in targets:
             advance_head(limbs, target, head)
-            path.append(limbs.head.copy())
+            path.append((limbs.pan, limbs.tilt))
         return np.array(path)
 
     return run
@@ -45,12 +46,12 @@ def follow(head):
     )
 )
 def test_limits_hold_for_any_targets(robot, head, moves):
-    limbs = np.zeros(1, LIMBS)[0]
+    limbs = np.zeros(1, Limbs)[0]
     path = [np.zeros(2)]
     for pan, tilt, ticks in moves:
         for _ in range(ticks):
             advance_head(limbs, (pan, tilt), head)
-            path.append(limbs.head.copy())
+            path.append((limbs.pan, limbs.tilt))
     rates = np.diff(path, axis=0) / CONTROL_PERIOD
     changes = np.diff(np.vstack([np.zeros(2), rates]), axis=0) / CONTROL_PERIOD
     assert np.abs(rates).max() <= HEAD.max_rate + 1e-9

@@ -11,8 +11,8 @@ from scipy.spatial.transform import Rotation
 
 from walking.command import HeadTarget, VelocityCommand
 from walking.engine import WalkingEngine
+from walking.estimate.odometry import LegOdometry
 from walking.observer import BodyObserver, FootContacts, RollingFeet
-from walking.odometry import LegOdometry
 from walking.parameters import CONTROL_PERIOD, GRAVITY, GaitParameters, WalkingParameters
 from walking.state import Phase
 

@@ -8,12 +8,13 @@ from scipy.spatial.transform import Rotation
 
 from walking.body.tree import HEAD
 from walking.command import VelocityCommand
-from walking.estimation import CAMERA_FRAME, SENSING, base_height
-from walking.footsteps import foothold
-from walking.gait import start
-from walking.odometry import ODOMETRY
-from walking.published import CAMERA, PUBLISHED, publish_camera, publish_plan, walking_state
-from walking.reference import LIVE, plan_walk
+from walking.data import Body, DeadReckoning
+from walking.estimate.body import base_height
+from walking.model import CAMERA
+from walking.plan.footsteps import foothold
+from walking.plan.gait import start
+from walking.plan.reference import plan_walk
+from walking.published import CameraRecord, Published, publish_camera, publish_plan, walking_state
 from walking.state import Phase
 
 FEET = ((0.01, 0.042, -0.22, 0.1), (-0.01, -0.042, -0.21, -0.05))  # x, y, z, yaw
@@ -23,7 +24,7 @@ def set_body(sensing, *, roll=0.0, pitch=0.0, right_load=0.0):
     for foot, (x, y, z, yaw) in zip(sensing.feet, FEET, strict=True):
         foot.x, foot.y, foot.z, foot.yaw = x, y, z, yaw
     sensing.roll, sensing.pitch, sensing.right_load = roll, pitch, right_load
-    sensing.com = 0.012, 0.003, 0.02
+    sensing.com_x, sensing.com_y, sensing.com_z = 0.012, 0.003, 0.02
 
 
 @pytest.fixture
@@ -31,12 +32,12 @@ def look(robot, model):
     """Camera of a body that looks aside, and its pose in the base frame."""
 
     def published(**body):
-        sensing, camera = np.zeros(1, SENSING)[0], np.zeros(1, CAMERA)[0]
+        sensing, camera = np.zeros(1, Body)[0], np.zeros(1, CameraRecord)[0]
         set_body(sensing, **body)
         joints, rates = robot.ready.copy(), np.zeros_like(robot.ready)
         joints[HEAD], rates[HEAD] = (0.4, -0.3), (1.0, -2.0)
         R_BC, p_BC = robot.frame_pose(robot.tree.camera, joints)
-        sensing.frames[CAMERA_FRAME] = [*R_BC.ravel(), *p_BC]
+        sensing.frames[CAMERA] = [*R_BC.ravel(), *p_BC]
         height, gyro = base_height(sensing), np.array([0.1, 0.2, 0.3])
         publish_camera(camera, sensing, height, rates, gyro, model.robot)
         return camera, R_BC, p_BC
@@ -68,7 +69,7 @@ def test_a_tilted_trunk_tilts_the_camera(look, roll, pitch):
 
 
 def test_a_fixed_camera_turns_with_the_trunk_only(robot, model):
-    fixed, sensing, camera = model.robot.copy(), np.zeros(1, SENSING)[0], np.zeros(1, CAMERA)[0]
+    fixed, sensing, camera = model.robot.copy(), np.zeros(1, Body)[0], np.zeros(1, CameraRecord)[0]
     fixed.neck.movable = False
     rates, gyro = np.ones_like(robot.ready), np.array([0.1, 0.2, 0.3])
     publish_camera(camera, sensing, 0.2, rates, gyro, fixed)
@@ -78,23 +79,23 @@ def test_a_fixed_camera_turns_with_the_trunk_only(robot, model):
 @pytest.fixture
 def published(model, strides_of, make_walk):
     """State of a walk in its first double support, odometry at a pose."""
-    walk, plans = make_walk()
-    plan = plans[LIVE]
+    walk = make_walk()
+    plan = walk.plan
     start(plan.gait, 0, False, model.robot)
     landing, strides = foothold(plan.gait.landing), strides_of((0.2, 0.0, 0.3))
     plan_walk(plan, landing, strides, True, model.robot)
-    p, sensing, placing = walk.pendulum, walk.sensing, walk.placing
+    p, error, placing = walk.pendulum, walk.error, walk.placing
     p.x, p.y, p.vx, p.vy, p.zmp_x, p.zmp_y = 0.01, 0.005, 0.1, -0.2, 0.02, 0.01
-    set_body(sensing)
-    sensing.x, sensing.y, sensing.vx, sensing.vy = 0.001, -0.002, 0.01, 0.02
+    set_body(walk.body)
+    error.x, error.y, error.vx, error.vy = 0.001, -0.002, 0.01, 0.02
     placing.moved_x, placing.moved_y = 0.03, -0.01
     walk.unloading, walk.loading = plan.gait.footholds[1], plan.gait.footholds[0]
 
     def state(x=0.0, y=0.0, yaw=0.0):
-        odometry = np.zeros(1, ODOMETRY)[0]
+        odometry = np.zeros(1, DeadReckoning)[0]
         odometry.x, odometry.y, odometry.yaw = x, y, yaw
-        published = np.zeros(1, PUBLISHED)
-        publish_plan(published[0], walk, plan, odometry, model.robot)
+        published = np.zeros(1, Published)
+        publish_plan(published[0], walk, odometry, model.robot)
         return walking_state(published, VelocityCommand(0.2))
 
     return state

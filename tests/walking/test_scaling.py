@@ -91,7 +91,6 @@ def test_dimensionless_numbers_stay_what_they_are(size):
             p.limits.wz * p.gait.footstep_time,
             p.limits.forward_acceleration / GRAVITY,
             p.estimator.contact_force / y.weight,
-            p.pattern.zmp_rate / (y.sole * w),
             p.arms.swing_gain * step,
             p.stabilizer.gyro_gain * w,
             p.stabilizer.tilt_decay ** (p.gait.footstep_time / CONTROL_PERIOD),

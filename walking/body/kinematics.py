@@ -12,7 +12,9 @@ from typing import NamedTuple
 import numpy as np
 
 from compilation import compiled
-from walking.plane import Array, Indices, Vector
+from compilation.record import Records
+from walking.model import Link
+from walking.plane import Array, Indices, Vector, clamp
 
 Matrix = tuple[float, float, float, float, float, float, float, float, float]
 """Rotation, row by row."""
@@ -44,7 +46,7 @@ def times(a: Matrix, b: Matrix) -> Matrix:
 
 
 @compiled
-def turned(a: Matrix, x: float, y: float, z: float) -> Vector:
+def rotated(a: Matrix, x: float, y: float, z: float) -> Vector:
     """Return a rotated vector."""
     return (
         a[0] * x + a[1] * y + a[2] * z,
@@ -106,41 +108,42 @@ def chain_pose(chain: Array, angles: Array, axes: Array, origins: Array) -> tupl
     px, py, pz = 0.0, 0.0, 0.0
     for k in range(chain.shape[0]):
         row = chain[k]
-        dx, dy, dz = turned(R, row[MOVE], row[MOVE + 1], row[MOVE + 2])
+        dx, dy, dz = rotated(R, row[MOVE], row[MOVE + 1], row[MOVE + 2])
         px, py, pz = px + dx, py + dy, pz + dz
         R = times(R, rotation_of(row))
         if k < angles.shape[0]:
             x, y, z = row[AXIS], row[AXIS + 1], row[AXIS + 2]
-            axes[k, 0], axes[k, 1], axes[k, 2] = turned(R, x, y, z)
+            axes[k, 0], axes[k, 1], axes[k, 2] = rotated(R, x, y, z)
             origins[k, 0], origins[k, 1], origins[k, 2] = px, py, pz
             R = times(R, about(x, y, z, angles[k]))
     return R, (px, py, pz)
 
 
 @compiled
-def tree_pass(links: Array, order: Indices, angles: Array, poses: Array) -> Vector:
+def tree_pass(links: Records[Link], order: Indices, angles: Array, poses: Array) -> Vector:
     """Set the poses of all links and return the centre of mass [m], both in the base frame.
 
     Args:
-        links: see `RobotTree.links` (n + 1, 10).
+        links: links of the robot, the base last (n + 1,).
         order: joints and their parents, parents first (n, 2).
         angles: joint angles (n,) [rad].
         poses: rotation, row by row, and position of each link, set; the last is the base
             (n + 1, 12) [m].
     """
-    last = links.shape[0] - 1
-    mass, mx, my, mz = links[last, 6], links[last, 7], links[last, 8], links[last, 9]
+    last = links.size - 1
+    base = links[last]
+    mass, mx, my, mz = base.mass, base.moment_x, base.moment_y, base.moment_z
     for k in range(12):
         poses[last, k] = 1.0 if k in (0, 4, 8) else 0.0
     for k in range(last):
         joint, parent = order[k, 0], order[k, 1]
         link, pose, before = links[joint], poses[joint], poses[parent]
         P = rotation_of(before)
-        dx, dy, dz = turned(P, link[0], link[1], link[2])
+        dx, dy, dz = rotated(P, link.x, link.y, link.z)
         x, y, z = before[MOVE] + dx, before[MOVE + 1] + dy, before[MOVE + 2] + dz
-        R = times(P, about(link[3], link[4], link[5], angles[joint]))
+        R = times(P, about(link.axis_x, link.axis_y, link.axis_z, angles[joint]))
         put_pose(pose, R, (x, y, z))
-        m, (cx, cy, cz) = link[6], turned(R, link[7], link[8], link[9])
+        m, (cx, cy, cz) = link.mass, rotated(R, link.moment_x, link.moment_y, link.moment_z)
         mass += m
         mx, my, mz = mx + m * x + cx, my + m * y + cy, mz + m * z + cz
     return mx / mass, my / mass, mz / mass
@@ -156,7 +159,7 @@ def frame_pose(pose: Array, link: Array, frame: Array) -> None:
         frame: pose of the frame on the link (12,) [m].
     """
     R = rotation_of(link)
-    dx, dy, dz = turned(R, frame[MOVE], frame[MOVE + 1], frame[MOVE + 2])
+    dx, dy, dz = rotated(R, frame[MOVE], frame[MOVE + 1], frame[MOVE + 2])
     position = (link[MOVE] + dx, link[MOVE + 1] + dy, link[MOVE + 2] + dz)
     put_pose(pose, times(R, rotation_of(frame)), position)
 
@@ -227,7 +230,7 @@ def solve_leg(
             J[3, k], J[4, k], J[5, k] = ax, ay, az
         _least_squares(J, e, MAX_DAMPING * min(1.0, square) + MIN_DAMPING, A, step)
         for k in range(6):
-            angles[k] += min(MAX_STEP, max(-MAX_STEP, step[k]))
+            angles[k] += clamp(step[k], MAX_STEP)
     return MAX_ITERATIONS, error
 
 
@@ -316,7 +319,7 @@ class Leg:
         """Return the pose of the foot for joint angles (6,) [rad] (forward kinematics)."""
         axes, origins = np.empty((6, 3)), np.empty((6, 3))
         R, p = chain_pose(self.chain, np.asarray(angles, float), axes, origins)
-        roll, pitch = atan2(R[7], R[8]), -asin(min(1.0, max(-1.0, R[6])))
+        roll, pitch = atan2(R[7], R[8]), -asin(clamp(R[6], 1.0))
         return FootPose(*p, roll, pitch, atan2(R[3], R[0]))
 
     def joints(self, angles: Array) -> tuple[Array, Array]:

@@ -4,33 +4,19 @@ from __future__ import annotations
 
 from copy import copy
 from math import asin, atan2, sqrt
+from typing import cast
 
 import numpy as np
 import pinocchio as pin
 
-from compilation.record import record_type
+from compilation.record import Records
 from walking.body import kinematics
 from walking.body.kinematics import FootPose, Leg
-from walking.body.tree import LEFT_LEG, RIGHT_LEG, Frame, RobotTree, Sole
+from walking.body.tree import LEFT_LEG, RIGHT_LEG, Frame, RobotTree
 from walking.dimension import RobotMeasures
+from walking.model import Link, NeckRecord, Sole
 from walking.parameters import GRAVITY
-from walking.plane import Array, Point
-from walking.records import Record
-
-NECK = record_type(
-    movable=bool,
-    tilt_first=bool,
-    pan_joint=int,
-    tilt_joint=int,
-    pan_sign=float,
-    tilt_sign=float,
-    rest_pan=float,
-    rest_tilt=float,
-    lower=(float, 2),
-    upper=(float, 2),
-)
-"""Joints of the head (-1 for none), their signs [1], pan and tilt with these joints at zero, and
-limits of pan and tilt [rad]."""
+from walking.plane import Array, Point, clamp, within
 
 
 class Neck:
@@ -61,7 +47,7 @@ class Neck:
         """Return pan and tilt for joint angles (n,) [rad]."""
         axes, origins = np.empty((2, 3)), np.empty((2, 3))
         R, _ = kinematics.chain_pose(self._chain, joint_position[self._moving], axes, origins)
-        return atan2(R[5], R[2]), asin(min(1.0, max(-1.0, R[8])))
+        return atan2(R[5], R[2]), asin(clamp(R[8], 1.0))
 
     def range(self) -> Array:
         """Return lower and upper limit of pan and tilt (2, 2) [rad]."""
@@ -71,13 +57,15 @@ class Neck:
         ends = np.array([self._lower[joints], self._upper[joints]]) * self._signs + self._rest
         return np.sort(ends, axis=0).T
 
-    def describe(self, record: Record) -> None:
-        """Set a record `NECK`."""
+    def describe(self, record: NeckRecord) -> None:
+        """Set the record of the neck."""
         record.movable, record.tilt_first = self._head is not None, self._tilt_first
-        record.pan_joint, record.tilt_joint = self._head or (-1, -1)
-        record.pan_sign, record.tilt_sign = self._signs
-        record.rest_pan, record.rest_tilt = self._rest
-        record.lower, record.upper = self.range().T
+        joints = self._head or (-1, -1)
+        axes = (record.pan, record.tilt)
+        values = zip(axes, joints, self._signs, self._rest, self.range(), strict=True)
+        for axis, joint, sign, rest, (lower, upper) in values:
+            axis.joint, axis.sign, axis.rest = joint, sign, rest
+            axis.lower, axis.upper = float(lower), float(upper)
 
 
 MAX_COMPLIANCE, MAX_STIFFENING = 0.9, 3.0  # of an ankle, see `_stiffen` [1]
@@ -119,7 +107,7 @@ class RobotModel:
         names: names of the joints (n,).
         mass: total mass [kg].
         legs: left and right leg.
-        links, order: links and their order, see `RobotTree.links` (n + 1, 10), (n, 2).
+        links, order: links and their order, see `RobotTree.links` (n + 1,), (n, 2).
         neck: pan and tilt of the camera.
         sole: rectangle of each sole.
         support: part of it that the ankles can press on the floor.
@@ -144,7 +132,8 @@ class RobotModel:
         )
         self.dynamics = Dynamics(self._model)
         self.mass = float(tree.masses.sum())
-        self.links, self.order, self._rotations = tree.links()
+        links, self.order, self._rotations = tree.links()
+        self.links = cast("Records[Link]", links.view(Link).reshape(-1))
         self.legs = (
             Leg.of(tree.chain(list(range(6)), tree.feet[0]), tree.posture[LEFT_LEG]),
             Leg.of(tree.chain(list(range(6, 12)), tree.feet[1]), tree.posture[RIGHT_LEG]),
@@ -192,7 +181,7 @@ class RobotModel:
         from the measured angle, s (setpoint - angle) + angle, make a servo s times as stiff.
         """
         soft = self.measures().ankle
-        factor = min(MAX_STIFFENING, max(1.0, soft / MAX_COMPLIANCE))
+        factor = within(soft / MAX_COMPLIANCE, 1.0, MAX_STIFFENING)
         self.stiffness[: RIGHT_LEG.stop] *= factor
         return factor
 

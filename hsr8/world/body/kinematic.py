@@ -25,7 +25,7 @@ from walking.state import BodySensors, JointTargets
 Array = NDArray[np.float64]
 
 # Standard deviations of the slip of a foot at touch-down. With them the robot drifts as in full
-# physics, see `walking.odometry`. Lengths are those in a world of scale 1.
+# physics, see `walking.estimate.odometry`. Lengths are those in a world of scale 1.
 SLIP = 0.0003  # per axis [m]
 YAW_SLIP = 0.0006  # about the vertical [rad]
 LANDED = 0.0005  # the swing foot becomes the stance foot when lower than it by this [m]

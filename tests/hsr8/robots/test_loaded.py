@@ -10,8 +10,8 @@ from hsr8.robots.loaded import load_robot
 from tests.hsr8.robots.robot_parts import adding, part
 from tests.hsr8.robots.small_humanoid import SmallHumanoid
 from walking.constants import robot_record
-from walking.estimation import watch
-from walking.tick import WALK
+from walking.data import Data
+from walking.estimate.body import measure
 
 ROBOTS = {
     "plain": SmallHumanoid(),
@@ -65,12 +65,10 @@ def test_kinematics_and_centre_of_mass_are_those_of_mujoco(load, name):
     com = turned @ (data.subtree_com[model.body(robot.roles.base).id] - base.xpos)
     np.testing.assert_allclose(robot.model.com(angles), com, rtol=0.0, atol=1e-12)
     assert robot.model.mass == pytest.approx(model.body_subtreemass[1], rel=1e-12)
-    walks, constants = np.zeros(1, WALK), robot_record(robot.model, robot.parameters)[0]
+    walks, constants = np.zeros(1, Data), robot_record(robot.model, robot.parameters)
     upright, rest = np.array([1.0, 0.0, 0.0, 0.0]), (np.zeros(3), np.zeros((2, 4)))
-    watch(walks, angles, upright, *rest, robot.model.links, robot.model.order, constants)
-    for measured, frame, site in zip(
-        walks[0]["sensing"]["frames"], frames(robot), SITES, strict=True
-    ):
+    measure(walks, angles, upright, *rest, robot.model.links, robot.model.order, constants)
+    for measured, frame, site in zip(walks[0]["body"]["frames"], frames(robot), SITES, strict=True):
         rotation, position = robot.model.frame_pose(frame, angles)
         np.testing.assert_array_equal(measured, [*rotation.ravel(), *position])
         place = data.site(site)

@@ -44,7 +44,6 @@ def test_the_rules_leave_stance_timing_and_landing_of_the_reference_alone(robot)
 @pytest.mark.parametrize("half_width", [0.012, 0.02, 0.03])
 def test_narrow_soles_keep_a_support_area(other, half_width):
     made = rules.fit(other(half_width), DEFAULTS)
-    assert made.pattern.plan_margin <= 0.6 * half_width
     assert made.stabilizer.sole_margin <= half_width / 3.0
 
 

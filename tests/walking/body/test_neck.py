@@ -8,11 +8,10 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from walking.body.robot_model import NECK, Neck
+from walking.body.posture import head_joints
+from walking.body.robot_model import Neck
 from walking.body.tree import turn
-from walking.constants import ROBOT
-from walking.feedforward import JOINT
-from walking.posture import head_joints
+from walking.model import Joint, Model, NeckRecord
 
 ANGLES = st.floats(-0.6, 0.6)
 
@@ -37,7 +36,7 @@ def camera_pose(robot, angles):
 
 def joints_of(neck, tree, pan, tilt):
     """Head joints that a neck turns to pan and tilt."""
-    record, joints = np.zeros(1, ROBOT)[0], np.zeros(tree.lower.size, JOINT)
+    record, joints = np.zeros(1, Model)[0], np.zeros(tree.lower.size, Joint)
     neck.describe(record.neck)
     joints["lower"], joints["upper"] = tree.lower, tree.upper
     return head_joints(pan, tilt, joints, record)
@@ -78,12 +77,12 @@ def test_targets_out_of_range_stop_at_the_range(robot):
 @given(pan=ANGLES, tilt=ANGLES)
 def test_rates_are_the_derivative_of_the_angles(robot, pan, tilt):
     neck, q, step = robot.neck, robot.ready.copy(), 1e-6
-    rates, record = np.zeros_like(q), np.zeros(1, NECK)[0]
+    rates, record = np.zeros_like(q), np.zeros(1, NeckRecord)[0]
     neck.describe(record)
     q[list(robot.tree.head)], rates[list(robot.tree.head)] = (pan, 0.5 * tilt), (0.7, -0.4)
     ahead, behind = (np.array(neck.angles(q + s * step * rates)) for s in (1.0, -1.0))
     derivative = (ahead - behind) / (2.0 * step)
-    signed = record.pan_sign * 0.7, record.tilt_sign * -0.4
+    signed = record.pan.sign * 0.7, record.tilt.sign * -0.4
     np.testing.assert_allclose(signed, derivative, atol=1e-6)
 
 

@@ -14,6 +14,7 @@ from tests.hsr8.robots.robot_parts import SHIPPED
 from walking.body.kinematics import tree_pass
 from walking.body.robot_model import dynamic_model
 from walking.body.tree import LEFT_LEG, RIGHT_LEG
+from walking.model import Link
 
 
 @pytest.mark.parametrize("height", [0.19, 0.204, 0.22])
@@ -48,7 +49,7 @@ def assert_same_as_pinocchio(tree, seed):
     position[[model.joints[model.getJointId(name)].idx_q for name in tree.names]] = q
     links, order, rotations = tree.links()
     poses = np.empty((len(links), 12))
-    com = tree_pass(links, order, q, poses)
+    com = tree_pass(links.view(Link).reshape(-1), order, q, poses)
     expected = pin.centerOfMass(model, data, position)
     np.testing.assert_allclose(com, expected, rtol=0.0, atol=1e-12)
     for joint, name in enumerate(tree.names):

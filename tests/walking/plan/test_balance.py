@@ -1,0 +1,259 @@
+"""Ankles, capture step, and landing of the swing foot on a pendulum without a body."""
+
+from itertools import pairwise
+from math import exp
+
+import numpy as np
+import pytest
+from hypothesis import assume, given
+from hypothesis import strategies as st
+
+from walking.command import BALANCE
+from walking.parameters import CONTROL_PERIOD, StabilizerParameters
+from walking.plan.admission import remember
+from walking.plan.balance import (
+    ankle_gain,
+    capture_step,
+    capture_time,
+    exceeds,
+    place_foot,
+    zmp_shift,
+)
+from walking.plan.departure import end_capture
+from walking.plan.footsteps import STILL, Foothold, foothold, is_same, landing_of, reachable
+from walking.plan.gait import (
+    advance,
+    is_double,
+    phase_of,
+    retime,
+    start,
+    support_foot,
+    swing_foot,
+    swing_of,
+)
+from walking.plan.generator import advance_pendulum
+from walking.plan.pendulum import hold_tick
+from walking.plan.steering import follow_command, moves, set_wanted_strides, use_next_timing
+from walking.plan.support import support_region
+
+GENERATORS = ["preview", "mwpg"]
+NONE = (0.0, 0.0)
+LEFT = Foothold(True, 0.0, 0.042, 0.0)
+AHEAD = (0.005, -0.02)  # of the planned DCM from the ZMP [m]
+STABILIZER = StabilizerParameters()
+
+
+@given(st.floats(4.0, 12.0), st.floats(1e-3, 0.05), st.floats(0.0, 60.0))
+def test_the_closed_loop_has_the_wanted_pole_and_none_slower(omega, lag, rate):
+    assume(lag * (2.0 * rate + omega) < 0.999)
+    gain = ankle_gain(omega, lag, rate)
+    poles = np.linalg.eigvals([[omega, -omega], [gain / lag, -1.0 / lag]])
+    assert np.abs(poles.imag).max() < 1e-6 / lag
+    assert poles.real.max() == pytest.approx(-rate, abs=1e-6 / lag)
+
+
+def test_without_a_lag_the_gain_is_the_usual_one_and_a_slow_servo_gets_a_double_pole():
+    assert ankle_gain(7.0, 0.0, 3.5) == pytest.approx(1.5)
+    omega, lag = 7.0, 0.05
+    gain = ankle_gain(omega, lag, 10.0)
+    poles = np.linalg.eigvals([[omega, -omega], [gain / lag, -1.0 / lag]])
+    assert poles == pytest.approx([-6.5, -6.5], abs=1e-5)
+
+
+def landing_error(model, time, planned, off, ahead):
+    """How far the DCM is from where it was due, the pendulum stepped tick by tick."""
+    omega = float(model.robot.omega)
+    x, v = 0.0, (ahead + off) * omega
+    for _ in range(round(time / CONTROL_PERIOD)):
+        x, v = hold_tick(model.robot, x, v, 0.0)
+    return x + v / omega - ahead * exp(omega * planned)
+
+
+@pytest.mark.parametrize("ahead", [-0.02, 0.0, 0.015])
+@pytest.mark.parametrize(("off", "reach"), [(0.06, 0.15), (-0.05, -0.12), (0.07, 0.05)])
+def test_the_capture_time_is_the_latest_sufficient_tick(model, off, ahead, reach):
+    planned = 0.34
+    ticks = [
+        k
+        for k in range(round(planned / CONTROL_PERIOD) + 1)
+        if np.sign(off) * landing_error(model, k * CONTROL_PERIOD, planned, off, ahead)
+        <= abs(reach)
+    ]
+    time = capture_time(float(model.robot.omega), planned, off, ahead, reach)
+    assert int(time / CONTROL_PERIOD + 1e-6) == max(ticks, default=0)
+
+
+def test_the_capture_time_is_the_planned_one_within_reach_and_zero_if_none_is_short_enough(model):
+    omega = float(model.robot.omega)
+    assert capture_time(omega, 0.3, 0.01, 0.005, 0.2) == 0.3
+    assert capture_time(omega, 0.3, 0.0, -0.02, 0.0) == 0.3
+    assert capture_time(omega, 0.3, 0.05, -0.02, 0.01) == 0.0
+    assert capture_time(omega, 0.3, 0.05, 0.0, -0.01) == 0.0
+
+
+def test_the_ankles_push_the_zmp_beyond_the_error_within_the_sole(model, robot):
+    margin = STABILIZER.sole_margin
+    region = support_region(model.robot.support, LEFT, LEFT, margin)
+    middle = (float(model.robot.support.centre), 0.042)
+    dx, dy = zmp_shift(middle, (0.01, 0.005), region, model.robot)
+    lag = robot.damping[4] / robot.stiffness[4]
+    gain = ankle_gain(float(model.robot.omega), lag, STABILIZER.dcm_rate)
+    assert gain > 1.0
+    assert (dx, dy) == pytest.approx((gain * 0.01, gain * 0.005))
+    dx, _ = zmp_shift(middle, (0.5, 0.0), region, model.robot)
+    assert dx == pytest.approx(model.robot.support.half_length - margin)
+
+
+def captured(model, error, ticks_left=40, velocity=None, strides_of=None):
+    landing = landing_of(LEFT, strides_of(velocity or STILL))
+    arguments = (error, AHEAD, ticks_left, model.robot)
+    return capture_step(LEFT, landing, *arguments), landing
+
+
+def test_small_errors_need_no_step_and_larger_ones_grow_from_nothing(model, strides_of):
+    zone = STABILIZER.capture_dead_zone
+    for error, expected in (((0.005, 0.002), False), ((0.05, 0.0), True), ((0.0, -0.05), True)):
+        assert exceeds(LEFT, error, zone, model.robot) is expected
+    capture, landing = captured(model, (0.005, 0.002), strides_of=strides_of)
+    assert capture.landing == pytest.approx(landing)
+    assert capture.ticks == 40
+
+
+def test_the_capture_step_lands_where_the_error_will_be(model, strides_of):
+    length = model.robot.support.half_length - STABILIZER.sole_margin
+    zone = STABILIZER.capture_dead_zone * float(length)
+    capture, landing = captured(
+        model, (zone + 0.01, 0.0), 30, velocity=(0.1, 0.0, 0.0), strides_of=strides_of
+    )
+    growth = exp(float(model.robot.omega) * 30 * CONTROL_PERIOD)
+    assert capture.landing.x - landing.x == pytest.approx(0.01 * growth)
+    assert capture.landing.y == pytest.approx(landing.y)
+    assert capture.ticks == 30
+
+
+def test_a_hopeless_error_gives_a_reachable_landing_at_once(model, strides_of):
+    capture, _ = captured(model, (1.0, -1.0), strides_of=strides_of)
+    limits, half = model.robot.limits, model.robot.gait.half_stance
+    assert abs(capture.landing.x - LEFT.x) <= limits.reach_forward + 1e-9
+    assert LEFT.y - capture.landing.y <= 2 * half + limits.reach_side + 1e-9
+    assert capture.ticks < 10
+
+
+def test_a_footstep_is_shortened_only_when_its_landing_is_out_of_reach(model, strides_of):
+    ticks = [captured(model, (0.001 * e, 0.0), strides_of=strides_of)[0].ticks for e in range(150)]
+    assert ticks[0] == ticks[60] == 40
+    assert ticks[-1] < 20
+    assert all(later <= sooner for sooner, later in pairwise(ticks))
+
+
+class Walk:
+    """Steering, gait and pendulum with a DCM error chosen by the test."""
+
+    def __init__(self, model, make_walk):
+        self.model = model
+        self.walk = make_walk()
+        self.live, self.placing, self.bound = self.walk.plan, self.walk.placing, 0
+        self.gait, pendulum = self.live.gait, self.walk.pendulum
+        shift = self.gait.clock.shift
+        pendulum.x = pendulum.zmp_x = shift.zmp_x
+        pendulum.y = pendulum.zmp_y = shift.zmp_y
+
+    def steer(self, velocity):
+        walk, robot = self.walk, self.model.robot
+        walk.steering.command.velocity = velocity
+        follow_command(walk.steering, 1.0, True, True, robot)
+
+    def tick(self, velocity, error=NONE):
+        walk, gait, model = self.walk, self.gait, self.model
+        robot, steering = model.robot, walk.steering
+        remember(walk)
+        self.steer(velocity)
+        timing = walk.admission.between
+        use_next_timing(timing, steering, gait.clock.timing, gait.stepping)
+        retime(gait, timing, robot)
+        if not gait.stepping and moves(steering):
+            start(gait, 0, False, robot)
+        set_wanted_strides(steering, STILL, robot)
+        loading = support_foot(gait)
+        unloading = swing_foot(gait) if is_double(gait) else loading
+        margin = robot.pattern.sole_margin
+        region = support_region(robot.support, unloading, loading, margin)
+        walk.error.dcm_x, walk.error.dcm_y = error
+        self.bound = place_foot(walk, region, robot)
+        advance_pendulum(walk, region, robot)
+        advance(self.live, walk.limbs.feet, robot)
+        end_capture(walk)
+
+    def to_swing(self, velocity, phase=0.3):
+        """Walk until a foot swings, some footsteps on."""
+        for _ in range(500):
+            self.tick(velocity)
+            if self.gait.completed == 4 and phase_of(self.gait).swing > phase:
+                return self
+        raise AssertionError("no footsteps")
+
+    @property
+    def moved(self):
+        return float(self.placing.moved_x), float(self.placing.moved_y)
+
+
+@pytest.fixture(scope="module")
+def models(make_model):
+    return {name: make_model(name) for name in GENERATORS}
+
+
+@pytest.mark.parametrize("generator", GENERATORS)
+def test_a_steady_undisturbed_walk_follows_the_wanted_strides(models, make_walk, generator):
+    walk, velocity = Walk(models[generator], make_walk), (0.2, 0.03, 0.2)
+    walk.to_swing(velocity)
+    for _ in range(200):
+        walk.tick(velocity)
+        assert walk.bound == 0
+        assert walk.moved == NONE
+        assert walk.placing.applied.item() == velocity
+        assert walk.walk.admission.fraction == 1.0
+
+
+@pytest.mark.parametrize("generator", GENERATORS)
+@pytest.mark.parametrize(
+    ("error", "axis"), [((0.025, 0.0), 0), ((-0.025, 0.0), 0), ((0.0, 0.02), 1)]
+)
+def test_a_capture_step_follows_the_error_and_reports_balance(
+    models, make_walk, generator, error, axis
+):
+    walk, velocity = Walk(models[generator], make_walk), (0.1, 0.0, 0.0)
+    walk.to_swing(velocity)
+    if swing_of(walk.gait) == 1:
+        error = error[0], -error[1]  # to the side of the swing foot
+    walk.tick(velocity, error)
+    assert walk.moved[axis] * error[axis] > 0.0
+    assert abs(walk.moved[axis]) > abs(error[axis])
+    assert walk.bound & BALANCE
+    robot = walk.model.robot
+    landing = foothold(walk.gait.landing)
+    within = reachable(support_foot(walk.gait), landing, 0.0, 0.0, robot)
+    assert is_same(within, landing, robot)
+
+
+@pytest.mark.parametrize("generator", GENERATORS)
+def test_errors_within_the_dead_zone_move_no_landing(models, make_walk, generator):
+    walk, velocity = Walk(models[generator], make_walk), (0.1, 0.0, 0.0)
+    walk.to_swing(velocity)
+    walk.tick(velocity, (0.005, 0.003))
+    assert walk.moved == NONE
+    assert not walk.bound & BALANCE
+
+
+def test_during_a_capture_step_the_plan_goes_on_without_the_body_until_touchdown(models, make_walk):
+    walk, velocity = Walk(models["mwpg"], make_walk), (0.1, 0.0, 0.0)
+    alone = Walk(models["mwpg"], make_walk)
+    walk.to_swing(velocity)
+    alone.to_swing(velocity)
+    walk.tick(velocity, (0.02, 0.0))
+    alone.tick(velocity)
+    assert walk.walk.off_plan
+    assert walk.walk.planned.item() == alone.walk.pendulum.item()
+    assert walk.walk.pendulum.item() != alone.walk.pendulum.item()
+    while not is_double(walk.gait):
+        walk.tick(velocity)
+    assert not walk.walk.off_plan

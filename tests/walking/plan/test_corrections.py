@@ -1,0 +1,211 @@
+"""Slow corrections of a body that slips, is off balance, or whose centre of mass differs."""
+
+from itertools import pairwise
+from math import cos, exp, pi, sin
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from walking.constants import parameters_record
+from walking.data import Corrections
+from walking.parameters import CONTROL_PERIOD, StabilizerParameters, WalkingParameters
+from walking.plan.corrections import (
+    correct_offset,
+    cycle_begins,
+    detects_touchdown,
+    discard_offset_cycle,
+    heading_rate,
+    restart_cycle,
+    speed_correction,
+    speed_ratio,
+)
+
+LIMITS = StabilizerParameters()
+PARAMETERS = parameters_record(WalkingParameters())[0]
+CYCLE = 136  # control ticks of two footsteps
+slips, offs = st.floats(-0.015, 0.015), st.floats(-0.012, 0.012)
+
+
+def corrections():
+    record = np.zeros(1, Corrections)[0]
+    restart_cycle(record)
+    return record
+
+
+@pytest.mark.parametrize("first", [0, 1])
+def test_a_cycle_begins_with_every_second_footstep(first):
+    record, feet = corrections(), [foot for foot in (first, 1 - first) * 3 for _ in range(10)]
+    begun = [tick for tick, foot in enumerate(feet) if cycle_begins(record, foot)]
+    assert begun == [0, 20, 40]
+
+
+def test_after_a_rest_the_other_foot_may_be_the_first():
+    record = corrections()
+    assert cycle_begins(record, 0)
+    assert not cycle_begins(record, 1)
+    restart_cycle(record)
+    assert cycle_begins(record, 1)
+
+
+def turn(record, ahead, *, renew):
+    return heading_rate(record, ahead, renew, PARAMETERS)
+
+
+def test_a_slip_of_the_body_is_turned_back():
+    record, plan, body = corrections(), 0.4, 0.3
+    record.held = plan - body
+    body -= 0.05
+    for tick in range(1000):
+        turned = turn(record, plan - body, renew=tick % CYCLE == 0) * CONTROL_PERIOD
+        plan, body = plan + turned, body + turned
+    assert body == pytest.approx(0.3, abs=1e-3)
+
+
+def test_a_steady_slip_is_held_although_one_footstep_turns_for_two_and_the_body_sways():
+    """The opening foot turns by the rate of that moment for both footsteps."""
+    record, plan, slip, settled = corrections(), 0.0, 0.0, []
+    for tick in range(30 * CYCLE):
+        slip -= 0.05 * CONTROL_PERIOD
+        phase = tick % CYCLE
+        sway = 0.02 * sin(2.0 * pi * phase / CYCLE)
+        rate = turn(record, sway - slip, renew=phase == 0)
+        if phase == CYCLE // 4:
+            plan += CYCLE * CONTROL_PERIOD * rate
+        if phase == CYCLE - 1:
+            settled.append(plan + slip)
+    assert settled[-1] == pytest.approx(settled[-6], abs=1e-5)
+
+
+def test_the_yaw_rate_is_constant_over_a_cycle_and_limited():
+    record = corrections()
+    rates = [turn(record, 1e-4 * k, renew=k % CYCLE == 0) for k in range(2 * CYCLE)]
+    assert len(set(rates[:CYCLE])) == len(set(rates[CYCLE:])) == 1
+    assert rates[0] != rates[-1]
+    assert turn(corrections(), 2.0, renew=True) == LIMITS.max_heading_rate
+    assert turn(corrections(), -2.0, renew=True) == -LIMITS.max_heading_rate
+
+
+def walk(velocity, slip, *, cycles=25, disturbed=lambda tick: False, record=None, sway=0.0):
+    """Corrections tick by tick of a body on an arc, faster by `slip` than commanded.
+
+    Its heading sways by `sway` [rad] within a cycle.
+    """
+    record = corrections() if record is None else record
+    x = y = 0.0
+
+    def heading(tick):
+        return velocity[2] * tick * CONTROL_PERIOD + sway * cos(2.0 * pi * tick / CYCLE)
+
+    result = []
+    for tick in range(cycles * CYCLE):
+        pose, begins = (x, y, heading(tick)), tick % CYCLE == 0
+        forward, left = speed_correction(
+            record, pose, velocity, begins, disturbed(tick), PARAMETERS
+        )
+        result.append((forward, left))
+        middle = 0.5 * (heading(tick) + heading(tick + 1))
+        vx, vy = velocity[0] + slip[0] + forward, velocity[1] + slip[1] + left
+        x += CONTROL_PERIOD * (cos(middle) * vx - sin(middle) * vy)
+        y += CONTROL_PERIOD * (sin(middle) * vx + cos(middle) * vy)
+    return result
+
+
+@settings(max_examples=20)
+@given(st.floats(-0.4, 0.4), st.floats(-0.15, 0.15), st.floats(-1.5, 1.5), slips, slips)
+def test_a_steady_walk_on_any_arc_gets_its_velocity(vx, vy, wz, ahead, aside):
+    result = walk((vx, vy, wz), (ahead, aside))
+    assert result[-1] == pytest.approx((-ahead, -aside), abs=1e-4)
+
+
+@settings(max_examples=20)
+@given(st.floats(-0.4, 0.4), st.floats(-1.5, 1.5), st.floats(-0.2, 0.2))
+def test_sway_of_the_heading_is_not_an_error(forward, turn, sway):
+    result = walk((forward, 0.0, turn), (0.0, 0.0), cycles=4, sway=sway)
+    assert result[-1] == pytest.approx((0.0, 0.0), abs=1e-9)
+
+
+def test_the_speed_is_corrected_only_in_a_steady_undisturbed_walk():
+    assert set(walk((0.2, 0.0, 0.0), (0.01, 0.0), cycles=1)) == {(0.0, 0.0)}
+    record = corrections()
+    walk((0.2, 0.0, 0.0), (0.01, 0.0), record=record)
+    other = speed_correction(record, (0.0, 0.0, 0.0), (0.3, 0.0, 0.0), False, False, PARAMETERS)
+    assert other == (0.0, 0.0)
+    balancing = walk((0.2, 0.0, 0.0), (0.1, 0.0), disturbed=lambda tick: tick % CYCLE == CYCLE // 2)
+    assert set(balancing) == {(0.0, 0.0)}
+
+
+def test_the_speed_correction_is_limited_and_mirrored():
+    one = walk((0.2, 0.05, 0.4), (-0.1, 0.1))
+    other = walk((0.2, -0.05, -0.4), (-0.1, -0.1))
+    limit = LIMITS.max_speed_correction
+    assert one[-1] == pytest.approx((limit, -limit))
+    assert other == [(x, pytest.approx(-y, abs=1e-12)) for x, y in one]
+
+
+def offsets(off, *, cycles=30, sway=0.02, disturbed=lambda tick: False):
+    """CoM offsets tick by tick; the centre of pressure sways about the mass centre."""
+    record, result = corrections(), []
+    for tick in range(cycles * CYCLE):
+        swayed = sway * sin(2.0 * pi * tick / CYCLE)
+        x, y = record.com_offset.tolist()
+        error = off[0] + x + swayed, off[1] + y - swayed
+        correct_offset(record, error, tick % CYCLE == 0, disturbed(tick), PARAMETERS)
+        result.append(tuple(record.com_offset.tolist()))
+    return result
+
+
+@settings(max_examples=20)
+@given(offs, offs)
+def test_the_mean_centre_of_pressure_is_moved_under_the_plan(ahead, aside):
+    assert offsets((ahead, aside))[-1] == pytest.approx((-ahead, -aside), abs=2e-4)
+
+
+def test_the_offset_moves_slowly_and_within_its_limit():
+    result = offsets((-0.1, 0.1))
+    assert result[-1] == pytest.approx((LIMITS.max_com_offset, -LIMITS.max_com_offset))
+    fastest = max(abs(b[0] - a[0]) for a, b in pairwise(result))
+    assert fastest <= LIMITS.max_com_offset_rate * CONTROL_PERIOD + 1e-12
+
+
+def test_footsteps_that_balance_do_not_change_the_offset():
+    assert set(offsets((0.01, 0.0), disturbed=lambda tick: tick % CYCLE == 7)) == {(0.0, 0.0)}
+
+
+def test_the_offset_outlasts_a_rest():
+    record = corrections()
+    for tick in range(4 * CYCLE):
+        correct_offset(record, (0.01, 0.0), tick % CYCLE == 0, False, PARAMETERS)
+    before = float(record.com_offset[0])
+    assert before < 0.0
+    discard_offset_cycle(record)
+    correct_offset(record, (-0.3, 0.0), False, False, PARAMETERS)
+    assert record.com_offset[0] <= before
+
+
+def test_errors_of_an_even_floor_slow_nothing():
+    record, start = corrections(), LIMITS.slowdown_start_error
+    assert {speed_ratio(record, start * k / 10, PARAMETERS) for k in range(11)} == {1.0}
+
+
+def test_the_speed_ratio_falls_with_the_error_to_its_minimum():
+    ratios = [speed_ratio(corrections(), 0.001 * k, PARAMETERS) for k in range(100)]
+    assert ratios == sorted(ratios, reverse=True)
+    assert ratios[-1] == pytest.approx(LIMITS.min_speed_ratio)
+
+
+def test_the_maximum_error_decays_with_its_time_constant():
+    record, error = corrections(), 0.03
+    speed_ratio(record, error, PARAMETERS)
+    for _ in range(round(0.5 / CONTROL_PERIOD)):
+        ratio = speed_ratio(record, 0.0, PARAMETERS)
+    left = error * exp(-0.5 / LIMITS.slowdown_time)
+    assert ratio == pytest.approx(speed_ratio(corrections(), left, PARAMETERS))
+
+
+def test_a_touchdown_needs_the_phase_the_force_and_the_duration():
+    record = corrections()
+    ticks = ((0.3, 50.0), (0.7, 50.0), (0.72, 50.0), (0.74, 1.0), (0.76, 50.0))
+    found = [detects_touchdown(record, phase, force, PARAMETERS) for phase, force in ticks]
+    assert found == [False, False, True, False, False]

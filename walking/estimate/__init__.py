@@ -1,0 +1,1 @@
+"""State estimation: measured body, its error against the plan, dead reckoning."""

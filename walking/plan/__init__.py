@@ -1,0 +1,1 @@
+"""Plan of the walk: steering, footsteps, gait, ZMP reference, pendulum and balance."""

@@ -1,0 +1,268 @@
+"""Balance: ankle strategy, and foot placement by plan or by capture step.
+
+The DCM error grows by e^{ωt} until touchdown; a landing shifted by as much is at the capture point
+(Pratt et al., Humanoids 2006). The ankles shift the ZMP within the sole; a capture step is made for
+the error beyond their dead zone.
+"""
+
+from math import exp, log
+from typing import NamedTuple
+
+from compilation import compiled
+from walking.command import BALANCE, LANDING_FROZEN, LANDING_SPEED, ZMP_REGION
+from walking.data import Body, Data
+from walking.model import Model
+from walking.parameters import CONTROL_PERIOD
+from walking.plan.departure import return_to_plan
+from walking.plan.footsteps import (
+    Foothold,
+    equal,
+    equal_strides,
+    foothold,
+    is_same,
+    landing_of,
+    put,
+    reachable,
+)
+from walking.plan.gait import aimed, is_adjustable, is_double, phase_of, shorten, support_foot
+from walking.plan.generator import admit, keeps_plan, planned_dcm
+from walking.plan.pendulum import dcm_of
+from walking.plan.reference import plan_walk
+from walking.plan.steering import moves
+from walking.plan.support import Region, clip
+from walking.plan.timing import equal_clocks
+from walking.plane import Point, clamp, dead_zone, norm, rotate, rotate_back
+
+ROUNDING = 1e-6  # rounding error of a time in control ticks [1]
+
+
+def ankle_gain(omega: float, lag: float, rate: float) -> float:
+    """Return the gain from DCM error to ZMP for an error that decays with e^{-rate t} [1].
+
+    The error follows ξ' = ω (ξ - p), the ZMP follows the ankle setpoints u with the servo lag,
+    p' = (u - p) / T (Morisawa et al., Humanoids 2014). The poles of u = k ξ sum to ω - 1/T for any
+    gain; one is placed at `-rate`. Without lag the gain is the usual 1 + rate / ω.
+
+    Args:
+        omega: ω of the pendulum [1/s].
+        lag: T of the servos [s].
+        rate: wanted rate [1/s]; with a servo too slow for it, both poles are placed at their mean.
+    """
+    if lag > 0.0:
+        rate = min(rate, max(0.0, 0.5 * (1.0 / lag - omega)))
+    return (1.0 + rate / omega) * (1.0 - lag * rate)
+
+
+@compiled
+def is_fallen(body: Body, robot: Model) -> bool:
+    """Whether the tilt of the trunk is that of a fallen robot."""
+    return norm(body.roll, body.pitch) > robot.estimator.fall_tilt
+
+
+# Ankles
+
+
+@compiled
+def zmp_shift(zmp: Point, error: Point, region: Region, robot: Model) -> Point:
+    """Return the shift of the ZMP by the ankles against a DCM error [m]."""
+    gain = robot.ankle_gain
+    (zmp_x, zmp_y), (off_x, off_y) = zmp, error
+    x, y = clip(region, zmp_x + gain * off_x, zmp_y + gain * off_y)
+    return x - zmp_x, y - zmp_y
+
+
+@compiled
+def sole_margins(robot: Model) -> Point:
+    """Return the ZMP margins of a sole, forward and lateral [m]."""
+    support, margin = robot.support, robot.stabilizer.sole_margin
+    return support.half_length - margin, support.half_width - margin
+
+
+@compiled
+def exceeds(foot: Foothold, error: Point, ratio: float, robot: Model) -> bool:
+    """Whether a DCM error [m] exceeds a ratio [1] of the ZMP margins of the sole."""
+    length, width = sole_margins(robot)
+    x, y = rotate_back(foot.yaw, error[0], error[1])
+    return abs(x) > ratio * length or abs(y) > ratio * width
+
+
+# Capture step
+
+
+class Capture(NamedTuple):
+    """Capture step.
+
+    Attributes:
+        needed: whether the ankles do not suffice.
+        landing: foothold of the swing foot.
+        ticks: control ticks until touchdown [1].
+    """
+
+    needed: bool
+    landing: Foothold
+    ticks: int
+
+
+@compiled
+def capture_time(omega: float, time: float, off: float, ahead: float, reach: float) -> float:
+    """Return the latest touchdown at which a landing within reach captures the body.
+
+    A DCM `ahead` of the ZMP by plan, with error `off`, is `(ahead + off) e^{ωt}` from the ZMP
+    after a time t, and planned at `ahead e^{ω time}`: linear in e^{ωt}, so the time at which the
+    difference is `reach` has a closed form (Khadiv et al., IEEE Trans. Robot. 36(6), 2020).
+
+    Args:
+        omega: ω of the pendulum [1/s].
+        time: planned touchdown, from now [s].
+        off: DCM error [m].
+        ahead: planned DCM minus ZMP [m].
+        reach: shift of the landing, of the sign of `off` if it helps [m].
+
+    Returns:
+        the time, at most `time`; zero if no touchdown is early enough [s].
+    """
+    growth = exp(omega * time)
+    if growth * abs(off) <= (reach if off > 0.0 else -reach) or off == 0.0:
+        return time
+    due, distance = reach + growth * ahead, off + ahead
+    if due * distance <= 0.0:
+        return 0.0
+    return min(time, max(0.0, log(due / distance) / omega))
+
+
+@compiled
+def capture_step(
+    support: Foothold, landing: Foothold, error: Point, ahead: Point, ticks_left: int, robot: Model
+) -> Capture:
+    """Return the capture step for the DCM error beyond the dead zone of the ankles.
+
+    If the capture point is out of reach, touchdown must be earlier, see `capture_time`.
+
+    Args:
+        support: support foot.
+        landing: nominal landing.
+        error: error of the measured DCM [m].
+        ahead: planned DCM minus ZMP of the support foot [m].
+        ticks_left: control ticks until the end of single support [1].
+        robot: constants.
+    """
+    p, omega, yaw = robot.stabilizer, robot.omega, support.yaw
+    length, width = sole_margins(robot)
+    off_x, off_y = rotate_back(yaw, error[0], error[1])
+    x = dead_zone(off_x, p.capture_dead_zone * length)
+    y = dead_zone(off_y, p.capture_dead_zone * width)
+    planned = ticks_left * CONTROL_PERIOD
+    growth = exp(omega * ticks_left * CONTROL_PERIOD)
+    dx, dy = rotate(yaw, clamp(growth * x, p.capture_forward), clamp(growth * y, p.capture_side))
+    reached = reachable(support, landing, dx, dy, robot)
+    ahead_x, ahead_y = rotate_back(yaw, ahead[0], ahead[1])
+    reach_x, reach_y = rotate_back(yaw, reached.x - landing.x, reached.y - landing.y)
+    missing_x, missing_y = dead_zone(off_x, length), dead_zone(off_y, width)
+    time = min(planned, capture_time(omega, planned, missing_x, ahead_x, reach_x))
+    time = min(time, capture_time(omega, planned, missing_y, ahead_y, reach_y))
+    return Capture(True, reached, int(time / CONTROL_PERIOD + ROUNDING))
+
+
+@compiled
+def _needed_capture(walk: Data, landing: Foothold, robot: Model) -> Capture:
+    """Return the capture step for the measured DCM."""
+    gait, error, ramp = walk.plan.gait, walk.error, walk.plan.ramps[0]
+    support, (x, y) = support_foot(gait), planned_dcm(walk, robot)
+    body_x, body_y = dcm_of(walk.pendulum, robot)
+    off = (body_x + error.dcm_x - x, body_y + error.dcm_y - y)
+    if not exceeds(support, off, robot.stabilizer.capture_dead_zone, robot):
+        return Capture(False, landing, 0)
+    ahead = (x - ramp.bx, y - ramp.by)
+    return capture_step(support, landing, off, ahead, phase_of(gait).ticks_left, robot)
+
+
+# Foot placement
+
+
+@compiled
+def place_foot(walk: Data, region: Region, robot: Model) -> int:
+    """Choose landing and timing of the swing foot in this tick: the plan in force.
+
+    Args:
+        walk: state, changed.
+        region: admissible ZMP in this tick.
+        robot: constants.
+
+    Returns:
+        limits that bind.
+    """
+    placing, gait, wanted = walk.placing, walk.plan.gait, walk.steering.wanted
+    adjustable = is_adjustable(gait, robot)
+    placing.moved_x = placing.moved_y = 0.0
+    landing = admit(walk, region, robot)
+    bound = _apply_velocity(walk, robot)
+    if adjustable:
+        return bound | _capture(walk, landing, bound != 0, robot)
+    if gait.stepping:
+        nominal = landing_of(support_foot(gait), wanted)
+        if not is_same(nominal, foothold(gait.landing), robot):
+            bound |= LANDING_FROZEN
+    return bound
+
+
+@compiled
+def _apply_velocity(walk: Data, robot: Model) -> int:
+    """Set the velocity that the footsteps follow: as far as the wanted plan is admitted."""
+    applied, wanted, fraction = (
+        walk.placing.applied,
+        walk.steering.velocity,
+        walk.admission.fraction,
+    )
+    if fraction == 1.0:
+        walk.placing.applied = wanted
+        return 0
+    applied.vx += fraction * (wanted.vx - applied.vx)
+    applied.vy += fraction * (wanted.vy - applied.vy)
+    applied.wz += fraction * (wanted.wz - applied.wz)
+    return ZMP_REGION if _differs(walk, robot) else 0
+
+
+@compiled
+def _differs(walk: Data, robot: Model) -> bool:
+    """Whether the admitted plan differs from the wanted one."""
+    live, wanted = walk.plan, walk.admission.wanted
+    retimed = not equal_clocks(live.gait.clock, wanted.gait.clock)
+    if retimed or live.moving != wanted.moving:
+        return True
+    if not equal_strides(live.following, wanted.following):
+        return True
+    nominal = landing_of(support_foot(live.gait), walk.steering.wanted)
+    adjustable = is_adjustable(live.gait, robot)
+    return adjustable and not is_same(nominal, foothold(live.landing), robot)
+
+
+@compiled
+def _capture(walk: Data, landing: Foothold, limited: bool, robot: Model) -> int:
+    """Aim at the landing of a capture step if one is needed; return the limits that bind.
+
+    Args:
+        walk: state, changed.
+        landing: landing of the plan.
+        limited: whether the generator limits this plan.
+        robot: constants.
+    """
+    placing, plan, steering, goal = walk.placing, walk.plan, walk.steering, landing
+    gait = plan.gait
+    capture = _needed_capture(walk, landing, robot)
+    if capture.needed and shorten(gait, walk.limbs.feet, capture.ticks, capture.landing, robot):
+        # The timing has changed: plan again.
+        return_to_plan(walk)
+        plan_walk(plan, landing, steering.wanted, moves(steering), robot)
+        capture = _needed_capture(walk, landing, robot)
+    if capture.needed and not is_double(gait):
+        goal = capture.landing
+        placing.moved_x, placing.moved_y = goal.x - landing.x, goal.y - landing.y
+    put(gait.landing, aimed(gait, foothold(gait.landing), goal, robot))
+    now, nominal = foothold(gait.landing), landing_of(support_foot(gait), steering.wanted)
+    if not keeps_plan(gait, robot) and not equal(now, landing):
+        plan_walk(plan, now, steering.wanted, moves(steering), robot)
+    if gait.shortened or not is_same(goal, landing, robot):
+        return BALANCE
+    if not limited and not is_same(nominal, now, robot):
+        return LANDING_SPEED
+    return 0

@@ -1,0 +1,184 @@
+"""Slow corrections of the walk, once per gait cycle, and detection of a touchdown.
+
+A gait cycle is two footsteps, one with each foot. A sideways walk or a turn opens the stance with
+one foot and closes it with the other one; only the mean over both is the commanded velocity.
+"""
+
+from math import cos, exp, sin
+
+from compilation import compiled
+from walking.data import Corrections
+from walking.model import Model
+from walking.parameters import CONTROL_PERIOD
+from walking.plane import Point, Vector, clamp, within
+
+NO_FOOT = -1
+
+
+@compiled
+def restart_cycle(corrections: Corrections) -> None:
+    """Restart the gait cycle with the next support foot."""
+    corrections.first = corrections.support = NO_FOOT
+
+
+@compiled
+def cycle_begins(corrections: Corrections, support: int) -> bool:
+    """Whether a cycle begins in this tick with support foot `support`."""
+    if corrections.first == NO_FOOT:
+        corrections.first = support
+    begins: bool = support == corrections.first and support != corrections.support
+    corrections.support = support
+    return begins
+
+
+@compiled
+def speed_ratio(corrections: Corrections, error: float, robot: Model) -> float:
+    """Return the speed ratio [1]: slowdown by the decaying maximum of the DCM error [m]."""
+    p = robot.stabilizer
+    decay = exp(-CONTROL_PERIOD / p.slowdown_time)
+    corrections.max_error = max(error, decay * corrections.max_error)
+    if corrections.max_error <= p.slowdown_start_error:
+        return 1.0
+    error_range = p.slowdown_full_error - p.slowdown_start_error
+    excess = (corrections.max_error - p.slowdown_start_error) / error_range
+    ratio: float = 1.0 - (1.0 - p.min_speed_ratio) * within(excess, 0.0, 1.0)
+    return ratio
+
+
+@compiled
+def heading_rate(corrections: Corrections, ahead: float, renew: bool, robot: Model) -> float:
+    """Return the yaw rate against yaw slip of the feet [rad/s].
+
+    Proportional feedback of the heading error, constant over a gait cycle: one footstep of a cycle
+    makes the turn of both.
+
+    Args:
+        corrections: changed.
+        ahead: planned minus measured heading [rad].
+        renew: whether to update the rate: at the begin of a gait cycle, and in every tick while
+            balance changes the footsteps.
+        robot: constants.
+    """
+    if renew:
+        p = robot.stabilizer
+        corrections.turn = clamp(p.heading_gain * (ahead - corrections.held), p.max_heading_rate)
+    corrections.held += corrections.turn * CONTROL_PERIOD
+    rate: float = corrections.turn
+    return rate
+
+
+@compiled
+def reset_speed(corrections: Corrections) -> None:
+    """Discard the correction of the speed."""
+    corrections.steady = corrections.posed = corrections.whole = False
+    corrections.speed.x = corrections.speed.y = 0.0
+
+
+@compiled
+def speed_correction(
+    corrections: Corrections,
+    pose: Vector,
+    velocity: Vector,
+    begins: bool,
+    disturbed: bool,
+    robot: Model,
+) -> Point:
+    """Return the correction of (vx, vy) [m/s, m/s] against slip and short landings of the feet.
+
+    Integral correction under a steady command, once per gait cycle; zero until the command is
+    steady. Displacements are summed in the present heading: a robot turns in one of two footsteps,
+    so its heading at the begin of a cycle differs from the mean.
+
+    Args:
+        corrections: changed.
+        pose: pose by odometry, heading unwrapped [m, m, rad].
+        velocity: wanted (vx, vy, wz) [m/s, m/s, rad/s].
+        begins: whether a gait cycle begins.
+        disturbed: whether balance changes the footsteps.
+        robot: constants.
+    """
+    c = corrections
+    if not c.steady or velocity != (c.command.vx, c.command.vy, c.command.wz):
+        reset_speed(c)
+        c.steady = True
+        c.command.vx, c.command.vy, c.command.wz = velocity
+    if c.posed:
+        _add_displacement(c, pose)
+    c.posed = True
+    c.pose.x, c.pose.y, c.pose.yaw = pose
+    c.whole = c.whole and not disturbed
+    if begins:
+        if c.whole:
+            p, time = robot.stabilizer, c.ticks * CONTROL_PERIOD
+            vx, vy, _ = velocity
+            x = c.speed.x - p.speed_gain * (c.displacement.x / time - vx)
+            y = c.speed.y - p.speed_gain * (c.displacement.y / time - vy)
+            c.speed.x, c.speed.y = (
+                clamp(x, p.max_speed_correction),
+                clamp(y, p.max_speed_correction),
+            )
+        c.whole, c.ticks = True, 0
+        c.displacement.x = c.displacement.y = 0.0
+    return c.speed.x, c.speed.y
+
+
+@compiled
+def _add_displacement(corrections: Corrections, pose: Vector) -> None:
+    """Add the displacement of a tick in the mean heading."""
+    before, displacement, (x, y, yaw) = corrections.pose, corrections.displacement, pose
+    dx, dy, middle = x - before.x, y - before.y, 0.5 * (before.yaw + yaw)
+    c, s = cos(middle), sin(middle)
+    displacement.x = displacement.x + c * dx + s * dy
+    displacement.y = displacement.y + c * dy - s * dx
+    corrections.ticks += 1
+
+
+@compiled
+def discard_offset_cycle(corrections: Corrections) -> None:
+    """Discard the present cycle of the CoM offset; keep the offset."""
+    corrections.errors = -1
+
+
+@compiled
+def correct_offset(
+    corrections: Corrections, error: Point, begins: bool, disturbed: bool, robot: Model
+) -> None:
+    """Correct the CoM offset from the measured centre of pressure, once per gait cycle.
+
+    Averaged over a gait cycle, the centre of pressure is below the true centre of mass. Within a
+    cycle the ankles and the landing feet move it, hence one update per cycle.
+
+    Args:
+        corrections: changed.
+        error: centre of pressure minus planned ZMP, forward and left [m].
+        begins: whether a gait cycle begins.
+        disturbed: whether balance changes the footsteps.
+        robot: constants.
+    """
+    c, p = corrections, robot.stabilizer
+    if begins:
+        if c.errors > 0:
+            x = c.goal.x - p.com_offset_gain * c.error_sum.x / c.errors
+            y = c.goal.y - p.com_offset_gain * c.error_sum.y / c.errors
+            c.goal.x, c.goal.y = clamp(x, p.max_com_offset), clamp(y, p.max_com_offset)
+        c.error_sum.x = c.error_sum.y = 0.0
+        c.errors = 0
+    if disturbed:
+        discard_offset_cycle(c)
+    elif c.errors >= 0:
+        x, y = error
+        c.error_sum.x, c.error_sum.y = c.error_sum.x + x, c.error_sum.y + y
+        c.errors += 1
+    step = p.max_com_offset_rate * CONTROL_PERIOD
+    c.com_offset.x += clamp(c.goal.x - c.com_offset.x, step)
+    c.com_offset.y += clamp(c.goal.y - c.com_offset.y, step)
+
+
+@compiled
+def detects_touchdown(corrections: Corrections, phase: float, force: float, robot: Model) -> bool:
+    """Whether the swing foot is down, given the phase of its swing [1] and its load [N]."""
+    p = robot.estimator
+    contact = phase >= p.contact_phase and force > p.contact_force
+    corrections.contact = corrections.contact + 1 if contact else 0
+    down: bool = corrections.contact >= p.contact_ticks
+    return down
