@@ -83,7 +83,8 @@ def _walking(robot: LoadedRobot) -> dict[str, Any]:
     fastest = inf if tree.head is None else float(tree.speed[list(tree.head)].min())
     table["head"] = {
         "max_rate": stated.head_rate or min(usual.max_rate, HEAD_USED * fastest),
-        "max_acceleration": stated.head_acceleration or usual.max_acceleration,
+        "max_acceleration": stated.head_acceleration
+        or min(usual.max_acceleration, _rounded(robot.head_acceleration)),
     }
     if stated.calibration is not None:
         table["odometry"] |= {

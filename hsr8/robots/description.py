@@ -24,6 +24,7 @@ from hsr8.mistakes import NAME, NAMES, TABLE, form, mistake_lines
 MODEL_SUFFIXES = (".xml", ".mjcf", ".urdf")
 MIN_SPEED = 0.012
 """Minimum speed of a robot along every axis, for navigation [m/s or rad/s]."""
+MIN_FOV, MAX_FOV = 10.0, 120.0  # vertical field of view of a camera [deg]
 
 
 def _different(names: tuple[str, str]) -> tuple[str, str]:
@@ -90,10 +91,12 @@ class CameraMount(Table):
         doc("Position in the base's directions from the origin of the body, at zero angles [m]."),
     ]
     tilt_deg: Annotated[
-        float,
-        Interval(ge=-90.0, le=90.0),
-        doc("Elevation of the optical axis, upward positive [deg]."),
-    ] = 0.0
+        Annotated[float, Interval(ge=-90.0, le=90.0)] | None,
+        doc(
+            "Elevation of the optical axis, upward positive; default: 0 on a head, else that with "
+            "the upper border of the image 8 deg above the horizon [deg]."
+        ),
+    ] = None
 
 
 class ServoRule(Table):
@@ -180,7 +183,10 @@ class RobotDescription(Table):
     ] = None
     base: Annotated[
         Name | None,
-        doc("Body of the pelvis; default: the body with the free joint, or the root link."),
+        doc(
+            "Body of the pelvis; default: the last body that both legs share, fixed to the one "
+            "with the free joint."
+        ),
     ] = None
     sole: Annotated[
         Sole | None,
@@ -213,13 +219,16 @@ class RobotDescription(Table):
     camera: Annotated[
         Camera | None,
         doc(
-            "Camera of the model, or where to mount one; default: the only camera of a body, or "
-            "in front of the head or the upper trunk."
+            "Camera of the model, or where to mount one; default: in front of the head or of the "
+            "upper trunk."
         ),
     ] = None
     vertical_fov_deg: Annotated[
-        Annotated[float, Interval(ge=10.0, le=120.0)] | None,
-        doc("Vertical field of view of the camera; default: that of the scenario [deg]."),
+        Annotated[float, Interval(ge=MIN_FOV, le=MAX_FOV)] | None,
+        doc(
+            "Vertical field of view of the camera; default: that of the model's camera, else of "
+            "the scenario [deg]."
+        ),
     ] = None
     radius: Annotated[
         Annotated[float, Interval(ge=0.01, le=2.0)] | None,
@@ -267,7 +276,11 @@ class RobotDescription(Table):
         doc("Maximum rate of the head joints; default: from their speed limits [rad/s]."),
     ] = None
     head_acceleration: Annotated[
-        Rate | None, doc("Maximum angular acceleration of the head joints [rad/s²].")
+        Rate | None,
+        doc(
+            "Maximum angular acceleration of the head joints; default: from torque and inertia, "
+            "at most that of HSR-VIII [rad/s²]."
+        ),
     ] = None
     about: Annotated[About | None, doc("Facts of a shipped robot.")] = None
     calibration: Annotated[

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from hsr8.errors import ModelError
-from hsr8.robots.description import TRUNK, RobotDescription, read_description
+from hsr8.robots.description import MAX_FOV, MIN_FOV, TRUNK, RobotDescription, read_description
 from hsr8.robots.files import package_folders, reading_models, stamp_of
 from hsr8.robots.key_mistake import KeyMistake, at_least, joint_error, reading_keys
 from hsr8.robots.linkage import drive_serially
@@ -38,6 +38,7 @@ PRECISION = 1e-9  # of masses [kg] and places [m] in the normal form
 HEAVY = 0.8  # torque on one leg that is worth a note, of its maximum [1]
 STANDING = 1e-9  # maximum error of the legs in the ready posture [rad]
 SLACK = 1e-6  # of joint limits [rad]
+HEAD_TORQUE = 0.5  # of a head joint that accelerates it; gravity and damping need the rest [1]
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -57,6 +58,8 @@ class LoadedRobot:
         radius: radius of the walking robot seen from above [m].
         held: angles of the joints that walking does not move [rad].
         height: height of the base above the floor in the ready posture [m].
+        head_acceleration: angular acceleration that the head joints can hold; infinite without a
+            head or its torque limits [rad/s²].
         notes: derived facts, a line each.
     """
 
@@ -72,6 +75,7 @@ class LoadedRobot:
     radius: float
     held: dict[str, float]
     height: float
+    head_acceleration: float
     notes: tuple[str, ...]
 
     def body_names(self) -> list[str]:
@@ -214,7 +218,8 @@ def _built(description: RobotDescription, file: Path, raw: RawRobot) -> LoadedRo
         model, description, {**raw.posture, **description.posture}, roles
     )
     notes = [*raw.notes, *base_note(roles, prepared), *notes]
-    description = description.model_copy(update={"posture": completed})
+    optics = _optics(model, description)
+    description = description.model_copy(update={"posture": completed, **optics})
     ranges, mirror_notes = check_roles(model, roles, description, prepared, source)
     _set_ranges(spec, ranges)
     straight = present(model, description.zero)
@@ -260,6 +265,7 @@ def _built(description: RobotDescription, file: Path, raw: RawRobot) -> LoadedRo
         radius=description.radius or robot_radius(standing),
         held=held,
         height=base,
+        head_acceleration=_head_acceleration(standing, robot),
         notes=(
             *notes,
             *mirror_notes,
@@ -270,6 +276,34 @@ def _built(description: RobotDescription, file: Path, raw: RawRobot) -> LoadedRo
             *walk_notes,
         ),
     )
+
+
+def _optics(model: mujoco.MjModel, description: RobotDescription) -> dict[str, float]:
+    """Return the field of view of a camera that the model names, if none is stated [deg].
+
+    Raises:
+        KeyMistake: the simulator has no such lens.
+    """
+    name = description.camera
+    if not isinstance(name, str) or description.vertical_fov_deg is not None:
+        return {}
+    fov = float(model.cam_fovy[model.camera(name).id])
+    if not MIN_FOV <= fov <= MAX_FOV:
+        raise KeyMistake(
+            f"camera: {name!r}: fovy, got {fov:g} deg; expected {MIN_FOV:g} to {MAX_FOV:g}: state "
+            "vertical_fov_deg"
+        )
+    return {"vertical_fov_deg": fov}
+
+
+def _head_acceleration(standing: Posed, robot: RobotModel) -> float:
+    """Return the angular acceleration of the weaker head joint by torque over inertia [rad/s²]."""
+    model, tree = standing.model, robot.tree
+    matrix = np.zeros((model.nv, model.nv))
+    mujoco.mj_fullM(model, standing.data, matrix)
+    dofs = [int(model.joint(tree.names[k]).dofadr[0]) for k in tree.head or ()]
+    inertias, torques = matrix[dofs, dofs], tree.effort[list(tree.head or ())]
+    return float((HEAD_TORQUE * torques / inertias).min(initial=np.inf))
 
 
 def _fitted(

@@ -17,6 +17,7 @@ from hsr8.robots.description import CameraMount, RobotDescription
 from hsr8.robots.files import models_dir
 from hsr8.robots.prepare import Prepared
 from hsr8.robots.roles import Roles, pose_of
+from hsr8.robots.scale import DEFAULT_FOV_DEG
 from hsr8.robots.servos import physics_step
 from hsr8.robots.skeleton import BaseFrame, Posed, quaternion_of
 from hsr8.robots.soles import Rectangle
@@ -45,7 +46,8 @@ OPTIONS = (
     *("gravity", "wind", "magnetic", "density", "viscosity", "impratio", "iterations"),
     *("ls_iterations", "noslip_iterations", "tolerance", "disableflags", "enableflags"),
 )
-UPPER, FIXED_TILT = 0.9, -28.6  # height of a camera on the trunk [1], and its tilt [deg]
+UPPER, MIDDLE = 0.9, 0.5  # height of a camera on the trunk, and on the head [1]
+SKY = 8.0  # of the image of a fixed camera above the horizon, where beacons are [deg]
 # Bits of contacts: 1 floor and soles, 2 obstacles hit the robot, the rest as in the file.
 SOLE_BIT, BODY_BIT, SHIFT = 1, 2, 2
 CONTACT = {
@@ -302,30 +304,40 @@ def _camera_pose(
         rotation = data.cam_xmat[camera].reshape(3, 3) * (1.0, -1.0, -1.0)
         return (body, data.cam_xpos[camera].copy(), rotation), f"camera {stated!r} on {body!r}"
     mount = stated or _default_mount(zero, roles)
-    tilt = radians(mount.tilt_deg)
+    tilt_deg = mount.tilt_deg
+    if tilt_deg is None:
+        tilt_deg = 0.0 if roles.head is not None else fixed_tilt(description.vertical_fov_deg)
+    tilt = radians(tilt_deg)
     forward = np.array([np.cos(tilt), 0.0, np.sin(tilt)])
     right = np.array([0.0, -1.0, 0.0])
     rotation = np.column_stack([right, np.cross(forward, right), forward])
     position = pose_of(zero, prepared, mount.body)[1] + mount.position
-    note = (
-        f"camera on {mount.body!r}, {position[2]:.2f} m above the base, tilt {mount.tilt_deg:g} deg"
-    )
+    note = f"camera on {mount.body!r}, {position[2]:.2f} m above the base, tilt {tilt_deg:g} deg"
     return (prepared.where(mount.body).body, position, rotation), note
 
 
 def _default_mount(zero: Posed, roles: Roles) -> CameraMount:
-    """Return a mount on the front of the head, or of the upper trunk and looking down."""
+    """Return a mount on the front of the head, or of the upper trunk."""
     model, data = zero.model, zero.data
     if roles.head is not None:
         body = max(int(model.joint(name).bodyid[0]) for name in roles.head)  # the outer one
-        height, tilt = 0.5, 0.0
+        height = MIDDLE
     else:
-        body, height, tilt = model.body(roles.trunk).id, UPPER, FIXED_TILT
+        body, height = model.body(roles.trunk).id, UPPER
     low, high = _extent(zero, body)
     origin = data.xpos[body]
     x, z = high[0], low[2] + height * (high[2] - low[2])
     position = (float(x - origin[0]), float(-origin[1]), float(z - origin[2]))
-    return CameraMount(body=model.body(body).name, position=position, tilt_deg=tilt)
+    return CameraMount(body=model.body(body).name, position=position)
+
+
+def fixed_tilt(vertical_fov_deg: float | None) -> float:
+    """Return the tilt of a camera without a neck, which shows the floor and the beacons [deg].
+
+    Args:
+        vertical_fov_deg: vertical field of view; that of the default camera if None [deg].
+    """
+    return round(SKY - 0.5 * (vertical_fov_deg or DEFAULT_FOV_DEG), 2)
 
 
 def _extent(zero: Posed, body: int) -> tuple[Array, Array]:
