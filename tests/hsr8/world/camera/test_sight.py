@@ -11,8 +11,8 @@ from hsr8.robots.loaded import load_robot
 from hsr8.robots.normal_form import HEAD_CAMERA
 from hsr8.scenario.loader import load_scenario
 from hsr8.world.body.kinematic import KinematicBody
-from hsr8.world.camera.rendered import RenderedCamera
 from hsr8.world.camera.analytic import project
+from hsr8.world.camera.rendered import RenderedCamera
 from hsr8.world.field.layout import Beacon, Obstacle
 from navigation.belief.visibility import Viewpoint, clear_points
 from navigation.observation import CameraModel, CameraView
