@@ -20,6 +20,7 @@ from hsr8.errors import ModelError
 from hsr8.files.regular import read_text
 from hsr8.files.toml import TomlError, parse_toml
 from hsr8.mistakes import NAME, NAMES, TABLE, form, mistake_lines
+from walking.parameters import LimitParameters
 
 MODEL_SUFFIXES = (".xml", ".mjcf", ".urdf")
 MIN_SPEED = 0.012
@@ -50,6 +51,8 @@ Limits = Annotated[tuple[Angle, Angle], AfterValidator(_rising)]
 Rate = Annotated[float, Interval(ge=0.01, le=1e4)]
 Speed = Annotated[float, Interval(ge=MIN_SPEED, le=50.0)]
 Sigma = Annotated[float, Interval(ge=0.0, le=1.0)]
+
+COMBINED = LimitParameters().combined
 
 TRUNK = "trunk"
 """Name, for any robot, of the body that carries its arms or head, else of its base."""
@@ -136,6 +139,11 @@ class SpeedEnvelope(Table):
     vx_backward: Annotated[Speed, doc("Backward [m/s].")]
     vy: Annotated[Speed, doc("Sideways [m/s].")]
     wz: Annotated[Speed, doc("Turn rate [rad/s].")]
+    combined: Annotated[
+        float,
+        Interval(ge=1.0, le=2.0),
+        doc("Norm of the velocity relative to the other limits [1]."),
+    ] = COMBINED
 
 
 class Calibration(Table):
