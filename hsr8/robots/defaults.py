@@ -1,20 +1,18 @@
 """Defaults of a scenario that follow from its robot."""
 
 from dataclasses import asdict
-from math import inf, pi
+from math import pi
 from typing import Any
 
 from hsr8.robots.loaded import LoadedRobot, load_robot
 from hsr8.robots.scale import DEFAULT_ROBOT, RobotDefaults, RobotScale
 from walking.dimension import HSR_VIII
-from walking.parameters import WalkingParameters
 
 SPEED = {"vx": 0.20, "vx_backward": 0.10, "vy": 0.08, "wz": 0.8}
 """Speed limits of HSR-VIII in navigation [m/s, rad/s]."""
 ACCELERATION = 0.3
 """Acceleration of HSR-VIII in navigation [m/s²]."""
 USED = 0.9  # fraction of the speed envelope for navigation [1]
-HEAD_USED = 0.8  # fraction of the speed of the head joints [1]
 FIXED_PAN = 0.01  # smallest range of the gaze that its map admits [rad]
 BODY_PAN = 1.0  # turn of a body with a fixed camera from its course [rad]
 HEAD_RANGE = 0.02  # of pan and tilt that the gaze leaves free at both ends [rad]
@@ -46,8 +44,8 @@ def defaults_of(model: str) -> RobotDefaults:
     if calibration is not None:
         pose = ("tilt_sigma", "roll_sigma", "yaw_sigma", "height_sigma")
         table["vision"] = {"pose": {key: getattr(calibration, key) for key in pose}}
-    if robot.description.vertical_fov_deg is not None:
-        table["camera"] = {"vertical_fov_deg": robot.description.vertical_fov_deg}
+    if robot.fov_deg is not None:
+        table["camera"] = {"vertical_fov_deg": robot.fov_deg}
     return RobotDefaults(scale, table)
 
 
@@ -76,19 +74,12 @@ def _acceleration(robot: LoadedRobot) -> float:
 
 
 def _walking(robot: LoadedRobot) -> dict[str, Any]:
-    """Return the parameters of walking, with the rates of the robot's own head."""
-    table = asdict(robot.parameters)
-    tree, stated = robot.model.tree, robot.description
-    usual = WalkingParameters().head
-    fastest = inf if tree.head is None else float(tree.speed[list(tree.head)].min())
-    table["head"] = {
-        "max_rate": stated.head_rate or min(usual.max_rate, HEAD_USED * fastest),
-        "max_acceleration": stated.head_acceleration or usual.max_acceleration,
-    }
-    if stated.calibration is not None:
+    """Return the parameters of walking, with the noise of odometry that is measured."""
+    table, calibration = asdict(robot.parameters), robot.description.calibration
+    if calibration is not None:
         table["odometry"] |= {
-            "forward_noise": stated.calibration.forward_noise,
-            "lateral_noise": stated.calibration.lateral_noise,
+            "forward_noise": calibration.forward_noise,
+            "lateral_noise": calibration.lateral_noise,
         }
     return table
 

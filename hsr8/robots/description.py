@@ -20,10 +20,12 @@ from hsr8.errors import ModelError
 from hsr8.files.regular import read_text
 from hsr8.files.toml import TomlError, parse_toml
 from hsr8.mistakes import NAME, NAMES, TABLE, form, mistake_lines
+from walking.parameters import LimitParameters
 
 MODEL_SUFFIXES = (".xml", ".mjcf", ".urdf")
 MIN_SPEED = 0.012
 """Minimum speed of a robot along every axis, for navigation [m/s or rad/s]."""
+MIN_FOV, MAX_FOV = 10.0, 120.0  # vertical field of view of a camera [deg]
 
 
 def _different(names: tuple[str, str]) -> tuple[str, str]:
@@ -49,6 +51,8 @@ Limits = Annotated[tuple[Angle, Angle], AfterValidator(_rising)]
 Rate = Annotated[float, Interval(ge=0.01, le=1e4)]
 Speed = Annotated[float, Interval(ge=MIN_SPEED, le=50.0)]
 Sigma = Annotated[float, Interval(ge=0.0, le=1.0)]
+
+COMBINED = LimitParameters().combined
 
 TRUNK = "trunk"
 """Name, for any robot, of the body that carries its arms or head, else of its base."""
@@ -90,10 +94,12 @@ class CameraMount(Table):
         doc("Position in the base's directions from the origin of the body, at zero angles [m]."),
     ]
     tilt_deg: Annotated[
-        float,
-        Interval(ge=-90.0, le=90.0),
-        doc("Elevation of the optical axis, upward positive [deg]."),
-    ] = 0.0
+        Annotated[float, Interval(ge=-90.0, le=90.0)] | None,
+        doc(
+            "Elevation of the optical axis, upward positive; default: 0 on a head, else that with "
+            "the upper border of the image 8 deg above the horizon [deg]."
+        ),
+    ] = None
 
 
 class ServoRule(Table):
@@ -133,6 +139,11 @@ class SpeedEnvelope(Table):
     vx_backward: Annotated[Speed, doc("Backward [m/s].")]
     vy: Annotated[Speed, doc("Sideways [m/s].")]
     wz: Annotated[Speed, doc("Turn rate [rad/s].")]
+    combined: Annotated[
+        float,
+        Interval(ge=1.0, le=2.0),
+        doc("Norm of the velocity relative to the other limits [1]."),
+    ] = COMBINED
 
 
 class Calibration(Table):
@@ -180,7 +191,10 @@ class RobotDescription(Table):
     ] = None
     base: Annotated[
         Name | None,
-        doc("Body of the pelvis; default: the body with the free joint, or the root link."),
+        doc(
+            "Body of the pelvis; default: the last body that both legs share, fixed to the one "
+            "with the free joint."
+        ),
     ] = None
     sole: Annotated[
         Sole | None,
@@ -213,13 +227,16 @@ class RobotDescription(Table):
     camera: Annotated[
         Camera | None,
         doc(
-            "Camera of the model, or where to mount one; default: the only camera of a body, or "
-            "in front of the head or the upper trunk."
+            "Camera of the model, or where to mount one; default: in front of the head or of the "
+            "upper trunk."
         ),
     ] = None
     vertical_fov_deg: Annotated[
-        Annotated[float, Interval(ge=10.0, le=120.0)] | None,
-        doc("Vertical field of view of the camera; default: that of the scenario [deg]."),
+        Annotated[float, Interval(ge=MIN_FOV, le=MAX_FOV)] | None,
+        doc(
+            "Vertical field of view of the camera; default: that of the model's camera, else of "
+            "the scenario [deg]."
+        ),
     ] = None
     radius: Annotated[
         Annotated[float, Interval(ge=0.01, le=2.0)] | None,
@@ -267,7 +284,11 @@ class RobotDescription(Table):
         doc("Maximum rate of the head joints; default: from their speed limits [rad/s]."),
     ] = None
     head_acceleration: Annotated[
-        Rate | None, doc("Maximum angular acceleration of the head joints [rad/s²].")
+        Rate | None,
+        doc(
+            "Maximum angular acceleration of the head joints; default: from torque and inertia, "
+            "at most that of HSR-VIII [rad/s²]."
+        ),
     ] = None
     about: Annotated[About | None, doc("Facts of a shipped robot.")] = None
     calibration: Annotated[

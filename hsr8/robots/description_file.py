@@ -74,18 +74,21 @@ def description_text(inspection: Inspection, file: Path, command: str) -> str:
     reasons = {f.role: f"{f.sureness}: {f.reason}" for f in inspection.findings}
     document = tomlkit.document()
     document.add(tomlkit.comment(f"Guessed by {command}, version {VERSION}: check every line."))
-    for key in (key for key in keys if key not in tables):
-        document[key] = keys[key]
+
+    def add(key: str) -> None:
+        item = tomlkit.item(keys[key])
         if key in reasons:
-            document[key].comment(reasons[key])
+            item.comment(reasons[key])
+        document.add(key, item)
+
+    for key in (key for key in keys if key not in tables):
+        add(key)
     for finding in inspection.findings:
         if finding.role not in keys:
             text = finding.part or finding.sureness
             document.add(tomlkit.comment(f"{finding.role}: {text}: {finding.reason}"))
     for key in tables:
-        document[key] = keys[key]
-        if key in reasons:
-            document[key].comment(reasons[key])
+        add(key)
     return tomlkit.dumps(document)
 
 

@@ -194,7 +194,7 @@ def _feet(stance: Stance) -> tuple[Pair | None, tuple[tuple[str, ...], tuple[str
         return None, ((), ()), Finding("feet", "", "missing", reason)
     six = left[-LEG_JOINTS:], right[-LEG_JOINTS:]
     feet = skeleton.bodies[left[-1]], skeleton.bodies[right[-1]]
-    pitching = sum(map(skeleton.is_pitch, six[0]))
+    pitching = len(skeleton.pitching(six[0]))
     sureness: Sureness = "certain" if pitching == 3 else "unsure"
     reason = f"mirrored chains of {len(left)} joints that end lowest"
     if pitching != 3:

@@ -9,6 +9,7 @@ import mujoco
 import numpy as np
 
 from hsr8.errors import ModelError
+from hsr8.robots.defaults import navigation_speed
 from hsr8.robots.description import (
     MODEL_SUFFIXES,
     RobotDescription,
@@ -21,13 +22,17 @@ from hsr8.robots.loaded import LoadedRobot, RawRobot, build_robot, read_robot
 from hsr8.robots.locate import find_description, find_model
 from hsr8.robots.posed_shapes import SelfCollision
 from hsr8.robots.prepare import Prepared, prepare
-from hsr8.robots.read import compile_spec, read_spec
+from hsr8.robots.read import compile_spec, drop_drawn_meshes, read_spec
+from hsr8.robots.rehearsal import postures
 from hsr8.robots.roles import find_roles
-from hsr8.robots.skeleton import HINGE, Skeleton, root_of, skeleton_of
+from hsr8.robots.skeleton import HINGE, Posed, Skeleton, root_of, skeleton_of
 from hsr8.robots.soles import flat_feet
 from walking.body.robot_model import MAX_STIFFENING
+from walking.command import VelocityCommand
 
 SPREADS = (0.15, 0.3, 0.5)  # angles of the arms from the trunk that are tried [rad]
+BENDS = (0.7, 1.1, 1.5)  # angles of the elbows that are tried [rad]
+POSTURE_TICKS = 8  # control ticks between the postures of a walk in which parts may touch
 SIDEWAYS = 0.7  # minimum cosine between forward and the axis of a joint that spreads an arm [1]
 
 
@@ -79,16 +84,19 @@ def inspect(name_or_file: str) -> Inspection:
         findings = guess(raw.model).findings
         model_file = find_model(description, file)
         return Inspection(model_file, file, description, findings, raw.notes, stated=True)
-    source, keys, repairs = read_spec(file, {}), dict[str, Any](), list[Finding]()
+    keys, repairs = dict[str, Any](), list[Finding]()
     try:
-        prepared = prepare(source, None, posture={})
+        model, prepared, notes = _prepared(file, keys)
     except RepairableError as error:
-        source, keys, repairs = read_spec(file, {}), error.keys, list(_repairs(error, file))
-        prepared = prepare(source, None, posture={}, **keys)
-    model, notes = compile_spec(source, source.spec)
+        keys, repairs = error.keys, list(_repairs(error, file))
+        model, prepared, notes = _prepared(file, keys)
     guessed = guess(model)
+    if guessed.feet is None and "follows a joint" in prepared.held.values():
+        # A coupled joint of a leg is none of its joints while it is held.
+        led = _prepared(file, {**keys, "hold_followers": False})
+        if (coupled := guess(led[0])).feet is not None:
+            (model, prepared, notes), guessed = led, coupled
     findings = (*guessed.findings, *repairs)
-    notes = [*source.notes, *prepared.notes, *notes]
     if guessed.feet is None:
         return Inspection(file, file, None, findings, tuple(notes), stated=False)
     description = checked({"model": str(file), **guessed.keys(), **keys}, str(file))
@@ -99,6 +107,14 @@ def inspect(name_or_file: str) -> Inspection:
         findings = (*findings, Finding("zero", angles, "likely", reason))
         description = description.model_copy(update={"zero": zero})
     return Inspection(file, file, description, findings, tuple(notes), stated=False)
+
+
+def _prepared(file: Path, keys: dict[str, Any]) -> tuple[mujoco.MjModel, Prepared, list[str]]:
+    """Return a model file, compiled and prepared without a description, and its notes."""
+    source = read_spec(file, {})
+    prepared = prepare(source, None, posture={}, **keys)
+    model, notes = compile_spec(source, source.spec)
+    return model, prepared, [*source.notes, *prepared.notes, *notes]
 
 
 def _repairs(error: RepairableError, model: Path) -> Iterator[Finding]:
@@ -162,16 +178,57 @@ def load_inspected(inspection: Inspection) -> tuple[Inspection, LoadedRobot]:
     try:
         robot = build_robot(description, inspection.file, raw)
     except RepairableError as error:
+        if all(getattr(description, key) == value for key, value in error.keys.items()):
+            raise  # tried in vain
         (finding,) = _repairs(error, inspection.model)
         return load_inspected(_changed(inspection, finding, error.keys))
     except SelfCollision as error:
         inspection, robot = _with_spread_arms(inspection, raw, error)
+    if touching_parts(robot):
+        inspection, robot = _with_free_arms(inspection, raw, robot)
     if description.servo is not None or robot.model.stiffening < MAX_STIFFENING:
         return inspection, robot
     held = 1.0 / (robot.model.stiffening * robot.model.measures().ankle)
     reason = f"the ankles of the model have {held:.0%} of the stiffness that holds it upright"
     inspection = _changed(inspection, Finding("servo", "rule", "likely", reason), {"servo": "rule"})
     return inspection, build_robot(inspection.require_description(), inspection.file, raw)
+
+
+def touching_parts(robot: LoadedRobot) -> set[tuple[str, str]]:
+    """Return the bodies that touch each other while the robot walks at its speed limits."""
+    spec, speed = robot.spec.copy(), navigation_speed(robot)
+    drop_drawn_meshes(spec, robot.roles.feet)
+    model, touching = spec.compile(), set[tuple[str, str]]()
+    for side in (1.0, -1.0):
+        command = VelocityCommand(speed["vx"], side * speed["vy"], speed["wz"])
+        for angles in postures(robot.model, robot.parameters, command)[::POSTURE_TICKS]:
+            joints = dict(zip(robot.model.names, angles.tolist(), strict=True))
+            data = Posed.at(model, {**robot.held, **joints}).data
+            pairs = np.sort(model.geom_bodyid[data.contact.geom], axis=1).tolist()
+            touching |= {(model.body(a).name, model.body(b).name) for a, b in pairs}
+    return touching
+
+
+def _with_free_arms(
+    inspection: Inspection, raw: RawRobot, robot: LoadedRobot
+) -> tuple[Inspection, LoadedRobot]:
+    """Return the robot with a posture in which its arms touch nothing while it walks, if any."""
+    description = inspection.require_description()
+    for posture in _spread_postures(raw, description):
+        reason = "the arms touch the legs while walking"
+        tried = _changed(inspection, _posture_finding(posture, reason), {"posture": posture})
+        try:
+            changed = build_robot(tried.require_description(), tried.file, raw)
+        except SelfCollision:
+            continue
+        if not touching_parts(changed):
+            return tried, changed
+    return inspection, robot
+
+
+def _posture_finding(posture: dict[str, float], reason: str) -> Finding:
+    angles = ", ".join(f"{name} {angle:g}" for name, angle in posture.items())
+    return Finding("posture", angles, "likely", reason)
 
 
 def _with_spread_arms(
@@ -184,8 +241,7 @@ def _with_spread_arms(
     """
     description = inspection.require_description()
     for posture in _spread_postures(raw, description):
-        angles = ", ".join(f"{name} {angle:g}" for name, angle in posture.items())
-        finding = Finding("posture", angles, "likely", "the arms touch the body at zero angles")
+        finding = _posture_finding(posture, "the arms touch the body at zero angles")
         tried = _changed(inspection, finding, {"posture": posture})
         try:
             return tried, build_robot(tried.require_description(), tried.file, raw)
@@ -195,22 +251,40 @@ def _with_spread_arms(
 
 
 def _spread_postures(raw: RawRobot, description: RobotDescription) -> Iterator[dict[str, float]]:
-    """Yield postures with the arms at several angles from the trunk [rad]."""
+    """Yield postures with the arms off the trunk, or bent at the elbows [rad]."""
     if description.shoulders is None:
         return
     frame = find_roles(raw.model, description, raw.prepared).frame
     skeleton = skeleton_of(raw.model, root_of(raw.model)).within(frame)
     left, right = description.shoulders
     rolls = [_shoulder_roll(skeleton, left, right), _shoulder_roll(skeleton, right, left)]
-    for spread in SPREADS:
-        posture = dict(description.posture)
-        for side, roll in zip((1.0, -1.0), rolls, strict=True):
-            if roll is not None:
-                sign = side * float(np.sign(skeleton.axes[roll, 0]))
-                angle = posture.get(skeleton.joints[roll], 0.0) + sign * spread
-                angle = float(np.clip(angle, *skeleton.ranges[roll]))
-                posture[skeleton.joints[roll]] = round(angle, 4)
-        yield posture
+    elbows = [_elbow(skeleton, left), _elbow(skeleton, right)]
+    for joints, axis, turns, signs in (
+        (rolls, 0, SPREADS, (1.0, -1.0)),
+        (elbows, 1, BENDS, (-1.0, -1.0)),
+    ):
+        for turn in turns if None not in joints else ():
+            posture = dict(description.posture)
+            for sign, joint in zip(signs, joints, strict=True):
+                assert joint is not None
+                angle = sign * float(np.sign(skeleton.axes[joint, axis])) * turn
+                angle += posture.get(skeleton.joints[joint], 0.0)
+                angle = float(np.clip(angle, *skeleton.ranges[joint]))
+                posture[skeleton.joints[joint]] = round(angle, 4)
+            yield posture
+
+
+def _elbow(skeleton: Skeleton, shoulder: str) -> int | None:
+    """Return the first joint below the pitch joint of a shoulder that pitches, too."""
+    pitch = skeleton.joints.index(shoulder)
+    return next(
+        (
+            j
+            for j in range(len(skeleton.joints))
+            if j != pitch and pitch in skeleton.chain(j) and skeleton.is_pitch(j)
+        ),
+        None,
+    )
 
 
 def _shoulder_roll(skeleton: Skeleton, shoulder: str, other: str) -> int | None:

@@ -103,7 +103,7 @@ def no_stance(skeleton: Skeleton) -> str:
         return f"{2 * len(standing)} chains end lowest, at one height; expected two legs"
     legs = lowest[0]
     names = [", ".join(skeleton.joints[j] for j in leg) for leg in _sides(legs)]
-    pitching = sum(map(skeleton.is_pitch, legs.left))
+    pitching = len(skeleton.pitching(legs.left))
     return (
         f"the chains that end lowest have {len(legs.left)} hinge joints, of which {pitching} "
         f"pitch, {names[0]} and {names[1]}; expected {LEG_JOINTS}: three at the hip, a knee, two "
@@ -135,7 +135,7 @@ def foot_joint(skeleton: Skeleton, leg: Sequence[int]) -> int:
     best, longest = len(leg) - 1, 0.0
     for last in range(len(leg) - 1, LEG_JOINTS - 2, -1):
         six = leg[last + 1 - LEG_JOINTS : last + 1]
-        pitching = [j for j in six if skeleton.is_pitch(j)]
+        pitching = skeleton.pitching(six)
         if len(pitching) != PITCHING:
             continue
         hip, knee, ankle = skeleton.anchors[pitching]
@@ -157,7 +157,7 @@ def bent(
     """
     angles = {}
     for leg in legs:
-        pitching = [j for j in leg if skeleton.is_pitch(j)]
+        pitching = skeleton.pitching(leg)
         for joint, angle in zip(pitching, BENT, strict=True):
             name, sign = skeleton.joints[joint], float(np.sign(skeleton.axes[joint, 1]))
             angles[name] = zero.get(name, 0.0) + sign * angle
@@ -175,7 +175,7 @@ def toe_vote(skeleton: Skeleton, left: Sequence[int], right: Sequence[int]) -> i
     """Return 1 if the masses of the feet are forward of the ankles, -1 if behind, else 0."""
     forward = 0.0
     for leg in (left, right):
-        ankle = [j for j in leg if skeleton.is_pitch(j)][-1]
+        ankle = skeleton.pitching(leg)[-1]
         forward += 0.5 * float(skeleton.coms[leg[-1], 0] - skeleton.anchors[ankle, 0])
     return int(np.sign(forward)) if abs(forward) > MIN_TOE * size_of(skeleton) else 0
 
@@ -209,7 +209,7 @@ def _stance(skeleton: Skeleton, rotation: Array) -> Stance | None:
 def _may_stand(skeleton: Skeleton, limb: Limb) -> bool:
     """Return whether the end of a limb is below its first joint and three joints pitch."""
     joints = limb.left[-LEG_JOINTS - 1 :]
-    if len(limb.left) < MIN_LEG_JOINTS or sum(map(skeleton.is_pitch, joints)) < PITCHING:
+    if len(limb.left) < MIN_LEG_JOINTS or len(skeleton.pitching(joints)) < PITCHING:
         return False
     up = sum(skeleton.anchors[side[0]] - skeleton.anchors[side[-1]] for side in _sides(limb))
     return bool(up[2] > STANDING * np.linalg.norm(up))

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from hsr8.errors import ModelError
-from hsr8.robots.description import TRUNK, RobotDescription, read_description
+from hsr8.robots.description import MAX_FOV, MIN_FOV, TRUNK, RobotDescription, read_description
 from hsr8.robots.files import package_folders, reading_models, stamp_of
 from hsr8.robots.key_mistake import KeyMistake, at_least, joint_error, reading_keys
 from hsr8.robots.linkage import drive_serially
@@ -18,7 +18,7 @@ from hsr8.robots.locate import find_description, find_model, model_files
 from hsr8.robots.normal_form import normalise
 from hsr8.robots.posed_shapes import arm_spheres, exclude_neighbours, robot_radius
 from hsr8.robots.posture import check_joint_names, completed_posture, stated_posture
-from hsr8.robots.prepare import LEG_JOINTS, Prepared, prepare
+from hsr8.robots.prepare import LEG_JOINTS, LIMITED, TO_JOINT, Prepared, prepare
 from hsr8.robots.read import compile_spec, drop_drawn_meshes, read_spec
 from hsr8.robots.refusals import check_roles
 from hsr8.robots.rehearsal import within_joints
@@ -30,7 +30,7 @@ from hsr8.robots.soles import soles_of
 from hsr8.robots.tree import tree_of
 from walking.body.robot_model import RobotModel
 from walking.constants import parameters_for
-from walking.parameters import WalkingParameters
+from walking.parameters import HeadParameters, WalkingParameters
 
 Array = NDArray[np.float64]
 
@@ -38,6 +38,8 @@ PRECISION = 1e-9  # of masses [kg] and places [m] in the normal form
 HEAVY = 0.8  # torque on one leg that is worth a note, of its maximum [1]
 STANDING = 1e-9  # maximum error of the legs in the ready posture [rad]
 SLACK = 1e-6  # of joint limits [rad]
+HEAD_SPEED = 0.8  # of the head joints, of their maximum [1]
+HEAD_TORQUE = 0.5  # of a head joint that accelerates it; gravity and damping need the rest [1]
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -57,6 +59,7 @@ class LoadedRobot:
         radius: radius of the walking robot seen from above [m].
         held: angles of the joints that walking does not move [rad].
         height: height of the base above the floor in the ready posture [m].
+        fov_deg: vertical field of view of its camera; None for that of the scenario [deg].
         notes: derived facts, a line each.
     """
 
@@ -72,6 +75,7 @@ class LoadedRobot:
     radius: float
     held: dict[str, float]
     height: float
+    fov_deg: float | None
     notes: tuple[str, ...]
 
     def body_names(self) -> list[str]:
@@ -182,6 +186,7 @@ def _read(description: RobotDescription, folder: Path, model_file: Path) -> RawR
     if description.linkage is not None:
         carried, linkage_notes = drive_serially(prepared, description, speed)
         speed = {**carried, **speed}
+    _set_efforts(spec, description.effort)
     fresh = spec.copy()  # a compiled specification is slow to change
     if description.camera is not None:
         drop_drawn_meshes(spec, [prepared.where(foot).body for foot in description.feet])
@@ -203,7 +208,21 @@ def _set_ranges(spec: mujoco.MjSpec, ranges: Mapping[str, tuple[float, float]]) 
     for name, limits in ranges.items():
         joint = spec.joint(name)
         joint.range = np.degrees(limits) if spec.compiler.degree else limits
-        joint.limited = mujoco.mjtLimited.mjLIMITED_TRUE
+        joint.limited = LIMITED
+
+
+def _set_efforts(spec: mujoco.MjSpec, efforts: Mapping[str, float]) -> None:
+    """Set the maximum torque of joints, also of their actuators [N m]."""
+    for name, effort in efforts.items():
+        joint = spec.joint(name)
+        if joint is None:
+            continue  # held
+        joint.actfrcrange, joint.actfrclimited = (-effort, effort), LIMITED
+        for servo in [s for s in spec.actuators if s.target == name and s.trntype in TO_JOINT]:
+            force = effort / abs(float(servo.gear[0]))
+            servo.forcerange, servo.forcelimited = (-force, force), LIMITED
+            if servo.biastype == mujoco.mjtBias.mjBIAS_NONE:
+                servo.ctrllimited = mujoco.mjtLimited.mjLIMITED_FALSE
 
 
 def _built(description: RobotDescription, file: Path, raw: RawRobot) -> LoadedRobot:
@@ -236,9 +255,7 @@ def _built(description: RobotDescription, file: Path, raw: RawRobot) -> LoadedRo
         drop_drawn_meshes(light, roles.feet)
         compiled = light.compile()
     _compare(zero, Posed.at(compiled, straight), source)
-    tree = tree_of(
-        compiled, roles, normal.parts, posture, effort=description.effort, speed=raw.speed
-    )
+    tree = tree_of(compiled, roles, normal.parts, posture, raw.speed)
     robot = RobotModel(tree)
     parameters, walk_notes = _fitted(robot, description, source)
     driven = set(tree.names)
@@ -247,6 +264,7 @@ def _built(description: RobotDescription, file: Path, raw: RawRobot) -> LoadedRo
     angles = dict(zip(tree.names, robot.ready.tolist(), strict=True))
     standing = Posed.at(compiled, {**held, **angles}, base)
     collision_notes = exclude_neighbours(normal.spec, standing, roles, source)
+    parameters = replace(parameters, head=_head(standing, robot, description))
     return LoadedRobot(
         name=file.stem,
         file=raw.source,
@@ -260,6 +278,7 @@ def _built(description: RobotDescription, file: Path, raw: RawRobot) -> LoadedRo
         radius=description.radius or robot_radius(standing),
         held=held,
         height=base,
+        fov_deg=_fov_deg(model, description),
         notes=(
             *notes,
             *mirror_notes,
@@ -269,6 +288,41 @@ def _built(description: RobotDescription, file: Path, raw: RawRobot) -> LoadedRo
             *collision_notes,
             *walk_notes,
         ),
+    )
+
+
+def _fov_deg(model: mujoco.MjModel, description: RobotDescription) -> float | None:
+    """Return the field of view that is stated, else that of a named camera of the model [deg].
+
+    Raises:
+        KeyMistake: the simulator has no such lens.
+    """
+    name = description.camera
+    if not isinstance(name, str) or description.vertical_fov_deg is not None:
+        return description.vertical_fov_deg
+    fov = float(model.cam_fovy[model.camera(name).id])
+    if not MIN_FOV <= fov <= MAX_FOV:
+        raise KeyMistake(
+            f"camera: {name!r}: fovy, got {fov:g} deg; expected {MIN_FOV:g} to {MAX_FOV:g}: state "
+            "vertical_fov_deg"
+        )
+    return fov
+
+
+def _head(standing: Posed, robot: RobotModel, description: RobotDescription) -> HeadParameters:
+    """Return the limits of the head: as HSR-VIII, as far as its joints allow."""
+    usual, model, tree = HeadParameters(), standing.model, robot.tree
+    if tree.head is None or description.tuned:
+        return usual
+    matrix, head = np.zeros((model.nv, model.nv)), list(tree.head)
+    mujoco.mj_fullM(model, standing.data, matrix)
+    dofs = [int(model.joint(tree.names[k]).dofadr[0]) for k in head]
+    rate = HEAD_SPEED * float(tree.speed[head].min())
+    acceleration = HEAD_TORQUE * float((tree.effort[head] / matrix[dofs, dofs]).min())
+    return HeadParameters(
+        max_rate=description.head_rate or min(usual.max_rate, rate),
+        max_acceleration=description.head_acceleration
+        or float(f"{min(usual.max_acceleration, acceleration):.3g}"),
     )
 
 

@@ -4,6 +4,7 @@ Every check raises one `ModelError` with the element, the reason and the remedy.
 """
 
 from collections.abc import Iterator
+from itertools import pairwise
 
 import mujoco
 import numpy as np
@@ -13,7 +14,7 @@ from hsr8.errors import ModelError
 from hsr8.robots.description import RobotDescription
 from hsr8.robots.key_mistake import RepairableError, at_most
 from hsr8.robots.roles import Roles
-from hsr8.robots.skeleton import HINGE, label
+from hsr8.robots.skeleton import HINGE, label, path_up
 
 RIGID_TIES = {
     int(mujoco.mjtEq.mjEQ_CONNECT): "connect",
@@ -112,26 +113,31 @@ class _Mechanism:
             name = f"equality {label(model.equality(tie).name, tie)!r}"
             kind = int(model.eq_type[tie])
             if kind in RIGID_TIES:
-                bodies = self._tied_bodies(tie)
-                if self._root in model.body_rootid[bodies]:
-                    tied = " and ".join(
-                        repr(model.body(b).name) if b else "the world" for b in bodies
-                    )
-                    reason = (
-                        f"{name}: closed chain, a {RIGID_TIES[kind]} ties {tied}; expected a tree "
-                        "of bodies: remove it"
-                    )
-                    raise self._error(reason) if 0 in bodies else self._loop(reason)
-            ends = [int(model.eq_obj1id[tie]), int(model.eq_obj2id[tie])]
-            joints = set(ends) & self._legs if kind == JOINT_TIES else set()
+                self._require_open(name, RIGID_TIES[kind], self._tied_bodies(tie))
+            ends = [end for end in (model.eq_obj1id[tie], model.eq_obj2id[tie]) if end >= 0]
+            joints = list(map(int, ends)) if kind == JOINT_TIES else []
             if kind == TENDON_TIES:
-                joints = {j for t in ends if t >= 0 for j in self._tendon_joints(t)} & self._legs
-            if joints:
-                reason = (
-                    f"{name}: couples joint {model.joint(min(joints)).name!r} of a leg; expected "
-                    "legs of independent joints: remove it"
-                )
-                raise self._loop(reason) if kind == JOINT_TIES else self._error(reason)
+                joints = sorted({j for t in ends for j in self._tendon_joints(int(t))})
+            if not {*joints} & self._legs:
+                continue
+            follower, *leaders = (repr(model.joint(j).name) for j in joints)
+            others = f" to {', '.join(leaders)}" if leaders else ""
+            reason = (
+                f"{name}: couples joint {follower}{others} in a leg; expected legs of independent "
+                "joints: remove it"
+            )
+            raise self._loop(reason) if kind == JOINT_TIES else self._error(reason)
+
+    def _require_open(self, name: str, kind: str, bodies: list[int]) -> None:
+        """Refuse a rigid tie of the robot; one that closes a loop of a leg can be replaced."""
+        model = self._model
+        if self._root not in model.body_rootid[bodies]:
+            return
+        tied = " and ".join(repr(model.body(b).name) if b else "the world" for b in bodies)
+        reason = f"{name}: closed chain, a {kind} ties {tied}; expected a tree of bodies: remove it"
+        above = {b for body in bodies for b in path_up(model, body)}
+        of_leg = any(int(model.jnt_bodyid[joint]) in above for joint in self._legs)
+        raise self._loop(reason) if of_leg and 0 not in bodies else self._error(reason)
 
     def _loop(self, reason: str) -> ModelError:
         return RepairableError(f"{self._source}: {reason}, or {SERIAL}", linkage="serial")
@@ -143,32 +149,38 @@ class _Mechanism:
         return [max(end, 0) for end in ends]
 
     def tendons(self) -> None:
-        """No tendon may drive a leg."""
+        """No tendon may drive or pull a leg."""
         model = self._model
-        for actuator in range(model.nu):
-            if model.actuator_trntype[actuator] != TO_TENDON:
+        driven = model.actuator_trnid[model.actuator_trntype == TO_TENDON, 0]
+        for tendon in range(model.ntendon):
+            joints = {*self._tendon_joints(tendon)} & self._legs
+            passive = model.tendon_stiffness[tendon] or model.tendon_stiffnesspoly[tendon].any()
+            passive = passive or model.tendon_limited[tendon]
+            if not joints or not (passive or tendon in driven):
                 continue
-            tendon = int(model.actuator_trnid[actuator, 0])
-            joints = set(self._tendon_joints(tendon)) & self._legs
-            if joints:
-                raise self._error(
-                    f"tendon {label(model.tendon(tendon).name, tendon)!r}: drives joint "
-                    f"{model.joint(min(joints)).name!r} of a leg; expected an actuator per joint: "
-                    'remove the tendon and its actuator, and state servo = "rule"'
-                )
+            drives = tendon in driven
+            remedy = "the tendon and its actuator" if drives else "the tendon"
+            raise self._error(
+                f"tendon {label(model.tendon(tendon).name, tendon)!r}: "
+                f"{'drives' if drives else 'pulls'} joint {model.joint(min(joints)).name!r} of a "
+                f"leg; expected an actuator per joint: remove {remedy}, and state "
+                'servo = "rule"'
+            )
 
     def _tendon_joints(self, tendon: int) -> Iterator[int]:
-        """Yield the joints that a tendon moves: its own, or those above its sites."""
+        """Yield the joints that a tendon moves: its own, or those between its sites."""
         model = self._model
         first, n = int(model.tendon_adr[tendon]), int(model.tendon_num[tendon])
+        bodies = list[int]()
         for wrap in range(first, first + n):
             target = int(model.wrap_objid[wrap])
             if model.wrap_type[wrap] == WRAP_JOINT:
                 yield target
             elif model.wrap_type[wrap] == WRAP_SITE:
-                body = int(model.site_bodyid[target])
-                adr, count = int(model.body_jntadr[body]), int(model.body_jntnum[body])
-                yield from range(adr, adr + count)
+                bodies.append(int(model.site_bodyid[target]))
+        for one, other in pairwise(bodies):
+            apart = {*path_up(model, one)} ^ {*path_up(model, other)}
+            yield from (j for j in range(model.njnt) if int(model.jnt_bodyid[j]) in apart)
 
     def servos(self) -> None:
         """Where the model's servos are used, each driven joint must have one."""

@@ -12,6 +12,7 @@ from hsr8.errors import ModelError
 Array = NDArray[np.float64]
 Triangles = NDArray[np.int64]
 
+POINTER = b"version https://git-lfs.github.com"
 MIN_CELLS = 6  # along the longest side of a mesh, so that small parts remain
 
 
@@ -26,6 +27,10 @@ def read_mesh(path: Path) -> tuple[Array, Triangles]:
     Raises:
         ModelError: the file cannot be read.
     """
+    if is_pointer(path):
+        raise ModelError(
+            f"{path}: a pointer of Git LFS; expected the mesh: fetch it with `git lfs pull`"
+        )
     try:
         mesh = coal.MeshLoader().load(str(path))
         rows = [mesh.tri_indices(k) for k in range(mesh.num_tris)]
@@ -42,6 +47,12 @@ def is_binary_stl(path: Path) -> bool:
         header = stream.read(84)
     count = int.from_bytes(header[80:84], "little")
     return len(header) == 84 and path.stat().st_size == 84 + 50 * count
+
+
+def is_pointer(path: Path) -> bool:
+    """Return whether a file is a pointer of Git LFS, in the place of a file that is not fetched."""
+    with path.open("rb") as stream:
+        return stream.read(len(POINTER)) == POINTER
 
 
 def _unit(path: Path) -> float:

@@ -5,7 +5,6 @@ the soles, an IMU, a camera with its site, and one box per sole; servos are adde
 description asks for it. Lights, keyframes, sensors and the floor of the file are removed.
 """
 
-from collections.abc import Iterator
 from dataclasses import dataclass
 from math import radians
 
@@ -14,9 +13,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from hsr8.robots.description import CameraMount, RobotDescription
-from hsr8.robots.files import models_dir
+from hsr8.robots.ignored import dropped_options
 from hsr8.robots.prepare import Prepared
 from hsr8.robots.roles import Roles, pose_of
+from hsr8.robots.scale import DEFAULT_FOV_DEG
 from hsr8.robots.servos import physics_step
 from hsr8.robots.skeleton import BaseFrame, Posed, quaternion_of
 from hsr8.robots.soles import Rectangle
@@ -31,21 +31,11 @@ CAMERA_SITE, IMU = "hsr8/camera", "hsr8/imu"
 ACCELEROMETER = "hsr8/accelerometer"
 HEAD_CAMERA = "egocentric"
 PADS = (("fl", 1, 1), ("fr", 1, -1), ("bl", -1, 1), ("br", -1, -1))
-THICKNESS = 0.025  # half height of a sole box, relative to the height of the base [1]
+THICKNESS = 0.025  # half height of a sole box, of the height of base or hips above it [1]
 EDGE = 0.001  # by which a force pad extends beyond the sole, where contacts act [m]
 COLLISION_GROUP = 3
-OPTION_KINDS = {
-    "integrator": mujoco.mjtIntegrator,
-    "cone": mujoco.mjtCone,
-    "solver": mujoco.mjtSolver,
-    "jacobian": mujoco.mjtJacobian,
-}
-OPTIONS = (
-    *OPTION_KINDS,
-    *("gravity", "wind", "magnetic", "density", "viscosity", "impratio", "iterations"),
-    *("ls_iterations", "noslip_iterations", "tolerance", "disableflags", "enableflags"),
-)
-UPPER, FIXED_TILT = 0.9, -28.6  # height of a camera on the trunk [1], and its tilt [deg]
+UPPER, MIDDLE = 0.9, 0.5  # height of a camera on the trunk, and on the head [1]
+SKY = 8.0  # of the image of a fixed camera above the horizon, where beacons are [deg]
 # Bits of contacts: 1 floor and soles, 2 obstacles hit the robot, the rest as in the file.
 SOLE_BIT, BODY_BIT, SHIFT = 1, 2, 2
 CONTACT = {
@@ -130,25 +120,6 @@ def normalise(
     return NormalForm(spec, Parts(FEET, sole, CAMERA_SITE), tuple(notes))
 
 
-def dropped_options(spec: mujoco.MjSpec) -> Iterator[str]:
-    """Yield a note on options of the model that the simulator's field replaces."""
-    usual = mujoco.MjSpec().option
-    field = mujoco.MjSpec.from_file(str(models_dir() / "field" / "vision.xml")).option
-    dropped = []
-    for name in OPTIONS:
-        own, default, used = (np.asarray(getattr(o, name)) for o in (spec.option, usual, field))
-        if not np.array_equal(own, default) and not np.array_equal(own, used):
-            kind = OPTION_KINDS.get(name)
-            values = (
-                [kind(int(own)).name.partition("_")[2].lower()]
-                if kind
-                else [f"{v:g}" for v in own.ravel()]
-            )
-            dropped.append(f"{name} {' '.join(values)}")
-    if dropped:
-        yield f"options of the model replaced by those of the simulator: {', '.join(dropped)}"
-
-
 def _contact_shapes(spec: mujoco.MjSpec, roles: Roles) -> int:
     """Return the number of colliding shapes of the feet."""
     geoms = [geom for foot in roles.feet for geom in spec.body(foot).geoms]
@@ -164,6 +135,7 @@ def _fix_masses(spec: mujoco.MjSpec, model: mujoco.MjModel) -> None:
         body.explicitinertial = True
         body.mass = float(model.body_mass[compiled])
         body.ipos, body.iquat = model.body_ipos[compiled], model.body_iquat[compiled]
+        body.ialt.type = mujoco.mjtOrientation.mjORIENTATION_QUAT
         body.inertia = model.body_inertia[compiled]
         body.fullinertia = np.full(6, np.nan)
     for geom in spec.geoms:
@@ -216,7 +188,8 @@ def _add_sole(spec: mujoco.MjSpec, zero: Posed, roles: Roles, side: int, edges: 
     y = 0.5 * (edges.left + edges.right)
     half_length, half_width = 0.5 * (edges.front - edges.back), 0.5 * (edges.left - edges.right)
     centre = 0.5 * (edges.front + edges.back)
-    thick = THICKNESS * -edges.height
+    hips = float(data.xanchor[model.joint(roles.legs[side][0]).id][2])
+    thick = THICKNESS * (max(0.0, hips) - edges.height)
 
     def local(px: float, py: float, pz: float) -> Array:
         point: Array = rotation.T @ (np.array([px, py, pz]) - position)
@@ -286,7 +259,7 @@ def rebase(spec: mujoco.MjSpec, root: str, base: BaseFrame) -> None:
     turned = np.empty(4)
     mujoco.mju_mulQuat(turned, turn, np.asarray(body.iquat, float))
     body.ipos = base.rotation @ (np.asarray(body.ipos, float) - base.origin)
-    body.iquat = turned
+    body.iquat, body.ialt.type = turned, mujoco.mjtOrientation.mjORIENTATION_QUAT
     body.quat, body.alt.type = (1.0, 0.0, 0.0, 0.0), mujoco.mjtOrientation.mjORIENTATION_QUAT
 
 
@@ -302,30 +275,40 @@ def _camera_pose(
         rotation = data.cam_xmat[camera].reshape(3, 3) * (1.0, -1.0, -1.0)
         return (body, data.cam_xpos[camera].copy(), rotation), f"camera {stated!r} on {body!r}"
     mount = stated or _default_mount(zero, roles)
-    tilt = radians(mount.tilt_deg)
+    tilt_deg = mount.tilt_deg
+    if tilt_deg is None:
+        tilt_deg = 0.0 if roles.head is not None else fixed_tilt(description.vertical_fov_deg)
+    tilt = radians(tilt_deg)
     forward = np.array([np.cos(tilt), 0.0, np.sin(tilt)])
     right = np.array([0.0, -1.0, 0.0])
     rotation = np.column_stack([right, np.cross(forward, right), forward])
     position = pose_of(zero, prepared, mount.body)[1] + mount.position
-    note = (
-        f"camera on {mount.body!r}, {position[2]:.2f} m above the base, tilt {mount.tilt_deg:g} deg"
-    )
+    note = f"camera on {mount.body!r}, {position[2]:.2f} m above the base, tilt {tilt_deg:g} deg"
     return (prepared.where(mount.body).body, position, rotation), note
 
 
 def _default_mount(zero: Posed, roles: Roles) -> CameraMount:
-    """Return a mount on the front of the head, or of the upper trunk and looking down."""
+    """Return a mount on the front of the head, or of the upper trunk."""
     model, data = zero.model, zero.data
     if roles.head is not None:
         body = max(int(model.joint(name).bodyid[0]) for name in roles.head)  # the outer one
-        height, tilt = 0.5, 0.0
+        height = MIDDLE
     else:
-        body, height, tilt = model.body(roles.trunk).id, UPPER, FIXED_TILT
+        body, height = model.body(roles.trunk).id, UPPER
     low, high = _extent(zero, body)
     origin = data.xpos[body]
     x, z = high[0], low[2] + height * (high[2] - low[2])
     position = (float(x - origin[0]), float(-origin[1]), float(z - origin[2]))
-    return CameraMount(body=model.body(body).name, position=position, tilt_deg=tilt)
+    return CameraMount(body=model.body(body).name, position=position)
+
+
+def fixed_tilt(vertical_fov_deg: float | None) -> float:
+    """Return the tilt of a camera without a neck, which shows the floor and the beacons [deg].
+
+    Args:
+        vertical_fov_deg: vertical field of view; that of the default camera if None [deg].
+    """
+    return round(SKY - 0.5 * (vertical_fov_deg or DEFAULT_FOV_DEG), 2)
 
 
 def _extent(zero: Posed, body: int) -> tuple[Array, Array]:

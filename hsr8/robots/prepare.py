@@ -14,6 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from hsr8.errors import ModelError
+from hsr8.robots.ignored import drop_ignored
 from hsr8.robots.inertia import complete_inertias
 from hsr8.robots.key_mistake import KeyMistake, require_name
 from hsr8.robots.read import ModelFile
@@ -28,6 +29,7 @@ FREE, HINGE = mujoco.mjtJoint.mjJNT_FREE, mujoco.mjtJoint.mjJNT_HINGE
 LIMITED, UNLIMITED = mujoco.mjtLimited.mjLIMITED_TRUE, mujoco.mjtLimited.mjLIMITED_FALSE
 JOINT_TIE = mujoco.mjtEq.mjEQ_JOINT
 CLOSING = (mujoco.mjtEq.mjEQ_CONNECT, mujoco.mjtEq.mjEQ_WELD)
+TO_JOINT = (mujoco.mjtTrn.mjTRN_JOINT, mujoco.mjtTrn.mjTRN_JOINTINPARENT)
 COUPLINGS = (JOINT_TIE, mujoco.mjtEq.mjEQ_TENDON)
 
 
@@ -80,6 +82,7 @@ def prepare(
     powered: frozenset[str] = frozenset(),
     posture: Mapping[str, float],
     repair_inertia: bool = False,
+    hold_followers: bool = True,
 ) -> Prepared:
     """Prepare a model.
 
@@ -96,22 +99,25 @@ def prepare(
         powered: joints that an effort of zero does not hold.
         posture: angles of held joints [rad or m].
         repair_inertia: whether impossible inertias are replaced.
+        hold_followers: whether joints that follow others are held where the feet are unknown.
 
     Raises:
         KeyMistake: a foot or the base is unknown.
         ModelError: the base cannot move, or a body has an impossible inertia.
     """
     spec = source.spec
-    bodies = [body.name for body in spec.bodies[1:]]
-    for side, foot in zip(("left", "right"), feet or (), strict=False):
-        require_name(f"feet: {side} foot", "body", foot, bodies)
-    if base is not None:
-        require_name("base", "body", base, bodies)
+    for key in list(spec.keys):  # they have coordinates of joints that are held or added
+        spec.delete(key)
+    _require_links(spec, feet, base)
     root, notes = _only_robot(spec, feet)
+    notes += drop_ignored(spec)
+    _reflect_rotors(spec)
     notes += _free(spec, root, source)
     paths = [] if feet is None else [_joints_above(spec, spec.body(foot)) for foot in feet]
     on_path = {name for path in paths for name in path}
     followers = _followers(spec)
+    if feet is None and not hold_followers:
+        on_path |= {*followers}
     on_path |= _tied_to(spec, on_path, followers)
     all_powered = frozenset(joint.name for joint in spec.joints) if feet is None else powered
     held = dict(_held(spec, rigid, all_powered, on_path, followers))
@@ -120,9 +126,7 @@ def prepare(
     angles = {name: _held_angle(spec, name, posture, followers) for name in held}
     for name, angle in angles.items():
         hold(spec, name, angle)
-    for joint in spec.joints:
-        if joint.actfrclimited == LIMITED and not np.any(joint.actfrcrange):
-            joint.actfrclimited = UNLIMITED  # an effort of zero that does not count is unknown
+    _forget_zero_efforts(spec)
     notes += _held_notes(held)
     places = _places(spec, root)
     base = base or _common_link(spec, root, feet)
@@ -145,6 +149,22 @@ def prepare(
         for foot, path in zip(feet or (), paths, strict=True)
     }
     return Prepared(spec, root, base, places, held, above, tuple(notes))
+
+
+def _require_links(spec: mujoco.MjSpec, feet: tuple[str, str] | None, base: str | None) -> None:
+    """Require that the model has the feet and the base of a description."""
+    bodies = [body.name for body in spec.bodies[1:]]
+    for side, foot in zip(("left", "right"), feet or (), strict=False):
+        require_name(f"feet: {side} foot", "body", foot, bodies)
+    if base is not None:
+        require_name("base", "body", base, bodies)
+
+
+def _forget_zero_efforts(spec: mujoco.MjSpec) -> None:
+    """Remove limits of zero from joints that move: their maximum torque is unknown."""
+    for joint in spec.joints:
+        if joint.actfrclimited == LIMITED and not np.any(joint.actfrcrange):
+            joint.actfrclimited = UNLIMITED
 
 
 def hold(spec: mujoco.MjSpec, name: str, angle: float) -> None:
@@ -216,6 +236,17 @@ def _wraps(wrap: mujoco.MjsWrap, joint: str) -> bool:
     return bool(wrap.type == mujoco.mjtWrap.mjWRAP_JOINT and wrap.target.name == joint)
 
 
+def _reflect_rotors(spec: mujoco.MjSpec) -> None:
+    """Move armature and damping of actuators to their joints, which MuJoCo adds up."""
+    for actuator in spec.actuators:
+        joint = spec.joint(actuator.target) if actuator.trntype in TO_JOINT else None
+        if joint is not None:
+            squared = float(actuator.gear[0]) ** 2
+            joint.armature += squared * actuator.armature
+            joint.damping[0] += squared * actuator.damping[0]
+            actuator.armature, actuator.damping[0] = 0.0, 0.0
+
+
 def _only_robot(spec: mujoco.MjSpec, feet: tuple[str, str] | None) -> tuple[str, list[str]]:
     """Remove the other bodies of a scene; return the body that carries the robot, and a note.
 
@@ -227,10 +258,9 @@ def _only_robot(spec: mujoco.MjSpec, feet: tuple[str, str] | None) -> tuple[str,
         root = _path_up(spec, spec.body(feet[0]))[-1]
     others = [body for body in tops if body.name != root.name]
     shown = [repr(b.name) for b in others if b.find_all("joint") or b.find_all("geom")]
-    moving = [body.name for body in others if body.find_all("joint")]
-    if moving:  # keyframes have their coordinates
-        for part in (*spec.keys, *spec.sensors):
-            spec.delete(part)
+    if any(body.find_all("joint") for body in others):
+        for sensor in list(spec.sensors):
+            spec.delete(sensor)
     for body in others:
         spec.delete(body)
     note = f"{len(shown)} other bodies of the scene left out: {', '.join(shown[:MAX_LISTED])}"
@@ -253,8 +283,6 @@ def _free(spec: mujoco.MjSpec, root: str, source: ModelFile) -> list[str]:
             "by <freejoint/>"
         )
     body.add_freejoint(name=f"{root}_free")
-    for key in list(spec.keys):  # without the coordinates of the joint
-        spec.delete(key)
     return [] if source.is_urdf else [f"base: free joint added to body {root!r}"]
 
 

@@ -9,6 +9,7 @@ import numpy as np
 
 from hsr8.errors import ModelError
 from hsr8.robots.files import reading_models
+from hsr8.robots.meshes import is_pointer
 from hsr8.robots.skeleton import label
 from hsr8.robots.urdf import drop_invalid_meshes, read_urdf
 
@@ -58,11 +59,36 @@ def read_spec(file: Path, packages: Mapping[str, Path]) -> ModelFile:
         spec, speed, notes = read_urdf(file, packages)
     else:
         with reading_models(str(file)):
-            spec = mujoco.MjSpec.from_file(str(file))
+            spec = _mjcf(file)
         _name_parts(spec)
+        _check_meshes(spec, file)
     if not spec.joints:
         raise ModelError(f"{file}: the model has no joints; expected a robot")
     return ModelFile(file, spec, speed, tuple(notes))
+
+
+def _mjcf(file: Path) -> mujoco.MjSpec:
+    """Read an MJCF file, also one with a suffix that MuJoCo does not know."""
+    if file.suffix.lower() == ".xml":
+        return mujoco.MjSpec.from_file(str(file))
+    spec = mujoco.MjSpec.from_string(file.read_text())
+    spec.modelfiledir = str(file.parent)
+    return spec
+
+
+def _check_meshes(spec: mujoco.MjSpec, file: Path) -> None:
+    """Refuse mesh files that Git has not fetched.
+
+    Raises:
+        ModelError: a mesh file is a pointer of Git LFS.
+    """
+    for mesh in spec.meshes:
+        path = Path(spec.modelfiledir) / spec.meshdir / mesh.file
+        if mesh.file and path.is_file() and is_pointer(path):
+            raise ModelError(
+                f"{file}: mesh {mesh.file!r}: got a pointer of Git LFS; expected the mesh: fetch "
+                "it with `git lfs pull`"
+            )
 
 
 def drop_drawn_meshes(spec: mujoco.MjSpec, kept: Collection[str]) -> None:

@@ -26,6 +26,7 @@ MAX_TURN = np.radians(1.0)  # of a mirrored joint axis [rad]
 MAX_RANGE_DIFFERENCE = 0.1  # of mirrored limits; ranges that differ more are intersected [rad]
 PITCHING = ("hip", "knee", "ankle")
 MIN_FREEDOM = 0.01  # singular value of the scaled Jacobian of a bent leg, minimum over maximum [1]
+MAX_ZERO = 0.5  # angle that is proposed as zero [rad]
 SLACK = 1e-6  # of limits [rad]
 MAX_CAMERA = 2.0  # distance of a camera from the origin of its body, in lengths of the leg [1]
 
@@ -145,7 +146,7 @@ class _Checks:
     def pitching(self) -> None:
         """A leg must have three joints that pitch at zero angles."""
         for leg, names in zip(self._legs, self._roles.legs, strict=True):
-            pitching = [self._skeleton.joints[j] for j in leg if self._skeleton.is_pitch(j)]
+            pitching = [self._skeleton.joints[j] for j in self._skeleton.pitching(leg)]
             if len(pitching) != len(PITCHING):
                 got = ", ".join(pitching) or "none"
                 raise KeyMistake(
@@ -155,14 +156,14 @@ class _Checks:
 
     def _bend(self, leg: Sequence[int]) -> int:
         """Return how the range of a knee bends it, see `Skeleton.bend`."""
-        knee = [j for j in leg if self._skeleton.is_pitch(j)][1]
+        knee = self._skeleton.pitching(leg)[1]
         sign = float(np.sign(self._skeleton.axes[knee, 1]))
         return self._skeleton.bend(leg, sign * self._zero_of(knee))
 
     def bending(self) -> None:
         """The ranges must include a bent leg."""
         for leg in self._legs:
-            pitching = [j for j in leg if self._skeleton.is_pitch(j)]
+            pitching = self._skeleton.pitching(leg)
             for part, joint, angle in zip(PITCHING, pitching, BENT, strict=True):
                 lower, upper = self._skeleton.range_about_left(joint)
                 zero = self._zero_of(joint) * np.sign(self._skeleton.axes[joint, 1])
@@ -198,8 +199,7 @@ class _Checks:
                     raise self._range_error(
                         right,
                         f"not the mirror image of {left!r} in the plane y = 0 of the base at zero "
-                        f"angles: {reason}: correct the model, or state angles at which the legs "
-                        "are alike as zero",
+                        f"angles: {reason}: correct the model, or state {self._alike(pair)}",
                     )
             if pair.range > MAX_RANGE_DIFFERENCE:
                 ranges |= self._common_range(pair, left, right)
@@ -209,6 +209,25 @@ class _Checks:
                     f"part is used, {lower:.3g} to {upper:.3g} rad of {left!r}"
                 )
         return ranges, notes
+
+    def _alike(self, pair: MirroredPair) -> str:
+        """Return the angle of the joint above with which a right joint mirrors the left one."""
+        skeleton = self._skeleton
+        (*_, above), mirror = (-1, *skeleton.chain(pair.right)[:-1]), np.array([1.0, -1.0, 1.0])
+        hinge, origin = skeleton.axes[above], skeleton.anchors[above]
+        now, image = skeleton.axes[pair.right], -mirror * skeleton.axes[pair.left]
+        if pair.angle <= MAX_TURN:
+            now, image = (
+                a - origin
+                for a in (skeleton.anchors[pair.right], mirror * skeleton.anchors[pair.left])
+            )
+        elif image @ now < 0.0:
+            image = -image
+        now, image = (part - (part @ hinge) * hinge for part in (now, image))
+        angle = float(np.arctan2(hinge @ np.cross(now, image), now @ image))
+        if above < 0 or abs(angle) < SLACK or abs(angle) > MAX_ZERO:
+            return "angles at which the legs are alike as zero"
+        return f"zero.{skeleton.joints[above]} = {self._zero_of(above) + angle:.3f}"
 
     def _common_range(
         self, pair: MirroredPair, left: str, right: str

@@ -74,7 +74,7 @@ def rehearse(robot: RobotModel, parameters: WalkingParameters, command: Velocity
         parameters: parameters of the walk.
         command: constant command.
     """
-    angles, loads, loaded = _walk(robot, parameters, command)
+    _, angles, loads, loaded = _walk(robot, parameters, command)
     speeds = np.abs(np.diff(angles, axis=0)) / CONTROL_PERIOD / robot.tree.speed[:12]
     torques = np.abs(loads) / robot.tree.effort[:12]
     speed, torque = (np.percentile(part, PERCENTILE, axis=0) for part in (speeds, torques))
@@ -84,6 +84,11 @@ def rehearse(robot: RobotModel, parameters: WalkingParameters, command: Velocity
     worst = [speed / MAX_SPEED, torque / MAX_TORQUE, ROOM / np.maximum(room, 1e-6)]
     joint = int(np.argmax(np.max(worst, axis=0)))
     return Demand(float(speed.max()), float(torque.max()), float(room.min()), robot.names[joint])
+
+
+def postures(robot: RobotModel, parameters: WalkingParameters, command: VelocityCommand) -> Array:
+    """Return the joint angles in a walk without physics (n, joints) [rad]."""
+    return _walk(robot, parameters, command)[0]
 
 
 def within_joints(
@@ -172,14 +177,19 @@ def _bisect(
 
 def _walk(
     robot: RobotModel, parameters: WalkingParameters, command: VelocityCommand
-) -> tuple[Array, Array, NDArray[np.bool_]]:
-    """Return angles [rad] and torques [N m] of the legs, and which is loaded (n, 12)."""
+) -> tuple[Array, Array, Array, NDArray[np.bool_]]:
+    """Walk without physics.
+
+    Returns:
+        Setpoints of all joints (n, joints) [rad]; angles [rad] and torques [N m] of the legs, and
+        which is loaded (n, 12).
+    """
     engine = WalkingEngine(robot, parameters)
     q, weight = robot.ready.copy(), robot.mass * GRAVITY
     rates = np.zeros_like(q)
     settle = round(parameters.gait.settle_time / CONTROL_PERIOD) + 1
     ticks = settle + round((1.0 + STEPS) * parameters.gait.footstep_time / CONTROL_PERIOD)
-    angles, torques, loaded = [], [], []
+    positions, angles, torques, loaded = [], [], [], []
     for _ in range(ticks):
         yaw, load = engine.heading, engine.load
         sensors = BodySensors(
@@ -193,7 +203,9 @@ def _walk(
         targets = engine.step(sensors, command, HeadTarget())
         rates = (targets.position - q) / CONTROL_PERIOD
         q = targets.position.copy()
+        positions.append(q)
         angles.append(engine.leg_angles)
         torques.append(engine.torques[:12])
         loaded.append(np.repeat((load < 1.0, load > 0.0), 6))
-    return np.array(angles)[settle:], np.array(torques)[settle:], np.array(loaded)[settle:]
+    positions, angles, torques = (np.array(part)[settle:] for part in (positions, angles, torques))
+    return positions, angles, torques, np.array(loaded)[settle:]

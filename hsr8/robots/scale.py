@@ -16,6 +16,9 @@ DEFAULT_ROBOT = "hsr8"
 DEFAULT_STATURE = 0.487
 """Height of the standing default robot [m]."""
 
+DEFAULT_FOV_DEG = 46.8
+"""Vertical field of view of the default camera; 60 deg horizontally at 4:3 [deg]."""
+
 _POWER = re.compile(r"(m|s|rad|N)(?:\^(\d+(?:\.\d+)?)|(²))?")
 # Exponents of length, speed, turn and weight. A force is a fraction of the weight per time of a
 # falling pendulum, √(length / g), so that N s is an impulse with an equal effect on the balance.

@@ -86,7 +86,8 @@ def joint_damping(own: float, effort: float | None, speed: float | None) -> floa
 
     Args:
         own: damping of the model [N m s/rad].
-        effort: maximum torque, if known [N m].
+        effort: maximum torque, if known; placeholders, beyond the weight at the height of the
+            CoM, would brake every motion [N m].
         speed: maximum speed, if known [rad/s].
 
     Returns:
@@ -125,7 +126,7 @@ def choose_servos(
         KeyMistake: the CoM is not above the soles, or a joint moves no inertia.
     """
     stated, model = description.servo, zero.model
-    effort = own_efforts(model) | description.effort
+    effort = own_efforts(model)
     hinges = [model.joint(j).name for j in range(model.njnt) if model.jnt_type[j] == HINGE]
     if stated == "own" or (stated is None and has_servos(model, roles)):
         driven = [name for name in hinges if joint_actuators(model, model.joint(name).id)]
@@ -205,6 +206,7 @@ def _add_servos(
     _remove_actuators(spec)
     timestep = physics_step(float(spec.option.timestep))
     stiff = leg_stiffness(mass, com_height, rule.compliance)
+    load = mass * GRAVITY * com_height
     armatures: dict[str, float] = {}
     springs = [joint.name for joint in spec.joints if joint.stiffness.any()]
     for j in joints:
@@ -222,7 +224,8 @@ def _add_servos(
         joint = spec.joint(name)
         joint.stiffness = np.zeros_like(joint.stiffness)
         joint.armature += armature
-        joint.damping[0] = joint_damping(joint.damping[0], torque, speed.get(name))
+        used = None if torque is None else min(torque, load)
+        joint.damping[0] = joint_damping(joint.damping[0], used, speed.get(name))
         _add_servo(spec, name, kp, kv, torque)
     notes = [
         f"servos by rule: {len(joints)}, those of the legs with {stiff:.0f} N m/rad for "

@@ -18,6 +18,8 @@ FREE = int(mujoco.mjtJoint.mjJNT_FREE)
 BALL = int(mujoco.mjtJoint.mjJNT_BALL)
 MIN_LIMITS = 0.3  # difference of the limits of a knee that shows where it bends [rad]
 PARALLEL = 0.9  # minimum cosine of an axis that counts as a yaw or pitch axis [1]
+CANTED = 0.5  # the same of the pitch axis of a hip, which may be canted [1]
+BELOW_HIP = 3  # joints of a leg below the hip: knee and ankle
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -166,6 +168,15 @@ class Skeleton:
         """Return whether the axis of a joint points to the left or to the right."""
         return bool(abs(self.axes[joint, 1]) > PARALLEL)
 
+    def pitching(self, leg: Sequence[int]) -> list[int]:
+        """Return the pitching joints of a leg: hip, knee and ankle, if it has one of each.
+
+        The hip may pitch about a canted axis: the joint counts that is nearest to the left.
+        """
+        hip = max(leg[:-BELOW_HIP], key=lambda j: abs(self.axes[j, 1]), default=-1)
+        canted = hip >= 0 and abs(self.axes[hip, 1]) > CANTED
+        return [j for j in leg if (j == hip and canted) or self.is_pitch(j)]
+
     def range_about_left(self, joint: int) -> tuple[float, float]:
         """Return the range of a pitching joint about the left axis [rad]."""
         lower, upper = self.ranges[joint].tolist()
@@ -178,7 +189,7 @@ class Skeleton:
             leg: joints of the leg, of which the second that pitches is the knee.
             zero: angle of the straight knee about the left axis [rad].
         """
-        knee = [j for j in leg if self.is_pitch(j)][1]
+        knee = self.pitching(leg)[1]
         lower, upper = (limit - zero for limit in self.range_about_left(knee))
         one_sided = isfinite(lower) and isfinite(upper) and abs(lower + upper) > MIN_LIMITS
         return int(np.sign(lower + upper)) if one_sided else 0

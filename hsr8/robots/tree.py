@@ -51,8 +51,6 @@ def tree_of(
     roles: Roles,
     parts: Parts,
     posture: Mapping[str, float],
-    *,
-    effort: Mapping[str, float],
     speed: Mapping[str, float],
 ) -> RobotTree:
     """Return the tree of a robot.
@@ -62,10 +60,9 @@ def tree_of(
         roles: roles of its parts.
         parts: added by the normal form.
         posture: joint angles with straight legs; zero by default [rad].
-        effort: maximum torque by joint, instead of that of the model [N m].
         speed: maximum speed by joint, instead of that of the model [rad/s].
     """
-    return _Builder(model, roles, posture).tree(parts, effort, speed)
+    return _Builder(model, roles, posture).tree(parts, speed)
 
 
 class _Builder:
@@ -121,9 +118,7 @@ class _Builder:
         rotation = body.rotation @ matrix_of(model.site_quat[site])
         return Frame(body.joint, rotation, body.position + body.rotation @ model.site_pos[site])
 
-    def tree(
-        self, parts: Parts, effort: Mapping[str, float], speed: Mapping[str, float]
-    ) -> RobotTree:
+    def tree(self, parts: Parts, speed: Mapping[str, float]) -> RobotTree:
         model, names = self._model, self._names
         joints = np.array([model.joint(name).id for name in names])
         dofs = model.jnt_dofadr[joints]
@@ -133,7 +128,6 @@ class _Builder:
         ranges = np.where(limited[:, None], model.jnt_range[joints], [[-UNLIMITED, UNLIMITED]])
         gear = model.actuator_gear[servos, 0]
         torque = max_torque(model, joints, servos)
-        torque = np.array([effort.get(name, t) for name, t in zip(names, torque, strict=True)])
         damping = model.dof_damping[dofs]
         fastest = np.divide(torque, damping, out=np.full(len(names), np.inf), where=damping > 0.0)
         bodies = [b for b, mass in enumerate(model.body_mass) if mass > 0.0 and b in self._carriers]

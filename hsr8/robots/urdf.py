@@ -16,7 +16,7 @@ import numpy as np
 
 from hsr8.errors import ModelError
 from hsr8.robots.files import find_mesh
-from hsr8.robots.meshes import is_binary_stl, read_mesh
+from hsr8.robots.meshes import is_binary_stl, is_pointer, read_mesh
 
 Element = ElementTree.Element
 
@@ -343,7 +343,8 @@ def _load_meshes(spec: mujoco.MjSpec, meshes: _Meshes) -> list[str]:
         path = meshes.paths[mesh.name]
         mesh.inertia = mujoco.mjtMeshInertia.mjMESH_INERTIA_SHELL
         kind = path.suffix.lower()
-        if kind == ".obj" or (kind == ".stl" and is_binary_stl(path)):
+        readable = kind == ".obj" or (kind == ".stl" and is_binary_stl(path))
+        if readable and not is_pointer(path):
             mesh.file = str(path)
             continue
         mesh.file = ""

@@ -1,7 +1,7 @@
 """Consistency of the faults of a scenario, also with its robot."""
 
 from collections.abc import Iterator, Sequence
-from math import ceil
+from math import ceil, isfinite
 
 from hsr8.keys import Path
 from hsr8.mistakes import Mistake
@@ -16,6 +16,7 @@ from hsr8.scenario.fault import (
     LowFriction,
     MoverAppears,
     Push,
+    ServoWeak,
     WorldFault,
     ticks,
 )
@@ -78,7 +79,7 @@ def fault_problems(scenario: Scenario) -> Iterator[Mistake]:
 
 
 def robot_problems(scenario: Scenario) -> Iterator[Mistake]:
-    """Yield every joint and body of a fault or push that the robot does not have."""
+    """Yield every joint, body or torque limit of a fault or push that the robot does not have."""
     joints: list[tuple[Path, str]] = [
         (("fault", i, "joint"), f.joint)
         for i, f in enumerate(scenario.fault)
@@ -91,7 +92,10 @@ def robot_problems(scenario: Scenario) -> Iterator[Mistake]:
         bodies.append((("disturbance", "random", "body"), scenario.disturbance.random.body))
     bodies = [(path, body) for path, body in bodies if body != TRUNK]
     gets_up = scenario.walking.get_up.enabled and scenario.robot.model != DEFAULT_ROBOT
-    if not (joints or bodies or gets_up):
+    weak = scenario.robot.model != DEFAULT_ROBOT and any(
+        isinstance(f, ServoWeak) for f in scenario.fault
+    )
+    if not (joints or bodies or gets_up or weak):
         return
     from hsr8.robots.loaded import load_robot  # noqa: PLC0415 (MuJoCo loads slowly)
 
@@ -103,6 +107,15 @@ def robot_problems(scenario: Scenario) -> Iterator[Mistake]:
         for path, name in given:
             if name not in names:
                 yield _unknown(path, name, names)
+    for i, fault in enumerate(scenario.fault):
+        if isinstance(fault, ServoWeak) and fault.joint in (*JOINT_GROUPS, *robot.model.names):
+            limits = [robot.model.tree.effort[k] for k in fault.joints(robot.model.names)]
+            if not isfinite(max(limits)):
+                yield Mistake(
+                    ("fault", i, "joint"),
+                    f"{fault.joint!r} has servos without a maximum torque; expected stated ones: "
+                    "add effort to the description of the robot",
+                )
     if gets_up and robot.model.names != JOINT_NAMES:
         yield Mistake(
             ("walking", "get_up", "enabled"),

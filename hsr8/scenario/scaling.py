@@ -42,7 +42,8 @@ def expand_presets(data: Mapping[str, Any]) -> Table:
 def followers(data: Mapping[str, Any]) -> Table:
     """Return the defaults that follow given keys of a scenario's tables.
 
-    Navigation takes the radius of the robot, vision the sizes of the obstacles and the beacons.
+    Navigation takes the radius of the robot, vision the sizes of the obstacles and the beacons, and
+    the gaze the height of the beacons.
     """
     defaults: Table = {}
     radius = _number(data, "robot", "radius")
@@ -53,6 +54,8 @@ def followers(data: Mapping[str, Any]) -> Table:
         vision = VisionParameters()
         sizes = ("obstacle_height", "beacon_height", "beacon_radius")
         defaults["vision"] = {size: scale * getattr(vision, size) for size in sizes}
+        risk = {"beacon_height": defaults["vision"]["beacon_height"]}
+        defaults.setdefault("navigation", {})["gaze"] = {"risk": risk}
     return defaults
 
 

@@ -7,6 +7,7 @@ from typing import Annotated, Literal
 from annotated_types import Ge, Interval, Le, MultipleOf, doc
 from pydantic import model_validator
 
+from hsr8.robots.scale import DEFAULT_FOV_DEG
 from hsr8.scenario.section import CONTROL_PERIOD_MS, PeriodMs, Section
 from vision.camera import PinholeCamera
 
@@ -60,7 +61,7 @@ class Camera(Section):
         float,
         Interval(ge=10.0, le=120.0),
         doc("Vertical field of view; 46.8 deg are 60 deg horizontally at 4:3 [deg]."),
-    ] = 46.8
+    ] = DEFAULT_FOV_DEG
     blind_above: Annotated[
         float,
         Interval(gt=0.0, le=10_000.0),

@@ -58,7 +58,8 @@ def calibrate(
 ) -> tuple[Measured, list[str]]:
     """Measure a robot; return warnings of speeds far below the rehearsed ones, too.
 
-    The speeds are reduced until the robot walks under random commands, and passes its check.
+    Until the robot walks under random commands and passes its check, first the combination of
+    speeds along several axes is reduced, then every speed.
 
     Args:
         robot: robot with its rehearsed limits.
@@ -72,20 +73,26 @@ def calibrate(
     limits = {axis: _axis_limit(trial, axis, scale, report) for axis in AXES}
     speed = {axis: _digits(limit.speed) for axis, limit in limits.items()}
     reasons = {axis: limit.reason for axis, limit in limits.items()}
+    combined = parameters.limits.combined
     while True:
         _require_speed(robot, speed, reasons)
-        trial.parameters = replace(parameters, limits=replace(parameters.limits, **speed))
+        within = replace(parameters.limits, combined=combined, **speed)
+        trial.parameters = replace(parameters, limits=within)
         walks = list(_random_walks(trial, speed, scale))
         falls = sum(walk.falls for walk in walks)
-        report(f"random commands in {_text(speed)}: {falls} falls in {len(walks)} walks")
-        limiting = walks[-1].limiting_joint(robot.model)
+        limiting, envelope = walks[-1].limit(robot.model), f"{_text(speed)}, combined {combined:g}"
+        because = f": {limiting}" if falls else ""
+        report(f"random commands in {envelope}: {falls} falls in {len(walks)} walks{because}")
         if not falls:
             limited = replace(robot, parameters=trial.parameters)
             failed = [result for result in check_robot(limited)[0] if result.reason()]
-            report(f"check in {_text(speed)}: {failed[0].reason() if failed else 'passed'}")
+            report(f"check in {envelope}: {failed[0].reason() if failed else 'passed'}")
             if not failed:
                 break
             limiting = failed[0].limit
+        if combined > 1.0:  # each axis alone is walked well
+            combined = 1.0
+            continue
         speed = {axis: _digits(SHRINK * value) for axis, value in speed.items()}
         reasons = dict.fromkeys(AXES, limiting)
     warnings = [
@@ -96,7 +103,7 @@ def calibrate(
     noise = _odometry_noise(walks)
     sigmas = np.sqrt(np.mean(np.concatenate([w.camera for w in walks]) ** 2, axis=0)).tolist()
     measured = Measured(
-        speed=speed,
+        speed={**speed, "combined": combined},
         turn_delay=_digits(_turn_delay(trial, speed["wz"], scale)),
         lag=_digits(float(np.mean([_lag(walk) for walk in walks]))),
         forward_noise=_digits(noise[0]),
@@ -139,7 +146,7 @@ def _axis_limit(trial: Trial, axis: str, scale: float, report: Report) -> _Limit
         report(f"{axis} {speed:.3f}: {result}")
         if held:
             break
-        speed, reason = SHRINK * speed, walk.limiting_joint(trial.robot.model)
+        speed, reason = SHRINK * speed, walk.limit(trial.robot.model)
     return _Limit(speed, reason)
 
 

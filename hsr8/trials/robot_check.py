@@ -22,6 +22,7 @@ Report = Callable[["WalkResult"], None]
 WALK_TIME = 9.0  # of each walk, in the time scale of HSR-VIII [s]
 FRACTION = 0.5  # of the speed limits at which the robot walks [1]
 RANDOM_SEEDS, RANDOM_WALKS = range(4), 3.0  # walks under random commands, and their length [1]
+MAX_SATURATED = 0.1  # of the time at maximum torque, of a head joint [1]
 MAX_TILT = 8.0  # of the trunk, 99th percentile in a steady walk [deg]
 MAX_ERROR = 0.2  # of a velocity that still counts as followed, relative [1]
 DIRECTIONS: dict[str, tuple[str, float]] = {  # speed limit, and its sign along the axis
@@ -47,7 +48,7 @@ class WalkResult:
             stands or fell before a stride.
         tilt: 99th percentile of the tilt of the trunk, its maximum under random commands [deg].
         drift: distance from the start while standing [m].
-        limit: leg joint that was longest at a limit, and the limit.
+        limit: parts that touch, or the leg joint that was longest at a limit, in words.
     """
 
     direction: str
@@ -146,6 +147,12 @@ def reasons(
     texts = [
         f"{j.joint}: {j.one_leg:.0%} of its torque to carry the robot on one leg" for j in weak
     ]
+    texts += [
+        f"{j.joint}: a head joint at its maximum torque for {j.saturated:.0%} of the time: state "
+        "a lower head_acceleration"
+        for j in joints
+        if j.joint in (robot.roles.head or ()) and j.saturated > MAX_SATURATED
+    ]
     remedies = []
     failed = [result.direction for result in results if result.fell or result.tilt > MAX_TILT]
     if "stand" in failed and OWN_SERVOS in robot.notes:
@@ -175,7 +182,7 @@ def _result(
         error=error,
         tilt=float(np.percentile(walk.tilt, 100.0 if command is None else 99.0)),
         drift=drift,
-        limit=walk.limiting_joint(robot.model),
+        limit=walk.limit(robot.model),
     )
 
 

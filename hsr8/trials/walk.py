@@ -1,6 +1,7 @@
 """Walk of a robot on an empty floor, in full physics with sensor noise."""
 
-from collections.abc import Callable
+from collections import Counter
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from math import acos, degrees
 
@@ -26,8 +27,10 @@ from walking.parameters import CONTROL_PERIOD, GRAVITY, WalkingParameters
 from walking.state import HeadCameraPose
 
 Array = NDArray[np.float64]
+Names = tuple[str, str]
 
 EMPTY = Layout((4.0, 4.0), (), (), (0.0, 0.0, 0.0), np.zeros((0, 2)), None, endless=False)
+TOUCHED = 0.002  # of a walk in which two parts touch, from which they limit it [1]
 FAST = 0.9  # of its maximum speed, at which a joint limits a walk [1]
 REFERENCE_FORCE = HSR_VIII.weight  # that the noise of the foot pads is stated for [N]
 
@@ -47,6 +50,7 @@ class Walked:
             every `CAMERA_TICKS` (m, 4).
         steps: completed footsteps.
         saturation: saturation of the joints.
+        touching: control ticks in which two bodies of the robot touch, by their names.
         parameters: parameters of the walk.
     """
 
@@ -59,6 +63,7 @@ class Walked:
     camera: Array
     steps: int
     saturation: Saturation
+    touching: Mapping[Names, int]
     parameters: WalkingParameters
 
     def velocity(self, settling: float = 3.0) -> Array:
@@ -81,12 +86,19 @@ class Walked:
         time = ticks * CONTROL_PERIOD
         return np.array([forward.sum(), left.sum(), turned]) / time
 
-    def limiting_joint(self, robot: RobotModel) -> str:
-        """Return the leg joint that was longest at a limit, with the limit, in words.
+    def limit(self, robot: RobotModel) -> str:
+        """Return what limited the walk, in words.
+
+        It is a contact of two parts, else the leg joint that was longest at a limit.
 
         Args:
             robot: robot that walked.
         """
+        if self.touching:
+            (one, other), touched = max(self.touching.items(), key=lambda item: item[1])
+            if touched > TOUCHED * len(self.poses):
+                of_walk = f"{touched / len(self.poses):.1%} of the walk"
+                return f"{one} and {other} touch for {of_walk}: state another posture"
         uses, ticks = self.saturation, len(self.poses)
         legs = slice(0, RIGHT_LEG.stop)
         at = np.array([uses.torque_ticks[legs], uses.stop_ticks[legs]]) / ticks
@@ -128,6 +140,7 @@ class Trial:
         self._model = assemble(robot, EMPTY, "vision", Optics())
         self._noise = _scaled_noise(noise, robot.model)
         self._joints = ModelIndex.of(self._model, robot, 0, 0).joint_qpos
+        self._own = self._model.body_rootid == self._model.body(robot.roles.base).rootid[0]
         self._camera = self._model.camera(HEAD_CAMERA).id
 
     def walk(
@@ -151,7 +164,7 @@ class Trial:
         rng = np.random.default_rng([seed, 7])
         body = PhysicsBody(self._model, self.robot, EMPTY, self._noise, rng, pushes=pushes)
         engine = WalkingEngine(self.robot.model, self.parameters)
-        rows, camera, falls = [], [], 0
+        rows, camera, falls, touching = [], [], 0, Counter[Names]()
         for tick in range(round(duration / CONTROL_PERIOD)):
             time = tick * CONTROL_PERIOD
             now = command if isinstance(command, VelocityCommand) else command(time)
@@ -160,6 +173,7 @@ class Trial:
             if tick % CAMERA_TICKS == 0:
                 camera.append(self._camera_error(body, state.camera))
             body.apply(targets)
+            touching.update(self._touching(body))
             truth, odometry = body.truth(), state.odometry
             tilt = degrees(acos(min(1.0, up_component(truth.qpos[3:7]))))
             pose = (odometry.x, odometry.y, odometry.yaw)
@@ -179,8 +193,15 @@ class Trial:
             camera=np.array(camera),
             steps=state.step_count,
             saturation=body.saturation(),
+            touching=touching,
             parameters=self.parameters,
         )
+
+    def _touching(self, body: PhysicsBody) -> set[Names]:
+        """Return the bodies of the robot that touch each other."""
+        pairs = self._model.geom_bodyid[body.data.contact.geom]
+        pairs = np.sort(pairs[self._own[pairs].all(axis=1)], axis=1)
+        return {(self._model.body(a).name, self._model.body(b).name) for a, b in pairs.tolist()}
 
     def _camera_error(self, body: PhysicsBody, believed: HeadCameraPose) -> Array:
         """Return believed minus true camera pose: tilt, roll, yaw [rad], height [m] (4,)."""

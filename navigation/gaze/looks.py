@@ -33,7 +33,7 @@ def set_look(
     """
     distance = sqrt(point[0] * point[0] + point[1] * point[1])
     look.x, look.y, look.weight, look.urgency, look.rate = point[0], point[1], weight, 1.0, 0.0
-    look.top = p.obstacle_height
+    look.top, look.tall = p.obstacle_height, False
     look.foot_value = 1.0 if distance >= shadow_at(atan2(point[1], point[0]), shadow) else 0.0
     return distance
 
@@ -140,7 +140,7 @@ def ground_looks(
 
 @compiled
 def beacon_looks(looks: Rows, beacons: Array, pose: Array, value: float, p: np.record) -> int:
-    """Write the looks at beacons, which must be in view from the foot to the top.
+    """Write the looks at beacons, of which a view must show the seam of both colours halfway up.
 
     Args:
         looks: records of type `LOOK`, enough for all.
@@ -156,7 +156,7 @@ def beacon_looks(looks: Rows, beacons: Array, pose: Array, value: float, p: np.r
             continue
         look = looks[count]
         look.x, look.y, look.urgency, look.rate = x, y, 1.0, 0.0
-        look.top, look.foot_value = p.beacon_height, -1.0
+        look.top, look.foot_value, look.tall = 0.5 * p.beacon_height, 0.0, True
         count += 1
     for i in range(count):
         looks[i].weight = value / count
@@ -215,7 +215,7 @@ def looks_of(
     discs, shown = known_discs(tracks, pose, p), 0
     for i in range(count):
         look = looks[i]
-        if look.foot_value < 0.0 or not occluded(look.x, look.y, discs, p.disc_edge):
+        if look.tall or not occluded(look.x, look.y, discs, p.disc_edge):
             looks[shown] = look
             shown += 1
     return looks[:shown]

@@ -22,11 +22,13 @@ LOOK = record_type(
     rate=float,
     top=float,
     foot_value=float,
+    tall=bool,
 )
 """Request of a look.
 
-Position in R [m], weight, urgency now [1] and its rate [1/s], height of the top [m], and the value
-of a view of the foot without the top, negative where a view must show both.
+Position in R [m], weight, urgency now [1] and its rate [1/s], height of the point that a view must
+show [m], the value of a view of the foot without that point, and whether the point is above the
+obstacles, which then never hide it.
 """
 
 
@@ -130,10 +132,7 @@ def add_look(
             c, s = tilted[0, t], tilted[1, t]
             top = in_image(ahead, aside, up, c, s, lens)
             foot = in_image(ahead, aside, -height, c, s, lens)
-            if foot_value < 0.0:
-                part = 1.0 if top & foot else 0.0
-            else:
-                part = 1.0 if top else (foot_value if foot else 0.0)
+            part = 1.0 if top else (foot_value if foot else 0.0)
             worth = steady
             if look.rate > 0.0:
                 urgency = min(max_urgency, look.urgency + look.rate * saccade[t])

@@ -51,7 +51,7 @@ class Body(Protocol):
 Array = NDArray[np.float64]
 
 BLOCK = 256  # physics steps per computation of the motion of the movers
-FALLEN_RATIO = 0.64  # base height over that in the ready posture, below which it has fallen [1]
+FALLEN_DROP = 0.36  # of the base, of the height of base or hips, from which it has fallen [1]
 FALLEN_TILT = 0.5  # cosine of the tilt, below which the robot has fallen [1]
 
 
@@ -73,7 +73,8 @@ class Surroundings:
         self._movers = layout.motion()
         self._static = np.reshape([o.position for o in static], (-1, 2))
         self._at_rest = np.zeros_like(self._static)
-        self._ready_height = robot.height
+        height = max(robot.height, robot.parameters.pattern.pelvis_height)
+        self._lowest = robot.height - FALLEN_DROP * height
         self.index = ModelIndex.of(model, robot, len(static), len(self._movers))
         self.watch = ContactWatch(model, self.index, layout)
         self._timestep = float(model.opt.timestep)
@@ -121,7 +122,7 @@ class Surroundings:
         qpos, root = data.qpos.copy(), self.index.root_qpos
         x, y, z = qpos[root : root + 3].tolist()
         attitude = qpos[root + 3 : root + 7]
-        low = z < FALLEN_RATIO * self._ready_height
+        low = z < self._lowest
         movers = data.mocap_pos.take(self.index.mover_mocap, axis=0)[:, :2]
         stepped = self._ends[self._row] == time
         moving = self._velocities[self._row] if stepped else self._movers.velocities(time)

@@ -48,8 +48,10 @@ FALSE_RADIUS, FALSE_HEIGHT = 0.08, 0.30  # of false detections [m]
 FALSE_RANGE = (0.3, 2.5)  # distance of false detections [m]
 
 Box = tuple[float, float, float, float, bool]
+Range = tuple[float, float]
 MIN_DEPTH = 0.05  # of a visible point in front of the camera [m]
 MIN_VISIBLE = 2.0  # width and height of a visible cylinder inside the border [pixel]
+MIN_COLOR = 3.0  # height of either colour of a beacon above and below its seam [pixel]
 NO_BOX = (0.0, 0.0, 0.0, 0.0, False)
 DISTANCE, HIDDEN, LEFT, TOP, RIGHT, BOTTOM, CUT = range(7)  # columns of a view
 
@@ -292,6 +294,21 @@ def _image_box(x: float, y: float, radius: float, height: float, view: np.record
 
 
 @compiled
+def _seam_rows(x: float, y: float, radius: float, height: float, view: np.record) -> Range:
+    """Return the first and the last row of the edges of a beacon's seam, halfway up [pixel]."""
+    R, first, last = view.rotation, inf, -inf
+    ratio = radius / sqrt(x * x + y * y)
+    for side in (-ratio, ratio):
+        X, Y, Z = x - side * y, y + side * x, 0.5 * height - view.position[2]
+        depth = X * R[0, 2] + Y * R[1, 2] + Z * R[2, 2]
+        if depth < MIN_DEPTH:
+            return -inf, inf
+        v = view.middle[1] + view.focal * (X * R[0, 1] + Y * R[1, 1] + Z * R[2, 1]) / depth
+        first, last = min(first, v), max(last, v)
+    return first, last
+
+
+@compiled
 def project(
     x: float,
     y: float,
@@ -310,7 +327,8 @@ def project(
         y: position of the axis from the camera [m].
         radius: [m].
         height: [m].
-        beacon: whether the cylinder is a beacon, recognised only with both colours in the image.
+        beacon: whether the cylinder is a beacon, recognised by its seam with a part of both
+            colours in the image.
         view: camera in W, a record of type `VIEW`.
         panoramic: whether the camera is panoramic.
     """
@@ -319,10 +337,12 @@ def project(
         left, top, right, bottom, cut = _panorama_box(x, y, radius, height, view)
     else:
         left, top, right, bottom, cut = _image_box(x, y, radius, height, view)
-        if beacon and (top < 0.0 or bottom > rows):
-            return NO_BOX
         if right == 0.0:
             return NO_BOX
+        if beacon:
+            first, last = _seam_rows(x, y, radius, height, view)
+            if first < MIN_COLOR or last > rows - MIN_COLOR:
+                return NO_BOX
     left, top = float(int(max(left, 0.0))), float(int(max(top, 0.0)))
     return left, top, min(width, int(right) + 1.0), min(rows, int(bottom) + 1.0), cut
 

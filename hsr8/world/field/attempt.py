@@ -173,7 +173,7 @@ class Attempt:
         if not world.beacons:
             return ()
         return with_first_moved(
-            standard_beacons(world.size, world.scale), world.beacon_displacement
+            standard_beacons(world.size, world.scale), world.beacon_displacement, world.size
         )
 
     def _given_points(self) -> list[Point] | None:

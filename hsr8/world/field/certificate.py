@@ -16,12 +16,13 @@ from hsr8.scenario.robot import Robot
 from hsr8.world.field.lattice import DIRECTIONS, HALF_MOVE, LAYERS_PER_CELL, Bits, Lattice
 from hsr8.world.field.layout import Layout
 from hsr8.world.field.reachable import EIGHTH, Reachable
+from navigation.parameters.navigation import MissionParameters
 
 Array = NDArray[np.float64]
 
 # In a world of scale 1:
 CELLS = (0.10, 0.05)  # cell sizes; the finer lattice is used if the coarser has no path [m]
-VIA_REACHED = 0.15  # distance at which a via point counts as passed [m]
+VIA_REACHED = MissionParameters().r_via  # by default [m]
 MAX_LENGTH = 80.0  # that the robot could walk during the search [m]
 MAX_POINTS = 8  # checked of a long tour
 MAX_WORK = 600_000_000  # cells in all layers of a search, some ten seconds
@@ -54,12 +55,15 @@ class Certificate:
         return float(np.hypot(*np.diff(self.path[:, 1:3], axis=0).T).sum())
 
 
-def certify(layout: Layout, robot: Robot, max_work: int = MAX_WORK) -> Certificate:
+def certify(
+    layout: Layout, robot: Robot, via_reached: float = VIA_REACHED, max_work: int = MAX_WORK
+) -> Certificate:
     """Search a path through the first `MAX_POINTS` points of `layout` at most.
 
     Args:
         layout: the world.
         robot: radius and speed limits.
+        via_reached: distance at which a via point counts as passed [m].
         max_work: limit of the search, in large fields [cell].
     """
     points = layout.waypoints[:MAX_POINTS].tolist()
@@ -68,7 +72,7 @@ def certify(layout: Layout, robot: Robot, max_work: int = MAX_WORK) -> Certifica
     work = 0
     for cell in CELLS:
         lattice = Lattice(layout, robot, cell * layout.scale)
-        targets = _targets(layout, lattice, points)
+        targets = _targets(layout, lattice, points, via_reached)
         # A point enclosed by static obstacles needs no search.
         connected = lattice.connected()
         inside = [bool((target & connected).any()) for target in targets]
@@ -91,12 +95,15 @@ def _from_start(layout: Layout, path: Array) -> Array:
     return np.vstack([start, path if path[0, 0] > 0.0 else path[1:]])
 
 
-def _targets(layout: Layout, lattice: Lattice, points: list[list[float]]) -> list[Bits]:
+def _targets(
+    layout: Layout, lattice: Lattice, points: list[list[float]], via_reached: float
+) -> list[Bits]:
     """Return the states that pass each point; the goal of a course requires its heading."""
-    targets = [lattice.near(point, VIA_REACHED * layout.scale) for point in points]
+    # Half the diagonal of a cell: the cells next to a point.
+    nearest = HALF_MOVE * lattice.cell + 1e-9
+    targets = [lattice.near(point, max(via_reached, nearest)) for point in points]
     if not layout.endless and len(points) == len(layout.waypoints):
-        # Half the diagonal of a cell: the cells next to the goal.
-        targets[-1] = lattice.near(points[-1], HALF_MOVE * lattice.cell + 1e-9)
+        targets[-1] = lattice.near(points[-1], nearest)
         if layout.goal_heading is not None:
             targets[-1] &= np.uint8(1 << round(layout.goal_heading / EIGHTH) % len(DIRECTIONS))
     return targets

@@ -77,7 +77,8 @@ def draw_world(scenario: Scenario, seed: int) -> FairWorld:
             if lanes > MAX_LANES:
                 break
             continue
-        certificate = certify(layout, scenario.robot, MAX_WORK - work)
+        reached = scenario.navigation.mission.r_via
+        certificate = certify(layout, scenario.robot, reached, MAX_WORK - work)
         work += certificate.work
         if certificate.solvable or not _draws(scenario):
             faulty = with_faults(layout, scenario.fault)

@@ -2,7 +2,7 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from math import hypot, inf
+from math import inf
 
 import numpy as np
 from numpy.typing import NDArray
@@ -138,15 +138,25 @@ def standard_beacons(field_size: Point, scale: float = 1.0) -> tuple[Beacon, ...
     return tuple(beacons)
 
 
-def with_first_moved(beacons: tuple[Beacon, ...], distance: float) -> tuple[Beacon, ...]:
-    """Return the beacons with the first one moved along the border by `distance` [m]."""
+def with_first_moved(
+    beacons: tuple[Beacon, ...], distance: float, field_size: Point
+) -> tuple[Beacon, ...]:
+    """Return the beacons with the first one moved along the border, counterclockwise.
+
+    Args:
+        beacons: beacons of a field.
+        distance: distance of the motion [m].
+        field_size: extent of the field along x and y [m].
+    """
     if distance == 0.0:
         return beacons
     first = beacons[0]
     x, y = first.position
-    ratio = distance / hypot(x, y)
-    moved = replace(first, position=(x - ratio * y, y + ratio * x), known=first.position)
-    return (moved, *beacons[1:])
+    if x > 0.5 * field_size[0]:  # in front of the field
+        y += distance
+    else:  # to its left
+        x -= distance
+    return (replace(first, position=(x, y), known=first.position), *beacons[1:])
 
 
 def with_faults(layout: Layout, faults: Sequence[Fault]) -> Layout:

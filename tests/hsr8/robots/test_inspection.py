@@ -26,10 +26,10 @@ def findings(inspection, role):
     return [finding for finding in inspection.findings if finding.role == role]
 
 
-def wide(root, half_width="0.1"):
+def wide(root, size="0.06 0.1 0.04"):
     """Let the arms collide with the pelvis."""
     pelvis = part(root, "body", "base").find("geom")
-    pelvis.attrib.update(size=f"0.06 {half_width} 0.04", contype="1", conaffinity="1")
+    pelvis.attrib.update(size=size, contype="1", conaffinity="1")
     for side in "lr":
         hand = part(root, "body", f"{side}_elbow3_pitch_link").find("geom")
         hand.attrib.update(contype="1", conaffinity="1")
@@ -57,7 +57,7 @@ def test_arms_that_touch_the_body_are_spread(loaded, flip):
 def test_arms_inside_the_body_are_refused(loaded):
     message = "overlap by .* mm; .*: state other angles of l_shoulder_pitch, .* in posture, or add "
     with pytest.raises(ModelError, match=message):
-        loaded(lambda root: wide(root, "0.4"))
+        loaded(lambda root: wide(root, "0.3 0.4 0.2"))
 
 
 def test_soft_servos_are_replaced_by_the_rule(loaded):

@@ -6,12 +6,15 @@ import mujoco
 import numpy as np
 import pytest
 
+from hsr8.robots.defaults import defaults_of
 from hsr8.robots.loaded import load_robot
-from tests.hsr8.robots.robot_parts import adding, part
+from hsr8.scenario.sensors import Camera
+from tests.hsr8.robots.robot_parts import adding, part, setting
 from tests.hsr8.robots.small_humanoid import SmallHumanoid
 from walking.constants import robot_record
 from walking.data import Data
 from walking.estimate.body import measure
+from walking.parameters import WalkingParameters
 
 ROBOTS = {
     "plain": SmallHumanoid(),
@@ -28,11 +31,16 @@ def frames(robot):
     return *robot.model.tree.feet, robot.model.tree.camera
 
 
+def robot_table(robot):
+    """Defaults of a scenario with a robot."""
+    return defaults_of(str(robot.file.with_suffix(".toml"))).table
+
+
 @pytest.fixture
 def load(tmp_path):
     """Loads a generated robot, with changes to its MJCF."""
 
-    def make(robot, *changes):
+    def make(robot, *changes, keys=""):
         element = robot.element()
         for change in changes:
             change(element)
@@ -41,6 +49,7 @@ def load(tmp_path):
         text = f'model = "robot.xml"\nfeet = ["{left}", "{right}"]\n'
         if robot.head:
             text += 'head = ["head_yaw", "head_pitch"]\n'
+        text += keys
         (tmp_path / "robot.toml").write_text(text)
         return load_robot(str(tmp_path / "robot.toml"))
 
@@ -119,3 +128,37 @@ def test_a_larger_mass_makes_the_walk_no_different_in_shape(load):
     light, heavy = load(SmallHumanoid()), load(SmallHumanoid(mass=1.5))
     np.testing.assert_allclose(light.model.ready[:12], heavy.model.ready[:12], atol=1e-6)
     assert heavy.model.mass == pytest.approx(1.5 * light.model.mass)
+
+
+@pytest.mark.parametrize("fov", [None, 30.0, 80.0])
+def test_the_image_of_a_camera_without_a_neck_ends_above_the_horizon(load, fov):
+    keys = "" if fov is None else f"vertical_fov_deg = {fov}\n"
+    robot = load(SmallHumanoid(head=""), keys=keys)
+    rotation, _ = robot.model.frame_pose(robot.model.tree.camera, robot.model.ready)
+    elevation = np.degrees(np.arcsin(rotation[2, 2]))
+    assert elevation + 0.5 * (fov or Camera().vertical_fov_deg) == pytest.approx(8.0, abs=1e-2)
+    gaze = robot_table(robot)["navigation"]["gaze"]
+    assert gaze["fixed_tilt"] == pytest.approx(np.radians(elevation))
+
+
+def test_a_camera_that_the_model_names_keeps_its_field_of_view(load):
+    lens = setting("camera", "eye", fovy="35")
+    for keys, fov in (("", 35.0), ("vertical_fov_deg = 50.0", 50.0)):
+        robot = load(SmallHumanoid(), lens, keys=f'camera = "eye"\n{keys}\n')
+        assert robot_table(robot)["camera"] == {"vertical_fov_deg": fov}
+    assert "camera" not in robot_table(load(SmallHumanoid()))
+
+
+@pytest.mark.parametrize(("effort", "limited"), [(60.0, False), (0.02, True)])
+def test_the_head_accelerates_as_its_torque_allows(load, effort, limited):
+    weak = setting("position", "head_pitch", forcerange=f"{-effort} {effort}")
+    robot = load(SmallHumanoid(), weak)
+    model = robot.spec.copy().compile()
+    data, matrix = mujoco.MjData(model), np.zeros((model.nv, model.nv))
+    mujoco.mj_forward(model, data)
+    mujoco.mj_fullM(model, data, matrix)
+    dof = int(model.joint("head_pitch").dofadr[0])
+    usual = WalkingParameters().head.max_acceleration
+    acceleration = robot_table(robot)["walking"]["head"]["max_acceleration"]
+    assert (acceleration < usual) == limited
+    assert acceleration == pytest.approx(min(usual, 0.5 * effort / matrix[dof, dof]), rel=5e-3)

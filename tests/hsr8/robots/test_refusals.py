@@ -191,7 +191,7 @@ EXCHANGED = {"feet": ("r_ankle_roll_link", "l_ankle_roll_link")}
                     '<equality><joint name="rod" joint1="l_knee" joint2="l_hip_roll"/></equality>'
                 )
             ],
-            ["equality 'rod': couples joint 'l_hip_roll' of a leg"],
+            ["equality 'rod': couples joint 'l_knee' to 'l_hip_roll' in a leg"],
         ),
         (
             RULE,

@@ -145,12 +145,29 @@ def test_damping_of_the_file_is_kept_where_it_is_larger_or_a_limit_is_unknown():
     assert joint_damping(0.1, 40.0, None) == 0.1
 
 
+def load(model):
+    """Weight of a robot times the height of its CoM above the soles [N m]."""
+    data = mujoco.MjData(model)
+    mujoco.mj_forward(model, data)
+    return float(model.body_subtreemass[1] * 9.81 * data.subtree_com[1, 2])
+
+
+@pytest.mark.parametrize("effort", [10.0, 1000.0])
+def test_an_effort_beyond_the_weight_is_a_placeholder_and_brakes_no_motion(effort, tmp_path):
+    element = SmallUrdf().element()
+    for limit in element.iter("limit"):
+        limit.set("effort", str(effort))
+    model = small(tmp_path, element)[0].compile()
+    np.testing.assert_allclose(model.actuator_forcerange[:, 1], effort)
+    np.testing.assert_allclose(model.dof_damping[6:], min(effort, load(model)) / 8.0)
+
+
 def test_every_joint_has_a_servo_with_the_limits_of_the_file(tmp_path):
     spec, notes = small(tmp_path)
     model = spec.compile()
     assert model.nu == model.njnt - 1
     np.testing.assert_allclose(model.actuator_forcerange, [[-40.0, 40.0]] * model.nu)
-    np.testing.assert_allclose(model.dof_damping[6:], 40.0 / 8.0)
+    np.testing.assert_allclose(model.dof_damping[6:], min(40.0, load(model)) / 8.0)
     left, right = SmallUrdf().legs()
     gains = {model.actuator(a).name: float(model.actuator_gainprm[a, 0]) for a in range(model.nu)}
     stiffness = {gains[name] for name in (*left, *right)}

@@ -163,7 +163,7 @@ def unchanged(_robot):
         (set_sole("0.16 -0.14 0.02", ["l_foot"]), {}, "link 'l_foot': size of the box", "positive"),
         (wedge, {}, "link 'l_foot': geometry <wedge>", "expected box, sphere"),
         (mimic_stranger, {}, "joint 'l_elbow': mimic, got 'stranger'", "another joint"),
-        (mimic_leg, {}, "couples joint 'l_knee' of a leg", 'linkage = "serial"'),
+        (mimic_leg, {}, "couples joint 'l_ankle_pitch' to 'l_knee' in a leg", 'linkage = "serial"'),
         (
             set_limit("head_yaw", effort="x"),
             {},

@@ -108,6 +108,7 @@ def test_values_of_a_user_are_literal_and_others_scaled(defaults, tmp_path):
     assert scenario.belief.tracking.forget_time == pytest.approx(25.0 * 2.0 / 1.5)
     assert scenario.world.scale == 2.0
     assert scenario.vision.beacon_height == 1.2
+    assert scenario.navigation.gaze.risk.beacon_height == 1.2
 
 
 def test_defaults_in_lists_and_optional_tables_are_scaled(defaults):

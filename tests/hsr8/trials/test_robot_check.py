@@ -112,7 +112,7 @@ def test_the_joint_at_its_limit_is_named():
 
     def limited(**changes):
         saturation = replace(walk.saturation, torque_ticks=zeros, stop_ticks=zeros, **changes)
-        return replace(walk, saturation=saturation, poses=np.zeros((n, 3))).limiting_joint(model)
+        return replace(walk, saturation=saturation, poses=np.zeros((n, 3))).limit(model)
 
     assert limited() == "no joint at a limit"
     speeds = np.zeros(len(zeros))
@@ -122,10 +122,10 @@ def test_the_joint_at_its_limit_is_named():
     stops[knee] = 340
     saturation = replace(walk.saturation, torque_ticks=zeros, stop_ticks=stops)
     stopped = replace(walk, saturation=saturation, poses=np.zeros((n, 3)))
-    assert stopped.limiting_joint(model) == "l_knee at the end of its range for 34% of the walk"
+    assert stopped.limit(model) == "l_knee at the end of its range for 34% of the walk"
     torques = zeros.copy()
     torques[ankle] = 500
     saturation = replace(walk.saturation, torque_ticks=torques, stop_ticks=stops)
     weak = replace(walk, saturation=saturation, poses=np.zeros((n, 3)))
     text = "r_ankle_roll at its maximum torque of 6 N m for 50% of the walk"
-    assert weak.limiting_joint(model) == text
+    assert weak.limit(model) == text

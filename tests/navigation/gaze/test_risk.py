@@ -84,6 +84,24 @@ def test_beacons_are_worth_a_look_while_the_pose_is_uncertain(belief, gaze_map):
     assert columns.max() < values.shape[1] - 1
 
 
+def test_a_view_of_a_beacon_shows_its_seam_and_nothing_hides_it(belief, track, gaze):
+    """Its top may be above the image."""
+
+    def worth(*tracks):
+        choose = gaze(known(), {"a/b": (1.2, 0.0)})
+        b = belief(tracks, sigma=0.05, turn_sigma=0.06)
+        values, grid = choose(b).gaze_map, choose.planner.grid
+        ahead = values[:, int(np.abs(grid.pan).argmin())]
+        seam = np.arctan2(0.3 - b.view.position[2], 1.2 - b.view.position[0])
+        return np.abs(grid.tilt - seam) / (0.5 * b.view.vertical_fov), ahead
+
+    off, alone = worth()
+    assert (alone[off > 1.0] == 0.0).all()
+    assert (alone[off < 0.85] > 0.0).all()
+    _, behind = worth(track((0.7, 0.0), (0.0, 0.0), age=0.0, radius=0.12, id=1))
+    assert (behind >= alone).all()
+
+
 def test_the_path_is_worth_a_look_by_the_age_of_its_ground(belief, gaze_map):
     def value(age, path_weight=0.3):
         b = belief(sigma=0.0, turn_sigma=0.0, age=lambda x, y: age)

@@ -217,3 +217,18 @@ def test_what_is_hidden_is_the_overlap_of_two_intervals_of_azimuth(turn, offset)
     assert views[:, DISTANCE] == pytest.approx([near, far])
     assert views[0, HIDDEN] == 0.0
     assert views[1, HIDDEN] == pytest.approx(max(0.0, overlap / (2.0 * b)), abs=1e-9)
+
+
+@given(position=positions, tilt=st.floats(-0.8, 0.5))
+def test_a_beacon_is_visible_with_its_seam_and_a_part_of_both_colours(position, tilt):
+    view, height = pose(float(np.arctan2(position[1], position[0])), tilt), 0.6
+    camera = view_of(CAMERA, view)[0]
+    shown = project(*position, 0.05, height, True, camera, False)
+    whole = project(*position, 0.05, height, False, camera, False)
+    seam = (np.array([*position, 0.5 * height]) - view.position) @ view.rotation
+    row = CAMERA.project(seam[None])[0, 1] if seam[2] > MIN_DEPTH else -1.0
+    assert shown in (whole, (0.0, 0.0, 0.0, 0.0, False))
+    if whole[2] and 4.0 < row < CAMERA.height - 4.0:
+        assert shown == whole
+    if not 2.0 < row < CAMERA.height - 2.0:
+        assert shown[2] == 0.0

@@ -112,6 +112,13 @@ def test_a_mirrored_world_has_a_mirrored_certificate(name):
     assert_walks_through(mirror, path, scenario.robot)
 
 
+def test_a_via_point_is_passed_at_the_distance_of_the_mission():
+    world = layout(waypoints=((0.0, 0.4), (1.0, 0.0)))
+    lengths = [certify(world, ROBOT, reached).length for reached in (0.01, 0.15, 0.4)]
+    assert lengths == sorted(lengths, reverse=True)
+    assert lengths[0] > lengths[2] + 0.2
+
+
 def test_a_robot_that_turns_slower_needs_longer():
     world = layout(waypoints=((0.5, 0.0), (0.5, 0.4)))
     usual = certify(world, ROBOT)

@@ -33,11 +33,14 @@ def test_beacons_of_the_same_two_colors_are_far_apart():
         assert np.linalg.norm(twin - beacon.position) > 5.0
 
 
-def test_a_moved_beacon_is_where_it_is_and_not_where_it_is_known():
-    beacons = standard_beacons((5.0, 5.0))
-    first, *others = with_first_moved(beacons, 0.5)
+@pytest.mark.parametrize("size", [(5.0, 5.0), (8.0, 3.0), (3.0, 8.0)])
+@pytest.mark.parametrize("distance", [-1.5, 0.5, 1.5])
+def test_a_moved_beacon_is_where_it_is_and_not_where_it_is_known(size, distance):
+    """It stays outside the border."""
+    beacons = standard_beacons(size)
+    first, *others = with_first_moved(beacons, distance, size)
+    assert np.max(np.abs(first.position) - 0.5 * np.asarray(size)) > BEACON_OFFSET - 1e-9
     assert first.believed == beacons[0].position
-    assert np.hypot(*np.subtract(first.position, first.believed)) == pytest.approx(0.5)
-    assert np.dot(np.subtract(first.position, first.believed), first.believed) == pytest.approx(0)
+    assert np.hypot(*np.subtract(first.position, first.believed)) == pytest.approx(abs(distance))
     assert tuple(others) == beacons[1:]
     assert all(b.believed == b.position for b in others)
