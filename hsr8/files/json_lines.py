@@ -9,7 +9,6 @@ from typing import TextIO, TypeVar
 
 from hsr8.errors import UsageError
 from hsr8.files import atomic
-from hsr8.files.regular import require_regular
 
 T = TypeVar("T")
 
@@ -21,10 +20,8 @@ def open_to_append(path: Path) -> TextIO:
 
     Raises:
         BlockingIOError: another process has opened the file so.
-        OSError: the file cannot be written, or is a link or not regular.
+        OSError: the file cannot be written, or is a link.
     """
-    if os.path.lexists(path):
-        require_regular(path)
     with ExitStack() as undo:
         file = undo.enter_context(open(path, "a+", encoding="utf-8", opener=atomic.no_link))
         fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
@@ -47,7 +44,6 @@ def read_lines(path: Path, parse: Callable[[str], T]) -> Iterator[T]:
         UsageError: the file cannot be read, or a line is damaged.
     """
     try:
-        require_regular(path)
         file = path.open("rb")
     except OSError as error:
         raise UsageError(f"cannot read {path}: {error.strerror}") from error

@@ -25,7 +25,7 @@ from hsr8.evaluation.sweep.summary import COUNTS, QUANTITIES
 from hsr8.evaluation.tables import flatten
 from hsr8.files import atomic
 from hsr8.files.json_lines import open_to_append, read_lines
-from hsr8.files.regular import read_text
+from hsr8.files.text import read_text
 from hsr8.recorder.run.run_folder import SCENARIO
 
 DEFINITION = "sweep.json"

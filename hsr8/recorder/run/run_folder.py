@@ -4,7 +4,6 @@
     manifest.json    versions, seed, renderer, exit reason
     metrics.json     results, at the end
     *.arrows         tables of the run, see ``docs/data.md``
-    checksums.txt    of the tables
     log.rrd          log for the Rerun viewer, after ``hsr8 replay`` or with ``hsr8 run --log``
     video.mp4        after ``hsr8 render`` or with ``hsr8 run --video``
     crash.txt        traceback of an internal error

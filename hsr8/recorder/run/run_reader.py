@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import Any
 
 from hsr8.errors import ScenarioError, UsageError
-from hsr8.files.regular import read_text
+from hsr8.files.text import read_text
 from hsr8.recorder.rows import TABLES
 from hsr8.recorder.run import run_folder
 from hsr8.recorder.run.manifest import FORMAT
@@ -79,10 +79,12 @@ class StoredRun(Run):
 
     def _table(self, name: str) -> Table:
         path = self.path / f"{name}{SUFFIX}"
-        table = read_table(path, TABLES[name], whole=self.ended)
+        table = read_table(path, TABLES[name])
         expected = self.manifest.get("rows", {}).get(name, int(name == "ticks"))
         if self.ended and len(table) < expected:
-            raise UsageError(f"{path}: cut off, it holds {len(table)} of {expected} rows")
+            raise UsageError(
+                f"{path}: cut off or damaged, got {len(table)} rows; expected {expected}"
+            )
         return table
 
 

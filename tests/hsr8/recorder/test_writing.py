@@ -15,12 +15,12 @@ from hsr8.recorder.recorder import Memory, Recorder
 from hsr8.recorder.run import run_folder
 from hsr8.recorder.run.run_folder import RunFolder
 from hsr8.recorder.run.run_reader import open_run
-from hsr8.recorder.stream import CHECKSUMS, SUFFIX
+from hsr8.recorder.stream import SUFFIX
 from hsr8.recorder.table import Table
 
 FAST = ("--body", "kinematic", "--camera", "analytic", "--quiet")
 TABLES = ("ticks", "records", "frames", "seconds")
-RECORDS = (*(f"{name}{SUFFIX}" for name in TABLES), CHECKSUMS)
+RECORDS = [f"{name}{SUFFIX}" for name in TABLES]
 
 
 def _run(out, *more):
