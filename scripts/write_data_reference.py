@@ -97,7 +97,7 @@ time = run.frames["time"]
 truth = trajectory(time, run.records["robot"][run.records.at(time)])
 error = APE(PoseRelation.translation_part)
 error.process_data((truth, trajectory(time, run.frames["pose"])))
-print(error.get_statistic(StatisticsType.rmse), run.metrics()["localization_rmse_m"])
+print(error.get_statistic(StatisticsType.rmse), run.metrics["localization_rmse_m"])
 ```
 
 ## Tables

@@ -11,7 +11,6 @@ from typing import BinaryIO
 
 import pyarrow as pa
 
-from hsr8.errors import UsageError
 from hsr8.files.writing import writing
 from hsr8.recorder.columns import Row, schema_of
 from hsr8.recorder.rows import TABLES
@@ -23,10 +22,10 @@ READ = pa.ipc.IpcReadOptions(use_threads=False)  # threads take ten times as lon
 
 
 class ArrowFiles:
-    """Sink of a recorder that writes a file per table.
+    """Sink of a recorder that writes a file per table, or a buffer in memory.
 
     Args:
-        folder: folder of the run; it exists.
+        folder: folder of the run, which exists; None for buffers.
 
     Attributes:
         rows: number of rows of each table so far.
@@ -35,62 +34,64 @@ class ArrowFiles:
         RecordingFailed: in every method, a file cannot be written.
     """
 
-    def __init__(self, folder: Path) -> None:
+    def __init__(self, folder: Path | None) -> None:
         self._folder = folder
         self._opened = ExitStack()
-        self._writers: dict[str, tuple[BinaryIO, pa.RecordBatchStreamWriter]] = {}
+        self._buffers: dict[str, pa.BufferOutputStream] = {}
+        self._writers: dict[str, tuple[BinaryIO | None, pa.RecordBatchStreamWriter]] = {}
         self.rows = dict.fromkeys(TABLES, 0)
 
     def add(self, tables: Mapping[str, Table]) -> None:
         """Append rows."""
         with writing(self._folder):
-            if not self._folder.exists():  # open files outlive their folder
+            if self._folder is not None and not self._folder.exists():  # files outlive it
                 raise FileNotFoundError(errno.ENOENT, "the folder was removed")
             for name, table in tables.items():
                 if name not in self._writers:
                     self._writers[name] = self._open(name, table.arrow.schema)
                 file, writer = self._writers[name]
                 writer.write_table(table.arrow)
-                file.flush()
+                if file is not None:
+                    file.flush()
                 self.rows[name] = self.rows.get(name, 0) + len(table)
 
-    def close(self) -> None:
-        """End the streams and close the files."""
+    def close(self) -> dict[str, pa.Buffer]:
+        """End the streams; close the files, or return the buffers by table."""
         with writing(self._folder):
             self._opened.close()
+        return {name: buffer.getvalue() for name, buffer in self._buffers.items()}
 
-    def _open(self, name: str, schema: pa.Schema) -> tuple[BinaryIO, pa.RecordBatchStreamWriter]:
+    def _open(
+        self, name: str, schema: pa.Schema
+    ) -> tuple[BinaryIO | None, pa.RecordBatchStreamWriter]:
+        if self._folder is None:
+            self._buffers[name] = buffer = pa.BufferOutputStream()
+            return None, self._opened.enter_context(pa.ipc.new_stream(buffer, schema))
         file = self._opened.enter_context((self._folder / f"{name}{SUFFIX}").open("wb"))
         writer = pa.ipc.new_stream(file, schema, options=WRITE)
         return file, self._opened.enter_context(writer)
 
 
-def read_table(path: Path, row: Row) -> Table:
-    """Return all whole batches of a table; one without a file has no rows.
+def read_table(name: str, content: bytes | pa.Buffer | None, row: Row) -> Table:
+    """Return all whole batches of a table.
 
     Args:
-        path: file.
+        name: name of the table, for messages.
+        content: its file or buffer; None for a table without rows.
         row: its columns.
 
     Raises:
-        UsageError: the file cannot be read, or is not a table of this kind.
+        ValueError: it is not a table of this kind.
     """
     empty = schema_of(row).empty_table()
-    try:
-        content = path.read_bytes()
-    except FileNotFoundError:
-        return Table(path.stem, empty)
-    except OSError as error:
-        raise UsageError(f"cannot read {path}: {error.strerror}") from error
+    if content is None:
+        return Table(name, empty)
     try:
         reader = pa.ipc.open_stream(content, options=READ)
     except (pa.ArrowException, OSError):
-        return Table(path.stem, empty)  # not even the schema is whole
-    try:
-        _require_types(reader.schema, empty.schema)
-    except ValueError as error:
-        raise UsageError(f"{path}: not a table of a run, got {error}") from error
-    return Table(path.stem, pa.Table.from_batches(_whole_batches(reader), reader.schema))
+        return Table(name, empty)  # not even the schema is whole
+    _require_types(reader.schema, empty.schema)
+    return Table(name, pa.Table.from_batches(_whole_batches(reader), reader.schema))
 
 
 def _whole_batches(reader: pa.RecordBatchStreamReader) -> Iterator[pa.RecordBatch]:

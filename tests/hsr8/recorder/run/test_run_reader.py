@@ -78,7 +78,7 @@ def test_an_unreadable_sweep_is_one_clear_error(tmp_path, capsys):
 def test_only_a_run_that_ended_must_be_complete(tmp_path, end, ended):
     path = RunFolder.create(tmp_path, "quick", 7)
     folder = RunFolder(path, load_scenario("quick", seed=7), (), "analytic")
-    folder.note(end, {"events": 3})
+    folder.end(end, rows={"events": 3})
     run = open_run(path)
     assert run.ended == ended
     if not ended:
