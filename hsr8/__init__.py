@@ -2,11 +2,11 @@
 
     import hsr8
 
-    result = hsr8.run("course", seed=7)
-    print(result.criteria_met, result.metrics["time_to_goal_s"])
+    run = hsr8.run("course", seed=7)
+    print(run.criteria_met, run.metrics["time_to_goal_s"])
 
-`run` and `Result` make whole runs, `load_scenario` and `Simulation` run tick by tick, `open_run`
-and `runs` read run folders. A custom planner or gaze gets a `Belief` and returns a `MotionDecision`
+`run` makes a whole `Run`, `load_scenario` and `Simulation` run tick by tick, `open_run` and `runs`
+read run folders. A custom planner or gaze gets a `Belief` and returns a `MotionDecision`
 or a `GazeDecision`, see `docs/python.md`; `docs/data.md` describes the tables of a run.
 """
 
@@ -28,8 +28,8 @@ from hsr8.version import VERSION
 
 if TYPE_CHECKING:
     from hsr8.api import run
-    from hsr8.evaluation.recording import Result
     from hsr8.loop import Simulation
+    from hsr8.recorder.run.run import Run
     from hsr8.recorder.run.run_reader import open_run, runs
     from hsr8.scenario.loader import load_scenario
     from navigation.belief.belief import Belief
@@ -44,7 +44,7 @@ __all__ = [
     "MotionDecision",
     "RecordingFailed",
     "RenderingUnavailable",
-    "Result",
+    "Run",
     "ScenarioError",
     "Simulation",
     "SimulationDiverged",
@@ -60,7 +60,7 @@ _PLACES = {
     "Belief": "navigation.belief.belief",
     "GazeDecision": "navigation.decision",
     "MotionDecision": "navigation.decision",
-    "Result": "hsr8.evaluation.recording",
+    "Run": "hsr8.recorder.run.run",
     "Simulation": "hsr8.loop",
     "load_scenario": "hsr8.scenario.loader",
     "open_run": "hsr8.recorder.run.run_reader",

@@ -7,14 +7,13 @@ from pathlib import Path
 from typing import Any, SupportsIndex
 
 from hsr8.errors import UsageError
-from hsr8.evaluation.recording import Result, record, renderer_of
+from hsr8.evaluation.recording import run_scenario
 from hsr8.files.writing import require_temporary
-from hsr8.loop import Simulation
 from hsr8.plugin_decisions import GazePlugin, PlannerPlugin
 from hsr8.plugin_walker import CustomWalker
 from hsr8.recorder.run.manifest import CALL
-from hsr8.recorder.run.run_folder import SCENARIO, RunFolder, new_run_folder
-from hsr8.recorder.run.run_reader import open_run
+from hsr8.recorder.run.run import Run
+from hsr8.recorder.run.run_folder import SCENARIO, new_run_folder
 from hsr8.scenario.layers import as_words
 from hsr8.scenario.loader import load_scenario
 from hsr8.scenario.schema import Scenario
@@ -30,7 +29,7 @@ def run(
     planner: PlannerPlugin | None = None,
     gaze: GazePlugin | None = None,
     walker: CustomWalker | None = None,
-) -> Result:
+) -> Run:
     """Run a scenario.
 
     Args:
@@ -61,27 +60,22 @@ def run(
         raise TypeError("settings: need the name or file of a scenario, got a loaded scenario")
     loaded = loaded if seed is None else loaded.with_seed(seed)
     with ExitStack() as stack:
-        folder = None
+        path = None
         if out is not None:
-            renderer = renderer_of(loaded)
-            new = new_run_folder(Path(out), loaded.name, loaded.seed)
-            path = stack.enter_context(new)  # before any compilation
-        simulation = Simulation(loaded, loaded.seed, planner=planner, gaze=gaze, walker=walker)
-        if out is not None:
-            source = path / SCENARIO if isinstance(scenario, Scenario) else scenario
-            words = ["hsr8", "run", str(source), "--seed", str(loaded.seed)]
-            words += ["--set", *as_words(settings)] if settings else []
-            plugins = {"planner": planner, "gaze": gaze, "walker": walker}
-            command = _call(plugins) or tuple(map(shlex.quote, words))
-            folder = RunFolder(path, loaded, command, renderer)
-        result = record(simulation, folder)
+            path = stack.enter_context(new_run_folder(Path(out), loaded.name, loaded.seed))
+        source = path and path / SCENARIO if isinstance(scenario, Scenario) else scenario
+        words = ["hsr8", "run", str(source), "--seed", str(loaded.seed)]
+        words += ["--set", *as_words(settings)] if settings else []
+        call = _call({"planner": planner, "gaze": gaze, "walker": walker})
+        command = call or tuple(map(shlex.quote, words))
+        made = run_scenario(loaded, path, command, planner=planner, gaze=gaze, walker=walker)
         if log:
             from hsr8.rerun_log.run_log import write_log  # noqa: PLC0415  takes 0.2 s
 
-            write_log(open_run(path))
-    if result.exit_reason == "interrupted":
+            write_log(made)
+    if made.exit_reason == "interrupted":
         raise KeyboardInterrupt  # also ends a loop over runs
-    return result
+    return made
 
 
 def _call(plugins: Mapping[str, object]) -> tuple[str, ...]:

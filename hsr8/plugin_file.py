@@ -9,12 +9,11 @@ from types import ModuleType
 from typing import TYPE_CHECKING, Any
 
 from hsr8.errors import UsageError
-from hsr8.files.regular import read_bytes
+from hsr8.files.text import read_bytes
 
 if TYPE_CHECKING:  # the command line imports this module for its errors alone
     from hsr8.scenario.plugin import Plugin
 
-MAX_SIZE = 10_000_000  # of a plugin file [byte]
 PREFIX = "plugin "  # of module names; with the space, no import statement can name them
 
 
@@ -138,7 +137,7 @@ def line_of(error: BaseException) -> str | None:
 def _content(reference: str) -> bytes:
     file = reference.rpartition(":")[0]
     try:
-        return read_bytes(file, MAX_SIZE)
+        return read_bytes(file)
     except OSError as error:
         raise UsageError(f"{reference}: cannot read {file}: {error.strerror}") from error
 

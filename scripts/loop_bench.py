@@ -14,7 +14,7 @@ import tempfile
 from contextlib import closing
 from pathlib import Path
 
-from hsr8.evaluation.recording import record
+from hsr8.evaluation.recording import Recording
 from hsr8.gl import require_gl
 from hsr8.loop import Simulation
 from hsr8.record import Tick
@@ -96,9 +96,11 @@ class Bench:
             folder = RunFolder(path, simulation.scenario, ("bench",), require_gl())
             self.watch = watch
             self._watch(simulation)
-            with closing(floor):
-                result = record(simulation, folder, on_tick=floor.on_tick)
-        self.simulated = result.metrics["sim_time_s"]
+            with closing(floor), Recording(simulation, folder) as recording:
+                for tick in simulation:
+                    recording.append(tick)
+                    floor.on_tick(tick)
+            self.simulated = recording.run().metrics["sim_time_s"]
         self.floor = watch.total(*FLOOR) + watch.beside(*FLOOR)
         stages = [stage for stage in watch.times if stage not in FLOOR]
         self.beside = watch.beside(*stages)

@@ -17,8 +17,7 @@ _INTRODUCTION = """\
 
 A run folder has six tables, each an [Arrow](https://arrow.apache.org) stream: `ticks.arrows`,
 `records.arrows`, `frames.arrows`, `seconds.arrows`, `events.arrows` and `images.arrows`. A table
-without rows has no file. Names, units, shapes and descriptions are in the schema. `checksums.txt`
-holds the CRC-32 of every batch.
+without rows has no file. Names, units, shapes and descriptions are in the schema.
 
 `hsr8.open_run` reads the tables, in a killed run up to the last batch. A column is an array with
 one row for each row of the table:
@@ -98,7 +97,7 @@ time = run.frames["time"]
 truth = trajectory(time, run.records["robot"][run.records.at(time)])
 error = APE(PoseRelation.translation_part)
 error.process_data((truth, trajectory(time, run.frames["pose"])))
-print(error.get_statistic(StatisticsType.rmse), run.metrics()["localization_rmse_m"])
+print(error.get_statistic(StatisticsType.rmse), run.metrics["localization_rmse_m"])
 ```
 
 ## Tables

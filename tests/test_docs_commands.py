@@ -51,7 +51,6 @@ STANDS_FOR = {
         "MODEL": "my_robot.xml",
         "PNG": "picture.png",
         "IMAGE...": "image.png",
-        "$SLURM_ARRAY_TASK_ID/32": "1/32",
     },
 }
 # Appended, since of an option given twice the last one holds.
@@ -74,17 +73,21 @@ class Parsed(Exception):
 
 
 class Instant:
-    """An executor of sweeps whose runs all succeed at once."""
+    """A pool of sweeps whose runs all succeed at once."""
 
     def __init__(self):
         self.queue = []
+
+    @property
+    def free(self):
+        return 1 - len(self.queue)
 
     def submit(self, job):
         self.queue.append(job)
 
     def wait(self, seconds):
         job = self.queue.pop(0)
-        told = {"seed": job.seed, "outcome": "passed", "attempts": job.attempt, "worker": "here"}
+        told = {"seed": job.seed, "outcome": "passed", "attempts": job.attempt, "run": job.run}
         return [(job, told | GOOD)]
 
     def close(self):
@@ -244,7 +247,7 @@ def stand_ins(monkeypatch, tmp_path, finished):
     shutil.copy(ROOT / "models" / "hsr8" / "hsr8.xml", tmp_path / "my_robot.xml")
     monkeypatch.setattr("hsr8.api.run", run_in_short)
     monkeypatch.setattr("hsr8.evaluation.sweep.runs.require_gl", lambda: "none")
-    monkeypatch.setattr("hsr8.evaluation.sweep.runs.open_executor", lambda name, workers: Instant())
+    monkeypatch.setattr("hsr8.evaluation.sweep.runs.open_pool", lambda name, workers: Instant())
     monkeypatch.setattr("hsr8.cli.recorded_run._write_video", lambda path, options: None)
     monkeypatch.setattr("hsr8.render.viewer.has_display", lambda: True)
     monkeypatch.setattr("hsr8.render.viewer.show", lambda logs: 0)
@@ -319,7 +322,7 @@ def test_every_command_of_the_page_works(page, stand_ins, capsys, monkeypatch):
         "python scripts/no_such_study.py",
         "make coffee",
         "bash scripts/no_such.sh",
-        "pip install '.[tea]'",
+        "pip install -e '.[tea]'",
         "hsr8 run course --robot no_robot.toml",
         "docker run --rm hsr8 rum quick",
         "frobnicate",

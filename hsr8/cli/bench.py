@@ -7,7 +7,6 @@ from pathlib import Path
 from hsr8.cli.command_line import command_words, settings
 from hsr8.cli.options import Bench, Run
 from hsr8.cli.sweep import INTERRUPTED, folder_name, report_lost_runs, require_no_seed
-from hsr8.cli.termination import like_ctrl_c
 from hsr8.errors import Hsr8Error, UsageError
 from hsr8.evaluation.bench.entry import FILE, Entry, entry_page, row
 from hsr8.evaluation.bench.suite import (
@@ -17,6 +16,7 @@ from hsr8.evaluation.bench.suite import (
     read_suite,
     scenario_hash,
 )
+from hsr8.evaluation.signals import like_ctrl_c
 from hsr8.evaluation.sweep.folder import REPORT
 from hsr8.evaluation.sweep.runs import Execution, run_sweeps
 from hsr8.evaluation.sweep.seeds import parse_seeds

@@ -12,7 +12,8 @@ from hsr8.evaluation import run_difference
 from hsr8.evaluation.run_difference import RunDifference
 from hsr8.files import atomic
 from hsr8.recorder.rows import TABLES
-from hsr8.recorder.run.run_reader import StoredRun, open_run
+from hsr8.recorder.run.run import Run
+from hsr8.recorder.run.run_reader import open_run
 
 DIFFERENT = 1
 MAX_VALUE_LENGTH = 24  # in the table [characters]
@@ -30,8 +31,8 @@ def main(options: Diff) -> int:
     about = [*run_difference.settings(a, b), *run_difference.results(a, b)]
     if options.json:
         comparison = {
-            "a": str(a.path),
-            "b": str(b.path),
+            "a": str(a.folder),
+            "b": str(b.folder),
             "equal": not motion,
             "first": asdict(motion[0]) if motion else None,
             "differences": [asdict(d) for d in (*motion, *about)],
@@ -42,11 +43,9 @@ def main(options: Diff) -> int:
     return DIFFERENT if motion else 0
 
 
-def _show(
-    a: StoredRun, b: StoredRun, motion: list[RunDifference], about: list[RunDifference]
-) -> None:
+def _show(a: Run, b: Run, motion: list[RunDifference], about: list[RunDifference]) -> None:
     console = Console(highlight=False, soft_wrap=True)
-    console.print(f"A           {a.path}\nB           {b.path}", markup=False)
+    console.print(f"A           {a.folder}\nB           {b.folder}", markup=False)
     if motion:
         d = motion[0]
         values = f"{_text(d.a)} and {_text(d.b)}"

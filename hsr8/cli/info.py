@@ -7,10 +7,11 @@ from rich.console import Console
 from hsr8.cli import report, tables
 from hsr8.cli.options import Info
 from hsr8.errors import UsageError
-from hsr8.evaluation.verdict import Criterion, evaluate_criteria, exit_code
 from hsr8.files import atomic
 from hsr8.recorder.run.manifest import RUNNING, other_versions
-from hsr8.recorder.run.run_reader import StoredRun, open_run
+from hsr8.recorder.run.run import Run
+from hsr8.recorder.run.run_reader import open_run
+from hsr8.recorder.run.verdict import Criterion, exit_code
 
 MAX_EVENTS = 30  # in the table; --json has all of them
 
@@ -18,13 +19,13 @@ MAX_EVENTS = 30  # in the table; --json has all of them
 def main(options: Info) -> int:
     """Show results, events, versions and files of a run."""
     run = open_run(options.run)
-    manifest, results, criteria = run.manifest, run.metrics(), _criteria(run)
+    manifest, results, criteria = run.manifest, run.metrics, _criteria(run)
     events = [vars(event) for event in run.events.objects("time", "kind", "text")]
-    files = {f.name: f.stat().st_size for f in sorted(run.path.iterdir()) if f.is_file()}
+    files = {f.name: f.stat().st_size for f in sorted(run.folder.iterdir()) if f.is_file()}
     if options.json:
         met = exit_code(str(manifest.get("exit_reason")), criteria) == 0
         contents = {
-            "run": str(run.path),
+            "run": str(run.folder),
             "manifest": manifest,
             "metrics": results,
             "criteria_met": met if criteria else None,
@@ -41,7 +42,7 @@ def main(options: Info) -> int:
     if made["exit_reason"] == RUNNING:
         made["exit_reason"] = "running, or killed; its records can be read"
     others = {name: f"was {then}, is {now}" for name, then, now in other_versions(manifest)}
-    console.print(tables.facts(made | others, str(run.path)))
+    console.print(tables.facts(made | others, str(run.folder)))
     if events:
         title = f"the last {MAX_EVENTS} of {len(events)} events"
         lines = [
@@ -55,17 +56,16 @@ def main(options: Info) -> int:
         "results",
         results=results,
         criteria=criteria,
-        path=run.path,
+        path=run.folder,
         command=str(manifest.get("command", "")),
         console=console,
     )
     return 0
 
 
-def _criteria(run: StoredRun) -> tuple[Criterion, ...]:
+def _criteria(run: Run) -> tuple[Criterion, ...]:
     """Return the criteria, where there are results and this version can read the scenario."""
-    results = run.metrics()
     try:
-        return evaluate_criteria(run.scenario().criteria, results) if results else ()
+        return run.criteria
     except (UsageError, KeyError):  # made by another version
         return ()

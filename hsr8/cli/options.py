@@ -76,7 +76,8 @@ class Sweep(RunOptions):
     """Run a scenario over many seeds in parallel and summarize the results.
 
     Runs with a result in the folder are not repeated: the same command line continues a
-    stopped sweep, and further seeds are added.
+    stopped sweep, and further seeds are added. Started on several machines with a shared disk,
+    it shares the work.
     """
 
     seeds: Annotated[str, arg(metavar="SEEDS")]
@@ -89,12 +90,10 @@ class Sweep(RunOptions):
     """Also vary a setting, one folder per value; repeated: all combinations."""
     executor: str = "local"
     """Executor: local, or dask://HOST:PORT for a Dask cluster."""
-    shard: Text = None
-    """Run part I of N, given as I/N; then the same line without --shard writes the report."""
     timeout: Seconds = None
     """Wall-clock limit per run [s]; default: 60 s + 20 x its duration."""
     keep: Literal["all", "failed", "none"] = "all"
-    """Run folders to keep, 100 kB per simulated second; one with a traceback always is."""
+    """Runs to keep tables of, 200 to 300 kB per simulated second; failed: those without success."""
     json: Json = False
     quiet: Quiet = False
 
@@ -141,7 +140,7 @@ class Bench:
     timeout: Seconds = None
     """Wall-clock limit per run [s]; default: 60 s + 20 x its duration."""
     keep: Literal["all", "failed", "none"] = "none"
-    """Run folders to keep, 100 kB per simulated second; one with a traceback always is."""
+    """Runs to keep tables of, 200 to 300 kB per simulated second; failed: those without success."""
     json: Json = False
     quiet: Quiet = False
 

@@ -14,7 +14,7 @@ SUFFIXES = (".png", ".svg", ".pdf")
 def main(options: Plot) -> int:
     """Draw the plot and print its path."""
     run = open_run(options.run)
-    out = options.out or run.path / f"{options.what}.png"
+    out = options.out or run.folder / f"{options.what}.png"
     require_file_name("--out", out, SUFFIXES)
     time = run.records["time"]
     end = float(time[-1]) if len(time) else 0.0
@@ -25,7 +25,7 @@ def main(options: Plot) -> int:
             f"--from, --to: nothing to plot from {start:g} s to {stop:g} s; "
             f"the run ended at {end:g} s"
         )
-    print(f"plotting    {run.path}", file=sys.stderr, flush=True)
+    print(f"plotting    {run.folder}", file=sys.stderr, flush=True)
     try:
         from hsr8.render.walk_figure import draw, save  # noqa: PLC0415  takes seconds
     except OSError as error:
@@ -36,7 +36,7 @@ def main(options: Plot) -> int:
     from hsr8.robots.loaded import load_robot  # noqa: PLC0415  takes seconds
 
     robot = load_robot(run.scenario().robot.model).model
-    title = f"{run.manifest.get('scenario', run.path.name)}, seed {run.seed}"
+    title = f"{run.manifest.get('scenario', run.folder.name)}, seed {run.seed}"
     if (start, stop) != (0.0, end):
         title += f", {start:g} to {stop:g} s"
     figure = draw(run.records.window(start, stop), robot, options.what, title)

@@ -1,11 +1,9 @@
 """One run of ``hsr8 run``, its folder and its result."""
 
-import signal
 import sys
 from collections.abc import Iterator, Sequence
 from contextlib import ExitStack, contextmanager
 from pathlib import Path
-from types import FrameType
 
 from rich.console import Console
 
@@ -14,24 +12,23 @@ from hsr8.cli.first_compilation import two_processes
 from hsr8.cli.options import Run
 from hsr8.cli.output_file import writing
 from hsr8.cli.progress import Progress
-from hsr8.cli.termination import like_ctrl_c, on_signals
 from hsr8.errors import Hsr8Error
 from hsr8.evaluation.crash import crash_report
-from hsr8.evaluation.recording import Result, record, renderer_of
-from hsr8.evaluation.verdict import exit_code
+from hsr8.evaluation.recording import run_scenario
+from hsr8.evaluation.signals import like_ctrl_c
 from hsr8.export.bag import require_rosbags, write_bag
 from hsr8.files import atomic
 from hsr8.files.atomic import draft
 from hsr8.files.writing import require_temporary
 from hsr8.gl import require_gl
-from hsr8.loop import Simulation
-from hsr8.recorder.run.run_folder import VIDEO, RunFolder, new_run_folder
+from hsr8.recorder.run.run import Run as RecordedRun
+from hsr8.recorder.run.run_folder import VIDEO, new_run_folder
 from hsr8.recorder.run.run_reader import open_run
+from hsr8.recorder.run.verdict import exit_code
 from hsr8.render.viewer import LiveView, live_view
 from hsr8.scenario.schema import Scenario
 
 BAG = "bag"  # folder in that of the run
-SIGNALS = (signal.SIGINT, signal.SIGTERM)
 
 
 def start(options: Run, scenario: Scenario, command: Sequence[str]) -> int:
@@ -58,41 +55,31 @@ def start(options: Run, scenario: Scenario, command: Sequence[str]) -> int:
 
 
 def _start(options: Run, scenario: Scenario, command: Sequence[str]) -> int:
-    renderer = renderer_of(scenario)
     new = new_run_folder(options.out, scenario.name, scenario.seed)  # before any compilation
     with new as path, _view(options) as view:
-        simulation = Simulation(scenario, scenario.seed)
-
-        def interrupt(number: int, frame: FrameType | None) -> None:
-            """End the run after the current tick; a second signal ends it at once."""
-            signal.signal(number, signal.default_int_handler)
-            simulation.interrupt()
-
-        with crash_report(path), on_signals(SIGNALS, interrupt):
-            folder = RunFolder(path, scenario, command, renderer)
-            with ExitStack() as shown:
-                on_tick = None
-                if not options.quiet:
-                    on_tick = shown.enter_context(Progress(scenario.duration)).show
-                address = view.address if view else ""
-                result = record(simulation, folder, live=address, on_tick=on_tick)
-        if result.diverged:
-            print(f"hsr8: {result.diverged}", file=sys.stderr)
+        with crash_report(path), ExitStack() as shown:
+            on_tick = None
+            if not options.quiet:
+                on_tick = shown.enter_context(Progress(scenario.duration)).show
+            address = view.address if view else ""
+            run = run_scenario(scenario, path, command, live=address, on_tick=on_tick)
+        if run.diverged:
+            print(f"hsr8: {run.diverged}", file=sys.stderr)
         if not (options.json or options.quiet):
-            _show(result)
+            _show(run)
         failures = _write_outputs(options, path)
         if options.json:
-            verdicts = {"criteria_met": result.criteria_met, "definitions": report.VERDICTS}
+            verdicts = {"criteria_met": run.criteria_met, "definitions": report.VERDICTS}
             failed = {"failed_outputs": [*map(str, failures)]}
-            print(atomic.dumps(result.metrics | verdicts | failed))
-        if view is not None and result.exit_reason != "interrupted":
+            print(atomic.dumps(run.metrics | verdicts | failed))
+        if view is not None and run.exit_reason != "interrupted":
             end = "Ctrl-C" if view.page else "closing the window"
             print(f"{end} ends the viewer", file=sys.stderr)
             view.wait()
     for failure in failures:
         print(f"hsr8: {failure}", file=sys.stderr)
     codes = [failure.exit_code for failure in failures]
-    return max([exit_code(result.exit_reason, result.criteria), *codes])
+    return max([exit_code(run.exit_reason, run.criteria), *codes])
 
 
 def _write_outputs(options: Run, path: Path) -> list[Hsr8Error]:
@@ -144,14 +131,12 @@ def _view(options: Run) -> Iterator[LiveView | None]:
         yield view
 
 
-def _show(result: Result) -> None:
+def _show(run: RecordedRun) -> None:
     """Print the results."""
-    assert result.folder is not None
-    manifest = result.run.manifest
     report.show(
-        f"{manifest['scenario']}, seed {manifest['seed']}",
-        results=result.metrics,
-        criteria=result.criteria,
-        path=result.folder,
-        command=manifest["command"],
+        f"{run.manifest['scenario']}, seed {run.seed}",
+        results=run.metrics,
+        criteria=run.criteria,
+        path=run.folder,
+        command=run.manifest["command"],
     )

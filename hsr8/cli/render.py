@@ -28,7 +28,7 @@ def main(options: Render) -> int:
         raise UsageError(f"--speed: out of range, got {options.speed:g}; expected 0.01 to 1000")
     run = open_run(options.run)
     renderer = require_gl()
-    out = options.out or run.path / run_folder.VIDEO
+    out = options.out or run.folder / run_folder.VIDEO
     require_file_name("--out", out, SUFFIXES)
     video = VideoOptions(
         camera=options.camera,

@@ -6,11 +6,12 @@ from pathlib import Path
 
 from hsr8.cli.options import Replay
 from hsr8.cli.output_file import parse_size, require_file_name, writing
-from hsr8.cli.termination import like_ctrl_c
 from hsr8.errors import UsageError
+from hsr8.evaluation.signals import like_ctrl_c
 from hsr8.files import atomic
 from hsr8.recorder.run.manifest import versions
-from hsr8.recorder.run.run_reader import StoredRun, open_run
+from hsr8.recorder.run.run import Run
+from hsr8.recorder.run.run_reader import open_run
 from hsr8.render import viewer
 from hsr8.render.viewer import live_view
 
@@ -39,7 +40,7 @@ def main(options: Replay) -> int:
             view.wait()
         return 0
     if not viewer.has_display():
-        run_word, log_word = shlex.quote(str(run.path)), shlex.quote(str(log))
+        run_word, log_word = shlex.quote(str(run.folder)), shlex.quote(str(log))
         version = versions()["rerun-sdk"]
         raise UsageError(
             "no display for the viewer"
@@ -54,7 +55,7 @@ def main(options: Replay) -> int:
     return 0
 
 
-def _made(run: StoredRun, *, full: bool) -> Path:
+def _made(run: Run, *, full: bool) -> Path:
     """Write the log of a run that has none."""
     run.scenario()  # reports a scenario that cannot be read
     print("writing the log", file=sys.stderr, flush=True)
@@ -63,7 +64,7 @@ def _made(run: StoredRun, *, full: bool) -> Path:
     return write_log(run, full=full)
 
 
-def _time(options: Replay, run: StoredRun) -> float:
+def _time(options: Replay, run: Run) -> float:
     """Return the simulated time of the screenshot [s]: by default the middle of the run."""
     time = run.records["time"]
     if options.time is None:

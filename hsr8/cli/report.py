@@ -10,7 +10,7 @@ from rich.console import Console
 
 from hsr8.cli import tables
 from hsr8.evaluation.registry import METRICS, Shown, shown_in
-from hsr8.evaluation.verdict import Criterion, exit_code
+from hsr8.recorder.run.verdict import Criterion, exit_code
 
 VERDICTS = {  # definitions
     "success": METRICS["success"].text,

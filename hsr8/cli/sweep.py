@@ -14,12 +14,12 @@ from rich.table import Table
 
 from hsr8.cli.command_line import command_words, flat, option_tables, run_options, settings
 from hsr8.cli.options import Sweep
-from hsr8.cli.termination import like_ctrl_c
 from hsr8.errors import Hsr8Error, UsageError
+from hsr8.evaluation.signals import like_ctrl_c
 from hsr8.evaluation.sweep.folder import REPORT
 from hsr8.evaluation.sweep.report import headline, report_of_values
 from hsr8.evaluation.sweep.runs import Execution, run_sweeps
-from hsr8.evaluation.sweep.seeds import parse_seeds, parse_shard, parse_values
+from hsr8.evaluation.sweep.seeds import parse_seeds, parse_values
 from hsr8.evaluation.sweep.summary import Summary, summarize
 from hsr8.files import atomic
 from hsr8.scenario.loader import load_scenario
@@ -34,7 +34,6 @@ def main(options: Sweep) -> int:
     execution = Execution(
         command=shlex.join(command_words(options)),
         seeds=parse_seeds(options.seeds),
-        shard=None if options.shard is None else parse_shard(options.shard),
         workers=options.workers,
         executor=options.executor,
         timeout=options.timeout,

@@ -7,7 +7,8 @@ from hsr8.cli.options import Verify
 from hsr8.errors import UsageError
 from hsr8.files import atomic
 from hsr8.recorder.run.manifest import other_versions
-from hsr8.recorder.run.run_reader import StoredRun, open_run
+from hsr8.recorder.run.run import Run
+from hsr8.recorder.run.run_reader import open_run
 from hsr8.robots.locate import digest
 
 if TYPE_CHECKING:
@@ -20,18 +21,18 @@ def main(options: Verify) -> int:
     """Recompute physics, belief and decisions and compare them bit for bit."""
     run = open_run(options.run, trust=options.trust)
     if not options.json:
-        print(f"run         {run.path}", flush=True)
+        print(f"run         {run.folder}", flush=True)
     from hsr8.evaluation.replay import replay  # noqa: PLC0415  takes seconds
 
     stages = replay(run)
     if not any(stage.count for stage in stages):
-        raise UsageError(f"{run.path}: nothing to recompute: the run ended in its first second")
+        raise UsageError(f"{run.folder}: nothing to recompute: the run ended in its first second")
     equal = all(stage.equal for stage in stages)
     changes = [] if equal else _changes(run)
     if options.json:
         rows = [asdict(stage) | {"equal": stage.equal} for stage in stages]
         changed = {name: {"then": then, "now": now} for name, then, now in changes}
-        result = {"run": str(run.path), "equal": equal, "changed": changed, "stages": rows}
+        result = {"run": str(run.folder), "equal": equal, "changed": changed, "stages": rows}
         print(atomic.dumps(result))
     else:
         for name, then, now in changes:
@@ -41,7 +42,7 @@ def main(options: Verify) -> int:
     return 0 if equal else DIFFERENT
 
 
-def _changes(run: StoredRun) -> list[tuple[str, str, str]]:
+def _changes(run: Run) -> list[tuple[str, str, str]]:
     """Return name, then and now of every library that differs, and of the robot's files."""
     recorded = run.manifest.get("libraries", {})
     robot = digest(run.scenario().robot.model)

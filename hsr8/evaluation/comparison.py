@@ -101,7 +101,7 @@ def open_side(path: Path) -> Side:
             hint = f"; did you mean {Path('sweeps') / path}?"
         raise UsageError(f"{path}: not a folder of a sweep or a run{hint}")
     run = open_run(path)
-    metrics = run.metrics()
+    metrics = run.metrics
     if not metrics:
         raise UsageError(f"{path}: no results, the run did not end")
     try:
@@ -111,14 +111,14 @@ def open_side(path: Path) -> Side:
             name=str(run.manifest["scenario"]),
             command_words=(str(run.manifest["command"]),),
             hsr8=str(run.manifest["hsr8"]),
-            code="",
+            code=str(run.manifest["code"]),
             processor=str(run.manifest["machine"]).split(" ")[-1],
             libraries=dict(run.manifest["libraries"]),
             scenario=scenario,
         )
     except (KeyError, TypeError, ValueError) as error:
         raise UsageError(f"{path}: cannot read the run folder: {error}") from error
-    return _side(run.path, definition, {run.seed: {"seed": run.seed, **flatten(metrics)}})
+    return _side(run.folder, definition, {run.seed: {"seed": run.seed, **flatten(metrics)}})
 
 
 def _side(path: Path, definition: Definition, runs: dict[Seed, RunResult]) -> Side:
@@ -161,8 +161,6 @@ def compare(a: Side, b: Side, metrics: Sequence[str] = ()) -> Comparison:
     names = metrics or [metric.name for metric in shown_in(Shown.COMPARED)]
     differences = paired_differences(names, a.runs, b.runs, seeds)
     versions = version_differences(a.definition, b.definition)
-    if not (a.definition.code and b.definition.code):  # unknown for a run folder
-        versions.pop("code", None)
     plugins = _plugin(a.definition), _plugin(b.definition)
     if plugins[0] != plugins[1]:
         versions["decisions"] = plugins

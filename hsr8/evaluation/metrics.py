@@ -2,22 +2,24 @@
 
 ``success`` means: no collision, no fall, every via point passed and, with a goal, the goal reached,
 in a run that ended by ``goal`` or ``completed``. The criteria of a scenario are evaluated
-separately, see `hsr8.evaluation.verdict`.
+separately, see `hsr8.recorder.run.verdict`.
 """
 
-from collections.abc import Mapping
 from dataclasses import dataclass
 from math import degrees, hypot, inf, isfinite, sqrt
 
 import numpy as np
 from numpy.typing import NDArray
 
+from hsr8.evaluation.registry import METRICS
 from hsr8.evaluation.statistics import mean, root_mean, total
 from hsr8.evaluation.track_metrics import track_metrics
 from hsr8.evaluation.walk_metrics import walk_metrics
 from hsr8.recorder.derived import truth_at
+from hsr8.recorder.run.run import Run
 from hsr8.recorder.table import Table
 from hsr8.world.field.certificate import Certificate
+from hsr8.world.field.generator import draw_world
 from hsr8.world.field.layout import Layout
 from hsr8.world.truth.truth import RECOVERY_TIME, CollisionCounter, Contact, Falls
 from navigation.angles import wrap
@@ -27,23 +29,6 @@ Array = NDArray[np.float64]
 Mask = NDArray[np.bool_]
 Truth = dict[str, Array]
 
-COLUMNS = {
-    "ticks": ("limits", "zmp_depth", "down", "walking_time"),
-    "records": (
-        *("time", "robot", "obstacle_positions", "obstacle_velocities", "clearance", "contacts"),
-        *("pushes", "fallen", "roll", "pitch"),
-        *("phase", "step_count", "command", "applied_velocity"),
-    ),
-    "frames": (
-        *("time", "pose", "pose_covariance", "lost", "filter_faults", "tracks"),
-        *("via_points", "done", "gaze", "capture_head"),
-    ),
-    "seconds": (
-        *("torque_saturated", "torque_saturated_by", "at_stop", "at_stop_by"),
-        *("peak_torque", "peak_speed"),
-    ),
-}
-"""Columns that the metrics need, by table."""
 ENDED = ("completed", "goal")  # exit reasons of a success without a goal
 # Lengths and speeds are those in a world of scale 1.
 TOLERANCE = 0.10  # added to the radii of via points and goal for the true position [m]
@@ -54,34 +39,31 @@ STANDING_SPEED = 0.02  # maximum speed of a standing robot [m/s]
 SPEED_WINDOW = 1.0  # interval over which speed is measured, longer than a step [s]
 
 
-def metrics(
-    tables: Mapping[str, Table],
-    layout: Layout,
-    mission: MissionParameters,
-    *,
-    certificate: Certificate | None = None,
-    exit_reason: str,
-    state_hash: str,
-    wall_time: float,
+def measure(
+    run: Run, layout: Layout | None = None, certificate: Certificate | None = None
 ) -> dict[str, object]:
     """Return all results of a run by name, with units at the end of the names.
 
     Unmeasured results are None, for example the localization of a run without a camera frame.
 
     Args:
-        tables: tables of the run, with at least `COLUMNS`.
-        layout: layout of the run's world.
-        mission: distances at which via points and goal are reached.
-        certificate: certificate of the world.
-        exit_reason: exit reason of the run.
-        state_hash: hash of the last state.
-        wall_time: wall time of the run [s].
+        run: run that has ended.
+        layout: layout of its world, which is drawn again by default.
+        certificate: certificate of its world.
+
+    Raises:
+        UsageError: a table is damaged, or the scenario cannot be read.
     """
-    records, frames = tables["records"], tables["frames"]
+    scenario, manifest = run.scenario(), run.manifest
+    if layout is None:
+        world = draw_world(scenario, run.seed)
+        layout, certificate = world.layout, world.certificate
+    records, frames, exit_reason = run.records, run.frames, run.exit_reason
     truth = truth_at(frames, records)
     time = float(records["time"][-1]) if len(records) else 0.0
+    wall_time = float(manifest["wall_time_s"])
     undisturbed = _undisturbed(records, frames, truth)
-    arrival = _arrival(frames, truth, layout, mission)
+    arrival = _arrival(frames, truth, layout, scenario.navigation.mission)
     collisions, first = _collisions(records)
     moving = sum(c.moving for c in collisions)
     path, standing = _path(records, layout.scale)
@@ -106,7 +88,7 @@ def metrics(
         "sim_time_s": time,
         "wall_time_s": wall_time,
         "real_time_factor": time / wall_time if wall_time > 0.0 else None,
-        "state_hash": state_hash,
+        "state_hash": manifest["state_hash"],
         "exit_reason": exit_reason,
         "collisions_moving": moving,
         "collisions_static": len(collisions) - moving,
@@ -117,11 +99,9 @@ def metrics(
         "max_tilt_deg": degrees(tilt),
         "time_standing_s": standing,
         **_gaze(frames, time),
-        "lost_fraction": mean(frames["lost"]),
-        "filter_faults": int(frames["filter_faults"][-1]) if len(frames) else 0,
-        "camera_frames": len(frames),
+        **{m.name: m.of(run) for m in METRICS.values() if m.of is not None},
         **track_metrics(frames, truth, layout, undisturbed),
-        **walk_metrics(tables),
+        **walk_metrics(run),
     }
 
 

@@ -1,97 +1,99 @@
-"""Simulations that are recorded and measured, in memory or in a run folder."""
+"""The driver of runs: a simulation, its tables, and the results that follow from them."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from contextlib import ExitStack, suppress
-from dataclasses import asdict, dataclass
+from dataclasses import asdict
 from pathlib import Path
 from time import perf_counter
 from types import TracebackType
-from typing import Any, Self
+from typing import Self
 
-from hsr8 import arithmetic
 from hsr8.compilation_watch import CompilationWatch
 from hsr8.errors import RecordingFailed
-from hsr8.evaluation import metrics
-from hsr8.evaluation.verdict import Criterion, evaluate_criteria
+from hsr8.evaluation.metrics import measure
+from hsr8.evaluation.signals import stop_on_signals
 from hsr8.files.writing import FAILED
 from hsr8.gl import require_gl
 from hsr8.loop import Simulation
+from hsr8.plugin_decisions import GazePlugin, PlannerPlugin
+from hsr8.plugin_walker import CustomWalker
 from hsr8.record import Tick
-from hsr8.recorder.recorder import IMAGES, PERIOD, Memory, Recorder, Sink
-from hsr8.recorder.run.manifest import CALL, Manifest
-from hsr8.recorder.run.run import MemoryRun, Run
+from hsr8.recorder.recorder import IMAGES, PERIOD, Recorder, Sink
+from hsr8.recorder.run.manifest import CALL
+from hsr8.recorder.run.run import Run
 from hsr8.recorder.run.run_folder import RunFolder
 from hsr8.recorder.run.run_reader import open_run
 from hsr8.scenario.schema import Scenario
 
 LIVE_PERIOD = PERIOD // 2  # ticks of a batch while a viewer is connected
+COMPILING = CompilationWatch().__enter__()  # of this process, since the import of this module
 
 
-@dataclass(frozen=True, slots=True)
-class Result:
-    """Results of a run.
+def run_scenario(
+    scenario: Scenario,
+    path: Path | None = None,
+    command: Sequence[str] = (f"{CALL}...)",),
+    *,
+    live: str = "",
+    on_tick: Callable[[Tick], None] | None = None,
+    planner: PlannerPlugin | None = None,
+    gaze: GazePlugin | None = None,
+    walker: CustomWalker | None = None,
+) -> Run:
+    """Run a scenario to the end, record and measure it.
 
-    Attributes:
-        run: the run with its tables, in memory or in a folder.
-        metrics: every result by name, as in ``metrics.json``.
-        criteria: the scenario's criteria, evaluated.
-        diverged: message of the divergence; empty if the physics did not diverge.
-        arithmetic: arithmetic of NumPy: ``x86-64-v3``, the same on all processors, or ``native``.
-    """
+    The first SIGINT or SIGTERM ends the run after the current tick.
 
-    run: Run
-    metrics: dict[str, Any]
-    criteria: tuple[Criterion, ...]
-    diverged: str = ""
-    arithmetic: str = arithmetic.IN_FORCE
-
-    @property
-    def folder(self) -> Path | None:
-        """Run folder, None if nothing was written."""
-        return self.run.path
-
-    @property
-    def exit_reason(self) -> str:
-        """goal, timeout, completed, fall, diverged or interrupted."""
-        return str(self.metrics["exit_reason"])
-
-    @property
-    def criteria_met(self) -> bool:
-        """Whether the run ended by itself and met every criterion of its scenario."""
-        ended = self.exit_reason not in ("diverged", "interrupted")
-        return ended and all(criterion.met for criterion in self.criteria)
-
-
-def renderer_of(scenario: Scenario) -> str:
-    """Return the name of the renderer of the head camera.
+    Args:
+        scenario: scenario with the seed of the run.
+        path: new folder of the run; None keeps it in memory.
+        command: words of the command line that repeats the run.
+        live: address of a viewer that shows the log during the run; empty for none.
+        on_tick: receives every control tick.
+        planner: replaces the planner of the scenario.
+        gaze: replaces the gaze controller of the scenario.
+        walker: replaces the walking engine of the scenario.
 
     Raises:
+        ScenarioError: the world cannot be drawn.
         RenderingUnavailable: the camera needs OpenGL and there is none.
+        UsageError: a plugin cannot be read, or returned an invalid value.
+        RecordingFailed: the folder cannot be written.
     """
-    return require_gl() if scenario.camera.source == "rendered" else scenario.camera.source
+    source = scenario.camera.source
+    renderer = require_gl() if source == "rendered" else source
+    simulation = Simulation(scenario, planner=planner, gaze=gaze, walker=walker)
+    with stop_on_signals(simulation.interrupt):
+        recording = Recording(simulation, RunFolder(path, scenario, command, renderer), live=live)
+        with suppress(KeyboardInterrupt), recording:
+            for tick in simulation:
+                recording.append(tick)
+                if on_tick is not None:
+                    on_tick(tick)
+    return recording.run()
 
 
 class Recording:
-    """Recording of a simulation that its caller drives: a context for its ticks, then a result.
+    """Recording of a simulation that its caller drives: a context for its ticks, then a run.
 
     Args:
         simulation: simulation that is not yet started; the context starts it.
-        folder: receives tables and results; None keeps them in memory.
+        folder: receives tables and results.
         live: address of a viewer that shows the log during the run; empty for none.
+
+    Attributes:
+        exit_reason: reason of the caller to end the run; by default that of the simulation.
 
     Raises:
         RecordingFailed: here and in every method, the folder cannot be written.
     """
 
-    def __init__(
-        self, simulation: Simulation, folder: RunFolder | None = None, *, live: str = ""
-    ) -> None:
-        self._started, self._wall_time, self._diverged = perf_counter(), 0.0, ""
+    def __init__(self, simulation: Simulation, folder: RunFolder, *, live: str = "") -> None:
+        self.exit_reason = ""
+        self._started, self._compiled = perf_counter(), COMPILING.seconds
         self._simulation, self._folder = simulation, folder
-        self._compiling, self._opened = CompilationWatch(), ExitStack()
         scenario = simulation.scenario
-        self._memory = Memory() if folder is None else Memory(metrics.COLUMNS)
-        sinks: list[Sink] = [self._memory] if folder is None else [folder, self._memory]
+        sinks: list[Sink] = [folder]
         if live:
             # Imported late: runs without a viewer start 0.2 s earlier.
             from hsr8.rerun_log.run_log import RunLog  # noqa: PLC0415
@@ -107,9 +109,10 @@ class Recording:
         )
 
     def __enter__(self) -> Self:
-        self._opened.enter_context(self._compiling)
-        self._opened.callback(self._close)
-        self._opened.enter_context(self._simulation)
+        with ExitStack() as opened:
+            opened.callback(self._end)
+            opened.enter_context(self._simulation)
+            self._opened = opened.pop_all()
         return self
 
     def __exit__(
@@ -118,76 +121,50 @@ class Recording:
         error: BaseException | None,
         traceback: TracebackType | None,
     ) -> None:
-        self._opened.__exit__(kind, error, traceback)
-        self._wall_time = perf_counter() - self._started - self._compiling.seconds
+        try:
+            self._opened.__exit__(kind, error, traceback)
+        except RecordingFailed:
+            self._fail()
+            raise
+        if isinstance(error, RecordingFailed):
+            self._fail()
 
     def append(self, tick: Tick) -> None:
         """Record one control tick."""
         self._recorder.append(tick)
-        self._diverged = next((e.text for e in tick.events if e.kind == "diverged"), "")
 
-    def result(self, exit_reason: str = "") -> Result:
-        """Return the result, after the context.
-
-        Args:
-            exit_reason: reason of the caller to end the run; by default that of the simulation.
-        """
-        simulation, scenario = self._simulation, self._simulation.scenario
-        reason = exit_reason or simulation.outcome().exit_reason
-        tables = self._memory.tables()
-        results = metrics.metrics(
-            tables,
-            simulation.layout,
-            scenario.navigation.mission,
-            certificate=simulation.certificate,
-            exit_reason=reason,
-            state_hash=simulation.state_hash(),
-            wall_time=self._wall_time,
-        )
-        run: Run
-        if self._folder is not None:
+    def run(self) -> Run:
+        """Return the measured run, after the context."""
+        simulation = self._simulation
+        try:
+            results = measure(self._read(), simulation.layout, simulation.certificate)
             self._folder.write_metrics(results)
-            run = open_run(self._folder.path)
-        else:
-            rows = {name: len(table) for name, table in tables.items()}
-            manifest = Manifest.now(scenario, (f"{CALL}...)",), scenario.camera.source)
-            ended = manifest.ended(reason, rows)
-            run = MemoryRun(None, asdict(ended), scenario, tables, results)
-        criteria = evaluate_criteria(scenario.criteria, results)
-        return Result(run, results, criteria, self._diverged)
+        except RecordingFailed:
+            self._fail()
+            raise
+        return self._read()
 
-    def _close(self) -> None:
-        self._recorder.close(self._simulation.exit_reason or "error")
+    @property
+    def _reason(self) -> str:
+        return self.exit_reason or self._simulation.exit_reason or "error"
 
+    def _read(self) -> Run:
+        if self._folder.path is not None:
+            return open_run(self._folder.path)
+        return Run(None, asdict(self._folder.manifest), memory=self._folder.memory)
 
-def record(
-    simulation: Simulation,
-    folder: RunFolder | None = None,
-    *,
-    live: str = "",
-    on_tick: Callable[[Tick], None] | None = None,
-) -> Result:
-    """Run a simulation to the end and measure it.
+    def _end(self) -> None:
+        """Write the last rows and the end of the manifest."""
+        reason = self._reason
+        self._recorder.close(reason)
+        compiling = COMPILING.seconds - self._compiled
+        self._folder.end(
+            reason,
+            state_hash="" if reason == "error" else self._simulation.state_hash(),
+            wall_time_s=perf_counter() - self._started - compiling,
+        )
 
-    Args:
-        simulation: simulation that is not yet started.
-        folder: receives tables and results; None keeps them in memory.
-        live: address of a viewer that shows the log during the run; empty for none.
-        on_tick: receives every control tick.
-
-    Raises:
-        RecordingFailed: the folder cannot be written.
-    """
-    try:
-        recording = Recording(simulation, folder, live=live)
-        with suppress(KeyboardInterrupt), recording:
-            for tick in simulation:
-                recording.append(tick)
-                if on_tick is not None:
-                    on_tick(tick)
-        return recording.result()
-    except RecordingFailed:
-        if folder is not None:
-            with suppress(RecordingFailed):
-                folder.note(FAILED, {})
-        raise
+    def _fail(self) -> None:
+        """Note that the records could not be written."""
+        with suppress(RecordingFailed):
+            self._folder.end(FAILED, rows={})

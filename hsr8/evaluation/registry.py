@@ -1,7 +1,11 @@
 """Registry of the metrics of a run: name, unit, text, and the tables that show each of them."""
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from enum import Flag, auto
+
+from hsr8.evaluation.statistics import mean
+from hsr8.recorder.run.run import Run
 
 
 class Shown(Flag):
@@ -36,6 +40,7 @@ class Metric:
         label: words for the heads of tables.
         unit: unit for the heads of tables; empty for counts, fractions and text.
         successes: whether only successful runs have a meaningful value.
+        of: returns the value of a run; None if `hsr8.evaluation.metrics` computes it with others.
     """
 
     name: str
@@ -44,6 +49,7 @@ class Metric:
     label: str = ""
     unit: str = ""
     successes: bool = False
+    of: Callable[[Run], object] | None = None
 
     @property
     def head(self) -> str:
@@ -195,9 +201,18 @@ SECTIONS = {
             "fraction of the frames in which localization reports being lost",
             SWEEP,
             "fraction of frames lost",
+            of=lambda run: mean(run.frames["lost"]),
         ),
-        Metric("filter_faults", "restarts of a filter"),
-        Metric("camera_frames", "frames that arrived while the robot was on its feet"),
+        Metric(
+            "filter_faults",
+            "restarts of a filter",
+            of=lambda run: int([0, *run.frames["filter_faults"]][-1]),
+        ),
+        Metric(
+            "camera_frames",
+            "frames that arrived while the robot was on its feet",
+            of=lambda run: len(run.frames),
+        ),
         Metric(
             "obstacle_speed_rmse_mps",
             "RMS velocity error of every track within 0.4 m of an obstacle, against the nearest "

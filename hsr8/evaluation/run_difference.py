@@ -9,7 +9,6 @@ from hsr8.errors import UsageError
 from hsr8.evaluation.tables import flatten
 from hsr8.recorder.rows import TABLES
 from hsr8.recorder.run.run import Run
-from hsr8.recorder.run.run_reader import StoredRun
 from hsr8.recorder.table import Table
 from hsr8.recorder.table_difference import Cell, first_cell
 from walking.parameters import CONTROL_PERIOD
@@ -38,7 +37,7 @@ class RunDifference:
     time: float | None = None
 
 
-def settings(a: StoredRun, b: StoredRun) -> Iterator[RunDifference]:
+def settings(a: Run, b: Run) -> Iterator[RunDifference]:
     """Yield every key of the scenario that differs."""
     tables = (flatten(_scenario(run)).items() for run in (a, b))
     keys = ({key: value for key, value in table if value != []} for table in tables)
@@ -48,7 +47,7 @@ def settings(a: StoredRun, b: StoredRun) -> Iterator[RunDifference]:
 
 def results(a: Run, b: Run) -> Iterator[RunDifference]:
     """Yield every result that differs, except those of the wall clock."""
-    for key, x, y in _unequal(flatten(a.metrics()), flatten(b.metrics())):
+    for key, x, y in _unequal(flatten(a.metrics), flatten(b.metrics)):
         if not key.startswith(CLOCKED):
             yield RunDifference("results", key, x, y)
 
@@ -82,7 +81,7 @@ def _first(name: str, a: Table, b: Table) -> RunDifference | None:
     return RunDifference(name, cell.channel, cell.a, cell.b, tick, time)
 
 
-def _scenario(run: StoredRun) -> Mapping[str, Any]:
+def _scenario(run: Run) -> Mapping[str, Any]:
     try:
         return tomllib.loads(run.scenario_text())
     except (ValueError, RecursionError) as error:

@@ -1,6 +1,5 @@
 """Metrics of walking: velocity tracking, ZMP, limited commands, servos, computing time."""
 
-from collections.abc import Mapping
 from math import isfinite
 
 import numpy as np
@@ -8,6 +7,7 @@ from numpy.typing import NDArray
 
 from hsr8.recorder.derived import mean_velocity, strides
 from hsr8.recorder.rows import BITS
+from hsr8.recorder.run.run import Run
 from hsr8.recorder.table import Table
 from navigation.angles import wrap
 from walking.state import Phase
@@ -21,13 +21,13 @@ DOWN = [phase.value for phase in Phase if phase.down]
 ROUNDING = 1e-9  # of a ZMP on the edge of the sole [m]
 
 
-def walk_metrics(tables: Mapping[str, Table]) -> dict[str, object]:
+def walk_metrics(run: Run) -> dict[str, object]:
     """Return the results of walking by name.
 
     A kinematic body has no servos and its computing time is not representative: results of both are
     left out.
     """
-    records, ticks, seconds = tables["records"], tables["ticks"], tables["seconds"]
+    records, ticks, seconds = run.records, run.ticks, run.seconds
     results: dict[str, object] = {
         "steps": int(records["step_count"][-1]) if len(records) else 0,
         "pushes": int(np.max(records["pushes"]["number"] + 1, initial=0)),

@@ -67,7 +67,7 @@ def write_bag(run: Run, folder: Path) -> int:
     """
     rosbag2, messages = require_rosbags()
     if not len(run.records):
-        raise UsageError(f"--bag: {run.path}: no records")
+        raise UsageError(f"--bag: {run.folder}: no records")
     robot = load_robot(run.scenario().robot.model)
     urdf = urdf_of(robot)
     writer = rosbag2.Writer(folder, version=9, storage_plugin=rosbag2.StoragePlugin.MCAP)
@@ -105,7 +105,7 @@ def require_rosbags() -> tuple[Any, Messages]:
         from rosbags import rosbag2  # noqa: PLC0415
         from rosbags.typesys import Stores, get_typestore  # noqa: PLC0415
     except ImportError as error:
-        raise UsageError(f"--bag: {error}; pip install '.[ros]' in the checkout") from error
+        raise UsageError(f"--bag: {error}; pip install -e '.[ros]' in the checkout") from error
     return rosbag2, Messages(get_typestore(Stores.ROS2_JAZZY))
 
 

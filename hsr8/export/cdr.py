@@ -1,4 +1,4 @@
-"""ROS 2 messages in CDR: serialized one by one, or by the thousand from a template."""
+"""ROS 2 messages in CDR."""
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
@@ -12,8 +12,6 @@ Stamps = NDArray[np.int64]
 Contents = dict[str, Any]
 """Fields of a message by name; those left out are zero or empty."""
 
-FIRST_MARKER = 0x5EED_F00D_0000_0001  # as bytes of a number
-STAMP_MARKER = 0x5A5A_1234 * 10**9 + 0x1C3C_5678  # [ns]
 BASE, NAME, ARRAY, SEQUENCE = 1, 2, 3, 4  # values of rosbags.interfaces.Nodetype
 
 
@@ -43,7 +41,7 @@ class Messages:
         values: Array,
         contents: Callable[[Contents, list[float]], Contents],
     ) -> list[bytes]:
-        """Return messages that differ in their stamps and in some 64-bit numbers only.
+        """Return a message for each time.
 
         Args:
             kind: type.
@@ -51,17 +49,8 @@ class Messages:
             values: numbers of each message (n, k).
             contents: function that returns the fields for a stamp and k numbers.
         """
-        width = values.shape[1]
-        markers = (FIRST_MARKER + np.arange(width)).view(np.float64)
-        marked = self.one(kind, contents(stamp(STAMP_MARKER), markers.tolist()))
-        rows = np.tile(np.frombuffer(marked, np.uint8), (len(stamps), 1))
-        numbers = np.ascontiguousarray(values, np.float64).view(np.uint8)
-        for k in range(width):
-            for start in _occurrences(marked, markers[k].tobytes()):
-                rows[:, start : start + 8] = numbers[:, 8 * k : 8 * k + 8]
-        for start in _occurrences(marked, _stamp_bytes(np.array([STAMP_MARKER])).tobytes()):
-            rows[:, start : start + 8] = _stamp_bytes(stamps)
-        return [row.tobytes() for row in rows]
+        rows = zip(stamps.tolist(), values.tolist(), strict=True)
+        return [self.one(kind, contents(stamp(time), numbers)) for time, numbers in rows]
 
     def _message(self, kind: str, contents: Contents) -> Any:
         _, fields = self.store.fielddefs[kind]
@@ -101,17 +90,3 @@ def nanoseconds(times: Any) -> Stamps:
 def header(time: Contents, frame: str) -> Mapping[str, Any]:
     """Return the fields of a header."""
     return {"stamp": time, "frame_id": frame}
-
-
-def _stamp_bytes(stamps: Stamps) -> NDArray[np.uint8]:
-    """Return times as in messages: seconds and nanoseconds, 32 bits each (n, 8)."""
-    parts = np.stack([stamps // 10**9, stamps % 10**9], axis=1).astype("<u4")
-    return parts.view(np.uint8)
-
-
-def _occurrences(content: bytes, part: bytes) -> list[int]:
-    starts, start = [], content.find(part)
-    while start >= 0:
-        starts.append(start)
-        start = content.find(part, start + 1)
-    return starts

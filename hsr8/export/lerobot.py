@@ -80,9 +80,9 @@ def write_lerobot(runs: Sequence[Run], folder: Path) -> int:
     for episode in episodes[1:]:
         if episode.format != episodes[0].format:
             raise UsageError(
-                f"--lerobot: {episode.run.path}: joints, sample period, images or their size "
+                f"--lerobot: {episode.run.folder}: joints, sample period, images or their size "
                 f"differ, got {episode.format[1:]}; expected {episodes[0].format[1:]} as in "
-                f"{episodes[0].run.path}"
+                f"{episodes[0].run.folder}"
             )
     tasks = sorted({episode.task for episode in episodes})
     for part in ("meta/episodes", "data", f"videos/{CAMERA}"):
@@ -110,10 +110,12 @@ def _episode(run: Run) -> _Episode:
         steps = np.diff(images["index"])
         step = int(steps[0]) if len(steps) else 1
         if (steps != step).any():
-            raise UsageError(f"--lerobot: {run.path}: images are missing; expected a constant rate")
+            raise UsageError(
+                f"--lerobot: {run.folder}: images are missing; expected a constant rate"
+            )
         rows = np.searchsorted(frames["index"], images["index"])
     if not len(rows):
-        raise UsageError(f"--lerobot: {run.path}: no camera frames")
+        raise UsageError(f"--lerobot: {run.folder}: no camera frames")
     return _Episode(
         run=run,
         task=str(run.manifest.get("scenario", scenario.name)),

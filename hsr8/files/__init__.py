@@ -1,1 +1,1 @@
-"""Files and folders: atomic output, bounded reading, JSON lines."""
+"""Files and folders: atomic output, text."""

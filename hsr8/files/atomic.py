@@ -71,6 +71,18 @@ def write_bytes(path: Path, content: bytes) -> None:
         new.write_bytes(content)
 
 
+def write_new(path: Path, text: str) -> bool:
+    """Write a new file atomically; return whether it did not exist before."""
+    with tempfile.TemporaryDirectory(prefix=".", suffix=".part", dir=path.parent) as folder:
+        new = Path(folder, path.name)
+        new.write_text(text, encoding="utf-8", errors="backslashreplace")
+        try:
+            os.link(new, path)
+        except FileExistsError:
+            return False
+    return True
+
+
 def write_json(path: Path, value: Mapping[str, Any]) -> None:
     """Write `value` as indented JSON; numbers that are not finite become null."""
     write_text(path, dumps(value, indent=2) + "\n")

@@ -13,7 +13,7 @@ NO_ROOM = (errno.ENOSPC, errno.EDQUOT, errno.EROFS, errno.EACCES, errno.EPERM, e
 
 
 @contextmanager
-def writing(folder: Path) -> Iterator[None]:
+def writing(folder: Path | None) -> Iterator[None]:
     """Convert an `OSError` while writing into `folder` into `RecordingFailed`.
 
     Raises:
@@ -22,7 +22,7 @@ def writing(folder: Path) -> Iterator[None]:
     try:
         yield
     except OSError as error:
-        raise failure(folder, error.strerror or str(error)) from error
+        raise failure(folder or Path(), error.strerror or str(error)) from error
 
 
 def failure(folder: Path, reason: str) -> RecordingFailed:

@@ -156,7 +156,7 @@ class Environment(gymnasium.Env[Observation, NDArray[Any]]):
         episode.complete()
         info, success = {}, False
         if not episode.advance():
-            results = episode.result().metrics
+            results = episode.run().metrics
             success = bool(results["success"])
             info = {"exit_reason": episode.exit_reason, "metrics": results}
         outcome = success - (episode.exit_reason in FAILURES)

@@ -3,8 +3,11 @@
 from contextlib import ExitStack
 
 from hsr8.decisions import Situation
-from hsr8.evaluation.recording import Recording, Result
+from hsr8.evaluation.recording import Recording
 from hsr8.loop import Simulation
+from hsr8.recorder.run.manifest import CALL
+from hsr8.recorder.run.run import Run
+from hsr8.recorder.run.run_folder import RunFolder
 from hsr8.scenario.schema import Scenario
 from hsr8.world.truth.truth import Truth
 
@@ -33,7 +36,8 @@ class Episode:
         self.simulation = Simulation(scenario, seed)
         self.exit_reason = ""
         self._situation: Situation | None = None
-        self._recording = Recording(self.simulation)
+        folder = RunFolder(None, self.simulation.scenario, (f"{CALL}...)",), scenario.camera.source)
+        self._recording = Recording(self.simulation, folder)
         self._open = ExitStack()
         self._open.enter_context(self._recording)
 
@@ -68,10 +72,11 @@ class Episode:
         self._recording.append(self.simulation.step())
         self.exit_reason = self.simulation.exit_reason or ""
 
-    def result(self) -> Result:
-        """End the run and return its result."""
+    def run(self) -> Run:
+        """End the run and return it."""
+        self._recording.exit_reason = self.exit_reason
         self.close()
-        return self._recording.result(self.exit_reason)
+        return self._recording.run()
 
     def close(self) -> None:
         """Close the simulation."""

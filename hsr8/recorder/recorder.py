@@ -1,11 +1,10 @@
 """Recorder: passes the tables of a run to its sinks as it happens, one batch per second."""
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from contextlib import ExitStack
 from dataclasses import dataclass
 from functools import partial
-from types import MappingProxyType
 from typing import Any, Protocol
 
 import pyarrow as pa
@@ -40,7 +39,7 @@ IMAGES = {"none": None, "standard": ImageRates(0.18, 75), "full": ImageRates(0.0
 
 
 class Sink(Protocol):
-    """Receiver of the tables of a run: a folder, the memory, a log."""
+    """Receiver of the tables of a run: a folder or a log."""
 
     def add(self, tables: Tables) -> None:
         """Take a batch of rows; tables without new rows are left out."""
@@ -122,35 +121,3 @@ class Recorder:
             return ()
         due = [f for f in frames if f.image is not None and self._throttle.due(f.time)]
         return self._encoder.map(partial(image_row, quality=self._images.quality), due)
-
-
-ALL = MappingProxyType({name: [c.name for c in row.columns] for name, row in TABLES.items()})
-
-
-class Memory:
-    """Sink of a recorder that keeps columns of its batches.
-
-    Args:
-        columns: names of the kept columns by table; by default all of all tables.
-    """
-
-    def __init__(self, columns: Mapping[str, Sequence[str]] = ALL) -> None:
-        self._columns = columns
-        self._batches: dict[str, list[pa.Table]] = {name: [] for name in columns}
-
-    def add(self, tables: Mapping[str, Table]) -> None:
-        """Keep the columns of new rows."""
-        for name in self._columns.keys() & tables.keys():
-            self._batches[name].append(tables[name].arrow.select(self._columns[name]))
-
-    def close(self, exit_reason: str) -> None:
-        """Do nothing: the rows stay."""
-
-    def tables(self) -> dict[str, Table]:
-        """Return the kept columns of all batches by table."""
-        return {
-            name: Table(name, pa.concat_tables(batches))
-            if batches
-            else Table.from_objects(name, TABLES[name], ())
-            for name, batches in self._batches.items()
-        }

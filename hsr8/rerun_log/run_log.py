@@ -15,7 +15,7 @@ from hsr8.recorder import palette
 from hsr8.recorder.derived import Speedometer
 from hsr8.recorder.recorder import Tables
 from hsr8.recorder.run import run_folder
-from hsr8.recorder.run.run_reader import StoredRun
+from hsr8.recorder.run.run import Run
 from hsr8.recorder.table import Table
 from hsr8.rerun_log.belief import log_belief, style_belief
 from hsr8.rerun_log.blueprint import RobotView, blueprint
@@ -182,7 +182,7 @@ class RunLog:
         )
 
 
-def write_log(run: StoredRun, *, full: bool = False) -> Path:
+def write_log(run: Run, *, full: bool = False) -> Path:
     """Write the log of a run into its folder and return the file.
 
     Args:
@@ -193,20 +193,20 @@ def write_log(run: StoredRun, *, full: bool = False) -> Path:
         UsageError: a table is damaged, or the scenario cannot be read.
         RecordingFailed: the log cannot be written.
     """
-    scenario, file = run.scenario(), run.path / run_folder.LOG
+    scenario, file = run.scenario(), run.folder / run_folder.LOG
     layout, robot = draw_layout(scenario, run.seed), load_robot(scenario.robot.model)
     world = build_model(scenario, layout), robot, layout
     batches = [*_batches(run)]  # reports damage before a file is begun
-    with writing(run.path), atomic.draft(file) as draft:
-        log = RunLog(draft, world, scenario, name=run.path.name, full=full)
+    with writing(run.folder), atomic.draft(file) as draft:
+        log = RunLog(draft, world, scenario, name=run.folder.name, full=full)
         for batch in batches:
             log.add(batch)
-            log.require_written(run.path)
-        log.close(str(run.manifest.get("exit_reason")))
+            log.require_written(run.folder)
+        log.close(run.exit_reason)
     return file
 
 
-def _batches(run: StoredRun) -> Iterator[Tables]:
+def _batches(run: Run) -> Iterator[Tables]:
     """Yield the tables of a run in parts, each of which ends with a record."""
     tables: Tables = {
         name: getattr(run, name) for name in ("records", "frames", "events", "images")

@@ -17,8 +17,7 @@ from pydantic import (
 )
 
 from hsr8.errors import ModelError
-from hsr8.files.regular import read_text
-from hsr8.files.toml import TomlError, parse_toml
+from hsr8.files.text import TomlError, parse_toml, read_text
 from hsr8.mistakes import NAME, NAMES, TABLE, form, mistake_lines
 from walking.parameters import LimitParameters
 

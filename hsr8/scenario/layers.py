@@ -15,8 +15,7 @@ import tomlkit
 
 from hsr8.errors import ScenarioError
 from hsr8.files.key_lines import lines_of
-from hsr8.files.regular import read_text
-from hsr8.files.toml import MAX_SIZE, TomlError, parse_toml
+from hsr8.files.text import TomlError, parse_toml, read_text
 from hsr8.keys import Path
 from hsr8.scenario.plugin import KINDS
 from hsr8.scenario.scaling import merged
@@ -140,7 +139,7 @@ def read_layers(file: FilePath, above: tuple[FilePath, ...] = ()) -> list[Layer]
         ScenarioError: a file cannot be read, or the files extend each other in a loop.
     """
     try:
-        text = read_text(file, MAX_SIZE)
+        text = read_text(file)
     except FileNotFoundError:
         hint = suggestion(file.name, _files(file.parent))
         raise ScenarioError(f"scenario file {str(file)!r} does not exist{hint}") from None

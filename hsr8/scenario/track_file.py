@@ -18,13 +18,12 @@ import numpy as np
 import tomlkit
 from numpy.typing import NDArray
 
-from hsr8.files.regular import read_text
+from hsr8.files.text import read_text
 from hsr8.mistakes import Mistake
 from hsr8.scenario.world import TrackMover
 
 COLUMNS = ("t", "x", "y", "id")
 SEPARATORS = ",;\t"
-MAX_SIZE = 8_000_000  # of the files of a scenario together [byte]
 MAX_ROWS = 50_000
 MAX_ID = 32  # [characters]
 MAX_GAP = 1.0  # between the samples of a track [s]
@@ -72,12 +71,11 @@ def read_tracks(tables: Table) -> list[Mistake]:
 
     The content replaces the file: its name alone is kept.
     """
-    problems, room, read = list[Mistake](), MAX_SIZE, dict[int, Table]()
+    problems, read = list[Mistake](), dict[int, Table]()
     for i, mover in track_movers(tables):
         name, data = Path(mover["file"]).name, mover.get("data")
         try:
-            text = data if isinstance(data, str) and data else _read(mover["file"], room)
-            room -= len(text)
+            text = data if isinstance(data, str) and data else _read(mover["file"])
             read[i] = {**mover, "file": name, "data": content(text)}
         except TrackFileError as error:
             problems.append(Mistake(("world", "mover", i, "file"), f"{name}, {error}"))
@@ -96,18 +94,17 @@ def legible(tables: Table) -> Table:
     return {**tables, "world": {**tables["world"], "mover": movers}}
 
 
-def _read(file: str, max_size: int) -> str:
+def _read(file: str) -> str:
     try:
-        return read_text(file, max_size)
+        return read_text(file)
     except FileNotFoundError:
         raise TrackFileError(
             f"file does not exist, got {file!r}; expected a CSV file next to the scenario or in "
             "the working folder"
         ) from None
     except OSError as error:
-        limit = f"{MAX_SIZE / 1e6:g} MB in all files of a scenario"
         raise TrackFileError(
-            f"cannot be read, got {file!r}: {error.strerror}; expected a CSV file, at most {limit}"
+            f"cannot be read, got {file!r}: {error.strerror}; expected a CSV file"
         ) from None
 
 

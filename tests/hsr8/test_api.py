@@ -30,20 +30,20 @@ def test_nothing_is_written_by_default(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     result = hsr8.run("quick", seed=3, settings=STAND_INS)
     assert list(tmp_path.iterdir()) == []
-    assert result.folder is None
+    assert result.path is None
     assert (result.exit_reason, result.criteria_met) == ("timeout", False)
 
 
 def test_a_run_in_memory_is_that_on_disk(tmp_path, monkeypatch):
-    stored = hsr8.run("quick", seed=3, settings=STAND_INS, out=tmp_path).run
+    stored = hsr8.run("quick", seed=3, settings=STAND_INS, out=tmp_path)
     monkeypatch.setattr("tempfile.mkdtemp", lambda *_, **__: pytest.fail("a temporary folder"))
-    kept = hsr8.run("quick", seed=3, settings=STAND_INS).run
+    kept = hsr8.run("quick", seed=3, settings=STAND_INS)
     assert kept.path is None
     assert kept.scenario() == stored.scenario()
     assert (kept.seed, kept.ended) == (stored.seed, stored.ended)
     assert kept.manifest["rows"] == stored.manifest["rows"]
     assert kept.manifest["libraries"] == stored.manifest["libraries"]
-    assert kept.metrics()["state_hash"] == stored.metrics()["state_hash"]
+    assert kept.metrics["state_hash"] == stored.metrics["state_hash"]
     for name, row in TABLES.items():
         one, other = getattr(kept, name), getattr(stored, name)
         assert one.arrow.schema.equals(other.arrow.schema, check_metadata=True)
@@ -57,8 +57,8 @@ def test_a_run_in_memory_is_that_on_disk(tmp_path, monkeypatch):
 def test_the_folder_holds_the_same_results_and_can_be_repeated(tmp_path):
     result = hsr8.run("quick", seed=3, settings=STAND_INS, out=tmp_path)
     run = open_run(tmp_path)
-    assert result.folder == run.path
-    assert run.metrics()["state_hash"] == result.metrics["state_hash"]
+    assert result.path == run.path
+    assert run.metrics["state_hash"] == result.metrics["state_hash"]
     again = hsr8.run(run.scenario_file)
     assert again.metrics["state_hash"] == result.metrics["state_hash"]
 
@@ -81,13 +81,13 @@ def test_the_command_in_the_folder_makes_the_same_run(tmp_path):
 def test_the_folder_names_custom_planner_and_gaze(tmp_path):
     result = hsr8.run("quick", settings=STAND_INS, out=tmp_path, planner=Idle(), gaze=Idle())
     called = f"hsr8.run(planner={__name__}.Idle, gaze={__name__}.Idle)"
-    assert open_run(result.folder).manifest["command"] == called
+    assert open_run(result.path).manifest["command"] == called
 
 
 def test_seeds_may_come_from_numpy(tmp_path):
     drawn = np.random.default_rng(0).integers(100, size=1)[0]
     result = hsr8.run("quick", seed=drawn, settings=STAND_INS, out=tmp_path)
-    assert open_run(result.folder).seed == drawn
+    assert open_run(result.path).seed == drawn
     with pytest.raises(ScenarioError, match="expected an integer"):
         hsr8.run("quick", seed=-1)
 
@@ -102,7 +102,7 @@ def test_ctrl_c_ends_the_loop_around_a_run_and_leaves_its_folder(tmp_path):
     with pytest.raises(KeyboardInterrupt):
         hsr8.run("quick", settings=STAND_INS, out=tmp_path, planner=Stops())
     run = open_run(tmp_path)
-    assert run.manifest["exit_reason"] == run.metrics()["exit_reason"] == "interrupted"
+    assert run.manifest["exit_reason"] == run.metrics["exit_reason"] == "interrupted"
     assert 0.3 < run.records["time"][-1] < 1.0
 
 
@@ -112,7 +112,7 @@ def test_images_are_kept_by_their_setting_with_or_without_a_log(tmp_path, kept, 
     settings = {"robot.body": "kinematic", "duration": 1.0, "recorder.images": kept}
     for log in (False, True):
         out = tmp_path / str(log) if period == 3 or log else None
-        run = hsr8.run("quick", settings=settings, out=out, log=log).run
+        run = hsr8.run("quick", settings=settings, out=out, log=log)
         shown = run.frames["index"][::period] if period else []
         assert run.images["index"].tolist() == [*shown]
 
@@ -123,12 +123,12 @@ def test_a_log_without_a_folder_is_refused():
 
 
 def test_without_opengl_no_folder_is_left(tmp_path, monkeypatch):
-    def none(scenario):
+    def none():
         raise RenderingUnavailable("no OpenGL")
 
-    monkeypatch.setattr("hsr8.api.renderer_of", none)
+    monkeypatch.setattr("hsr8.evaluation.recording.require_gl", none)
     with pytest.raises(RenderingUnavailable):
-        hsr8.run("quick", settings=STAND_INS, out=tmp_path)
+        hsr8.run("quick", out=tmp_path)
     assert list(tmp_path.iterdir()) == []
 
 

@@ -12,6 +12,7 @@ from hypothesis import strategies as st
 import hsr8
 from hsr8.cli.main import entry
 from hsr8.errors import UsageError
+from hsr8.evaluation.sweep.folder import SweepFolder
 from hsr8.plugin_file import PREFIX, digests, line_of, load_plugin, require_plugins
 from hsr8.scenario.plugin import Plugin
 
@@ -347,7 +348,7 @@ def test_an_error_in_a_plugin_reaches_python_unchanged(folder):
 def test_an_error_in_a_plugin_is_a_crashed_run_of_a_sweep(folder, capsys, name):
     plugins = ("--set", f"plugin.planner=mine.py:{name}", "duration=3.0")
     assert entry(["sweep", "quick", *FAST, "--seeds", "0:2", "--out", "s", *plugins]) == 3
-    rows = [json.loads(line) for line in (folder / "s" / "runs.jsonl").read_text().splitlines()]
+    rows = SweepFolder.read(folder / "s").results()
     assert {row["seed"] for row in rows} == {0, 1}
     assert {row["outcome"] for row in rows} == {"crashed"}
     assert "0 of 2" in (folder / "s" / "report.md").read_text()

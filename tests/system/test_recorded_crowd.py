@@ -57,6 +57,6 @@ def test_a_run_is_verified_and_repeated_without_the_file(run, tmp_path):
     shutil.copy(run.scenario_file, copy)
     hsr8.run(copy, seed=3, out=tmp_path)
     again = hsr8.open_run(tmp_path)
-    assert again.metrics()["state_hash"] == run.metrics()["state_hash"]
+    assert again.metrics["state_hash"] == run.metrics["state_hash"]
     digest = json.loads((run.path / "manifest.json").read_text())["libraries"]["tracks people.csv"]
     assert again.manifest["libraries"]["tracks people.csv"] == digest

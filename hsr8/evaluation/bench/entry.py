@@ -17,7 +17,7 @@ from hsr8.evaluation.sweep.job import RunResult
 from hsr8.evaluation.sweep.summary import Summary, summarize
 from hsr8.evaluation.tables import table
 from hsr8.files import atomic
-from hsr8.files.regular import read_text
+from hsr8.files.text import read_text
 from hsr8.mistakes import mistake_lines
 from hsr8.scenario.section import Section
 

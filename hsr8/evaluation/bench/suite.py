@@ -14,8 +14,7 @@ from hsr8.errors import ScenarioError, UsageError
 from hsr8.evaluation.sweep.definition import Differences, table_differences
 from hsr8.evaluation.sweep.seeds import parse_seeds
 from hsr8.evaluation.tables import flatten
-from hsr8.files.regular import read_text
-from hsr8.files.toml import TomlError, parse_toml
+from hsr8.files.text import TomlError, parse_toml, read_text
 from hsr8.mistakes import mistake_lines
 from hsr8.scenario.loader import load_scenario, tables
 from hsr8.scenario.schema import Scenario

@@ -5,25 +5,20 @@ import json
 import platform
 import shlex
 import tomllib
-from collections.abc import Iterator, Mapping
-from dataclasses import asdict, dataclass
-from importlib.util import find_spec
-from pathlib import Path
+from collections.abc import Mapping
+from dataclasses import dataclass
 from typing import Any
 
 from hsr8.errors import ScenarioError
 from hsr8.evaluation.tables import flatten
+from hsr8.recorder.run.code_digest import code_digest
 from hsr8.recorder.run.manifest import versions_of
-from hsr8.robots.files import models_dir
 from hsr8.scenario.layers import Table
 from hsr8.scenario.loader import dump, loads, tables
 from hsr8.scenario.schema import Scenario
 from hsr8.version import VERSION
 
-PACKAGES = ("compilation", "hsr8", "navigation", "walking", "vision")
 MAX_TEXT = 1000  # of a value in a message [characters]
-# Folders and files of hsr8:
-NOT_IN_DIGEST = ("cli", "render", "rerun_log", "evaluation/sweep", "evaluation/bench", "_models")
 MAY_DIFFER = ("seed", "description")  # keys of a scenario, within a sweep
 
 Differences = dict[str, tuple[str, str]]
@@ -37,7 +32,7 @@ class Definition:
         name: name of the scenario.
         command_words: command line of one run without its seed; of a run folder, with it.
         hsr8: version.
-        code: digest of the program's files; empty if unknown.
+        code: digest of the program's files.
         processor: architecture; results are bit-exact on the same architecture only.
         libraries: version by name.
         scenario: resolved scenario as TOML; its seed is ignored.
@@ -72,21 +67,16 @@ class Definition:
         """Return the command line that repeats the run of `seed`."""
         return shlex.join([*self.command_words, "--seed", str(seed)])
 
-    def to_json(self) -> dict[str, Any]:
-        """Return everything except the scenario, which has its own file."""
-        return {key: value for key, value in asdict(self).items() if key != "scenario"}
-
     @classmethod
-    def from_json(cls, value: Mapping[str, Any], scenario: str) -> "Definition":
-        """Read the result of `to_json`.
+    def from_json(cls, value: Mapping[str, Any]) -> "Definition":
+        """Read the attributes by name.
 
         Raises:
-            KeyError, TypeError, ValueError: `value` is not such a result.
+            KeyError, TypeError, ValueError: `value` is not a definition.
         """
-        tomllib.loads(scenario)
+        tomllib.loads(value["scenario"])
         words = tuple(map(str, value["command_words"]))
-        libraries = dict(value["libraries"])
-        return cls(**{**value, "command_words": words, "libraries": libraries}, scenario=scenario)
+        return cls(**{**value, "command_words": words, "libraries": dict(value["libraries"])})
 
     def versions(self) -> dict[str, str]:
         """Return all versions by name."""
@@ -101,9 +91,9 @@ class Definition:
         """Return the versions as one line."""
         names = ("mujoco", "numpy", "scipy", "pin")
         libraries = ", ".join(f"{name} {self.libraries.get(name, '?')}" for name in names)
-        code = f" (code {self.code})" if self.code else ""
         arithmetic = self.libraries.get("arithmetic", "native")
-        return f"hsr8 {self.hsr8}{code}, {libraries}; {self.processor}, arithmetic {arithmetic}"
+        machine = f"{self.processor}, arithmetic {arithmetic}"
+        return f"hsr8 {self.hsr8} (code {self.code}), {libraries}; {machine}"
 
 
 def scenario_differences(one: Definition, other: Definition) -> Differences:
@@ -127,30 +117,6 @@ def differences(one: Mapping[str, str], other: Mapping[str, str]) -> Differences
     """Return the values that differ by key, with both values; absent is ``-``."""
     pairs = {key: (one.get(key, "-"), other.get(key, "-")) for key in {**one, **other}}
     return {key: pair for key, pair in pairs.items() if pair[0] != pair[1]}
-
-
-def code_digest() -> str:
-    """Return the first digits of the SHA-256 of all files that influence a result."""
-    digest = hashlib.sha256()
-    for name, file in _files():
-        digest.update(name.encode() + b"\0" + hashlib.sha256(file.read_bytes()).digest())
-    return digest.hexdigest()[:12]
-
-
-def _files() -> Iterator[tuple[str, Path]]:
-    for package in PACKAGES:
-        spec = find_spec(package)
-        assert spec is not None, package
-        assert spec.origin is not None, package
-        root = Path(spec.origin).parent
-        for file in sorted(root.rglob("*.py")):
-            name = file.relative_to(root).as_posix()
-            if package != "hsr8" or not name.startswith(NOT_IN_DIGEST):
-                yield f"{package}/{name}", file
-    root = models_dir()
-    for file in sorted(root.rglob("*")):
-        if file.is_file() and file.suffix not in (".py", ".pyc", ".md"):
-            yield f"models/{file.relative_to(root).as_posix()}", file
 
 
 def _text(value: object) -> str:

@@ -1,43 +1,46 @@
 """The folder of a sweep.
 
-sweep.json           name of the scenario, versions, command of one run
+sweep.json           scenario, versions, command of one run
 scenario.toml        resolved scenario, which `hsr8 run` accepts
-runs.jsonl           one result per line, written when the run ends
-shard-I-of-N.jsonl   the results of one shard
+runs/NAME/SEED-N/    run folder of the N-th attempt of a seed, with its `result.json`
 runs.parquet         all results as a table
 report.md            summary
-runs/                run folders
+
+Every process that starts the same sweep takes the seeds whose folders it creates.
 """
 
-import fcntl
 import io
 import json
 import os
-from collections.abc import Iterator, Sequence
-from contextlib import contextmanager
+import re
+import shutil
+import socket
+import time as clock
+from collections.abc import Sequence
+from dataclasses import asdict
 from pathlib import Path
-from typing import Any, Self, TextIO
+from typing import Any, Self
 
 from hsr8.errors import Hsr8Error, UsageError
 from hsr8.evaluation.sweep.definition import Definition, scenario_differences, version_differences
-from hsr8.evaluation.sweep.job import CRASHED, OUTCOMES, REFUSED, RUNS, RunResult
+from hsr8.evaluation.sweep.job import CLAIM, CRASHED, OUTCOMES, REFUSED, RESULT, Job, RunResult
 from hsr8.evaluation.sweep.summary import COUNTS, QUANTITIES
 from hsr8.evaluation.tables import flatten
 from hsr8.files import atomic
-from hsr8.files.json_lines import open_to_append, read_lines
-from hsr8.files.regular import read_text
+from hsr8.files.text import read_text
 from hsr8.recorder.run.run_folder import SCENARIO
 
 DEFINITION = "sweep.json"
-RESULTS = "runs.jsonl"
+RUNS = "runs"
 TABLE = "runs.parquet"
 REPORT = "report.md"
 NUMBERS = (*(m.name for m in (*COUNTS, *QUANTITIES)), "attempts", "via_points_missed")
 MAX_SHOWN = 12  # differences named in an error message
+CLAIM_TIME = 60.0  # limit between the creation of a folder and its claim [s]
 
 
 class SweepFolder:
-    """Folder of a sweep, open for reading, and for writing after `lock`.
+    """Folder of a sweep.
 
     Args:
         path: path of the folder.
@@ -47,7 +50,7 @@ class SweepFolder:
     def __init__(self, path: Path, definition: Definition) -> None:
         self.path = path
         self.definition = definition
-        self._file: TextIO | None = None
+        self._runs = path / RUNS / definition.name
 
     @classmethod
     def read(cls, path: Path) -> Self:
@@ -58,13 +61,11 @@ class SweepFolder:
         """
         file = path / DEFINITION
         try:
-            value = json.loads(read_text(file))
-            scenario = read_text(path / SCENARIO)
-            return cls(path, Definition.from_json(value, scenario))
-        except FileNotFoundError as error:
-            raise UsageError(f"{path}: not a sweep, {error.filename} is missing") from None
+            return cls(path, Definition.from_json(json.loads(read_text(file))))
+        except FileNotFoundError:
+            raise UsageError(f"{path}: not a sweep, {file} is missing") from None
         except (OSError, ValueError, KeyError, TypeError, RecursionError) as error:
-            raise UsageError(f"{path}: cannot read {file} or {SCENARIO}: {error}") from error
+            raise UsageError(f"{path}: cannot read {file}: {error}") from error
 
     @classmethod
     def open(cls, path: Path, definition: Definition) -> Self:
@@ -78,31 +79,15 @@ class SweepFolder:
                 raise UsageError(f"{part}: a link, got {os.readlink(part)}; expected a folder")
         try:
             path.mkdir(parents=True, exist_ok=True)
-            with _locked(path):
-                if cls.check(path, definition):
-                    return cls.read(path)
+            if atomic.write_new(path / DEFINITION, atomic.dumps(asdict(definition), indent=2)):
                 atomic.write_text(path / SCENARIO, definition.scenario)
-                atomic.write_json(path / DEFINITION, definition.to_json())
+                return cls(path, definition)
         except OSError as error:
             raise UsageError(
                 f"{path}: cannot write the sweep: {error.strerror}; choose another with --out"
             ) from error
-        return cls(path, definition)
-
-    @classmethod
-    def check(cls, path: Path, definition: Definition) -> bool:
-        """Return whether `path` holds this sweep already.
-
-        Raises:
-            UsageError: it holds other runs.
-        """
-        if not (path / DEFINITION).exists():
-            if any(path.glob("*.jsonl")):
-                raise UsageError(
-                    f"{path}: has results but no {DEFINITION}; choose another with --out"
-                )
-            return False
-        old = cls.read(path).definition
+        folder = cls.read(path)
+        old = folder.definition
         changed = scenario_differences(old, definition) | version_differences(old, definition)
         if changed:
             lines = [f"{key}: {there} there, {now} now" for key, (there, now) in changed.items()]
@@ -110,50 +95,90 @@ class SweepFolder:
             lines = lines[:MAX_SHOWN] + [f"and {more} more"] * (more > 0)
             lines.append("choose another folder with --out, or remove that one")
             raise UsageError("\n  ".join([f"{path}: holds runs of another sweep", *lines]))
-        return True
-
-    def lock(self, shard: tuple[int, int] | None = None) -> None:
-        """Open the file of results for writing, exclusively until `close`.
-
-        Raises:
-            UsageError: another process writes it, or it cannot be written.
-        """
-        name = RESULTS if shard is None else f"shard-{shard[0]}-of-{shard[1]}.jsonl"
-        path = self.path / name
-        try:
-            self._file = open_to_append(path)
-        except BlockingIOError:
-            raise UsageError(f"{path}: another sweep writes this file; wait or stop it") from None
-        except OSError as error:
-            raise UsageError(f"{path}: cannot write: {error.strerror}") from error
+        return folder
 
     def results(self) -> list[RunResult]:
-        """Return the last result of every seed over all files, by seed; crashes count least.
+        """Return the last result of every seed, by seed; crashes count least.
 
         Raises:
-            UsageError: a line is damaged.
+            UsageError: a result is damaged.
         """
         latest: dict[int, RunResult] = {}
-        for file in sorted(self.path.glob("*.jsonl"), key=lambda file: file.name == RESULTS):
-            for result in read_lines(file, _parse):
-                known = latest.get(result["seed"])
-                if known is None or known["outcome"] == CRASHED or result["outcome"] != CRASHED:
-                    latest[result["seed"]] = result
-        return [latest[seed] for seed in sorted(latest)]
+        for seed, numbers in sorted(self._attempts().items()):
+            for number in sorted(numbers):
+                result = _result(self._attempt(seed, number) / RESULT)
+                if result and (seed not in latest or result["outcome"] != CRASHED):
+                    latest[seed] = result
+        return list(latest.values())
 
-    def append(self, *results: RunResult) -> None:
-        """Write results of runs that ended.
+    def missing(self, seeds: Sequence[int]) -> tuple[dict[int, int], int]:
+        """Return the seeds to run, with the number of their next folder.
+
+        These have no result, or crashed or were refused, and no other process runs them. The
+        folder of a run whose process was killed is removed.
+
+        Args:
+            seeds: seeds of the whole sweep.
+
+        Returns:
+            Number of the next folder by seed, and the number of seeds that other processes run.
+        """
+        done = {r["seed"] for r in self.results() if r["outcome"] not in (CRASHED, REFUSED)}
+        attempts, elsewhere = self._attempts(), 0
+        missing = {}
+        for seed in (seed for seed in seeds if seed not in done):
+            last = max(attempts.get(seed, (0,)))
+            folder = self._attempt(seed, last)
+            if last and not (folder / RESULT).exists():
+                if _is_claimed(folder):
+                    elsewhere += 1
+                    continue
+                shutil.rmtree(folder, ignore_errors=True)
+            missing[seed] = last + 1
+        return missing, elsewhere
+
+    def claim(self, seed: int, number: int, seconds: float) -> str | None:
+        """Take a run by creating its folder.
+
+        Args:
+            seed: seed of the run.
+            number: number of its folder, see `missing`.
+            seconds: time after which other machines take the run to be lost [s].
+
+        Returns:
+            The folder, relative to the sweep's; None if another process was first.
+
+        Raises:
+            Hsr8Error: the folder cannot be written.
+        """
+        path, pid = self._attempt(seed, number), os.getpid()
+        claim = {"host": socket.gethostname(), "pid": pid, "started": _start_of(pid)}
+        try:
+            path.mkdir(parents=True)
+            atomic.write_json(path / CLAIM, {**claim, "until": clock.time() + seconds})
+        except FileExistsError:
+            return None
+        except OSError as error:
+            raise Hsr8Error(f"{path}: cannot write: {error.strerror}") from error
+        return str(path.relative_to(self.path))
+
+    def finish(self, job: Job, result: RunResult) -> None:
+        """Write the result of a run that ended.
 
         Raises:
             Hsr8Error: the disk is full.
         """
-        assert self._file is not None, "lock comes first"
+        path = self.path / job.run
         try:
-            self._file.writelines(f"{atomic.dumps(result)}\n" for result in results)
-            self._file.flush()
-            os.fsync(self._file.fileno())
+            path.mkdir(parents=True, exist_ok=True)
+            atomic.write_text(path / RESULT, f"{atomic.dumps(result)}\n")
         except OSError as error:
-            raise Hsr8Error(f"{self._file.name}: cannot write: {error.strerror}") from error
+            raise Hsr8Error(f"{path / RESULT}: cannot write: {error.strerror}") from error
+        (path / CLAIM).unlink(missing_ok=True)
+
+    def release(self, job: Job) -> None:
+        """Leave a run that did not end to the next sweep."""
+        shutil.rmtree(self.path / job.run, ignore_errors=True)
 
     def write_report(self, text: str) -> None:
         """Write the table of all results, and `text` as the report.
@@ -162,43 +187,62 @@ class SweepFolder:
             Hsr8Error: they cannot be written.
         """
         try:
-            with _locked(self.path):
-                write_table(self.path / TABLE, self.results())
-                atomic.write_text(self.path / REPORT, text)
+            write_table(self.path / TABLE, self.results())
+            atomic.write_text(self.path / REPORT, text)
         except OSError as error:
             raise Hsr8Error(f"{self.path}: cannot write the report: {error.strerror}") from error
 
-    def close(self) -> None:
-        """Release the lock."""
-        if self._file is not None:
-            self._file.close()
-            self._file = None
+    def _attempts(self) -> dict[int, list[int]]:
+        """Return the numbers of the run folders by seed."""
+        attempts: dict[int, list[int]] = {}
+        for name in os.listdir(self._runs) if self._runs.is_dir() else ():
+            if match := re.fullmatch(r"(\d+)-(\d+)", name):
+                attempts.setdefault(int(match[1]), []).append(int(match[2]))
+        return attempts
+
+    def _attempt(self, seed: int, number: int) -> Path:
+        return self._runs / f"{seed}-{number}"
 
 
-@contextmanager
-def _locked(path: Path) -> Iterator[None]:
-    """Lock a folder against shards that start or end at the same time."""
-    handle = os.open(path, os.O_RDONLY)
+def _start_of(pid: int) -> str:
+    """Return the start of a process since that of the machine; empty without such a process."""
     try:
-        fcntl.flock(handle, fcntl.LOCK_EX)
-        yield
-    finally:
-        os.close(handle)
+        return Path(f"/proc/{pid}/stat").read_text().rpartition(")")[2].split()[19]
+    except OSError:
+        return ""
 
 
-def _parse(line: str) -> RunResult:
+def _is_claimed(folder: Path) -> bool:
+    """Return whether the process that claimed a folder runs, as far as this machine knows."""
     try:
-        result = json.loads(line)
-    except RecursionError as error:
-        raise ValueError("nested too deeply") from error
-    if not isinstance(result, dict) or type(result["seed"]) is not int:
-        raise ValueError("not a result of a run")
-    if result["outcome"] not in (*OUTCOMES.values(), CRASHED, REFUSED):
-        raise ValueError(f"unknown outcome: {result['outcome']!r}")
-    for key in NUMBERS:
-        if not isinstance(result.get(key), int | float | None):
-            raise ValueError(f"{key}: not a number: {result[key]!r}")
-    return result
+        claim = json.loads(read_text(folder / CLAIM))
+        if claim["host"] == socket.gethostname():
+            return bool(_start_of(claim["pid"]) == claim["started"])
+        return bool(clock.time() < claim["until"])
+    except (OSError, ValueError, KeyError, TypeError):
+        return folder.exists() and clock.time() < folder.stat().st_mtime + CLAIM_TIME
+
+
+def _result(file: Path) -> RunResult | None:
+    """Return a result; None if the run has not ended.
+
+    Raises:
+        UsageError: it is damaged.
+    """
+    try:
+        result = json.loads(read_text(file))
+        if type(result["seed"]) is not int:
+            raise ValueError("not a result of a run")
+        if result["outcome"] not in (*OUTCOMES.values(), CRASHED, REFUSED):
+            raise ValueError(f"unknown outcome: {result['outcome']!r}")
+        for key in NUMBERS:
+            if not isinstance(result.get(key), int | float | None):
+                raise ValueError(f"{key}: not a number: {result[key]!r}")
+    except FileNotFoundError:
+        return None
+    except (OSError, ValueError, KeyError, TypeError, RecursionError) as error:
+        raise UsageError(f"cannot read {file}: {error}") from error
+    return dict(result)
 
 
 def write_table(path: Path, results: Sequence[RunResult]) -> None:

@@ -8,7 +8,7 @@ from rich.console import Console
 from rich.live import Live
 from rich.text import Text
 
-from hsr8.evaluation.sweep.job import CRASHED, RunResult
+from hsr8.evaluation.sweep.job import CRASHED, REFUSED, RunResult
 from hsr8.evaluation.sweep.report import problem
 
 
@@ -22,7 +22,7 @@ class SweepProgress:
 
     def __init__(self, total: int, done: int) -> None:
         self._total, self._left = total, total - done
-        self._ended = self._succeeded = self._crashed = 0
+        self._ended = self._succeeded = self._crashed = self._refused = 0
         self._started = clock.monotonic()
         console = Console(stderr=True)
         self._live: Live | None = None
@@ -41,6 +41,7 @@ class SweepProgress:
         self._left -= 1
         self._succeeded += bool(result.get("success"))
         self._crashed += result["outcome"] == CRASHED
+        self._refused += result["outcome"] == REFUSED
         run = f"{sweep} seed {result['seed']}".lstrip()
         text = f"{run}: {problem(result) or 'success'}"
         if self._live is None:
@@ -59,8 +60,9 @@ class SweepProgress:
             self._live.stop()
 
     def _line(self) -> str:
-        failed = self._ended - self._succeeded - self._crashed
+        failed = self._ended - self._succeeded - self._crashed - self._refused
         counts = f"{self._succeeded} succeeded, {failed} failed, {self._crashed} crashed"
+        counts += f", {self._refused} refused" if self._refused else ""
         time = "remaining time unknown"
         if self._ended:
             seconds = (clock.monotonic() - self._started) / self._ended * self._left

@@ -1,20 +1,17 @@
-"""Runs of one or more sweep folders, and the executors that run their jobs."""
+"""Runs of one or more sweep folders."""
 
-import os
-import re
 import sys
-from collections.abc import Callable, Mapping, Sequence
+from collections import deque
+from collections.abc import Mapping
 from contextlib import ExitStack, closing
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import Protocol
 
-from hsr8.errors import UsageError
-from hsr8.evaluation.sweep.dask_executor import DaskExecutor
+from hsr8.errors import Hsr8Error, UsageError
 from hsr8.evaluation.sweep.definition import Definition
 from hsr8.evaluation.sweep.folder import SweepFolder
-from hsr8.evaluation.sweep.job import CRASHED, REFUSED, Job, Keep, RunResult
-from hsr8.evaluation.sweep.local_executor import LocalExecutor
+from hsr8.evaluation.sweep.job import CRASHED, Job, Keep, RunResult
+from hsr8.evaluation.sweep.pools import open_pool, parse_executor
 from hsr8.evaluation.sweep.progress import SweepProgress
 from hsr8.evaluation.sweep.report import report
 from hsr8.files.writing import require_temporary
@@ -26,19 +23,7 @@ START_TIME = 60.0  # default limits: for the start of a process [s]
 MAX_SLOWNESS = 20.0  # and wall time per simulated second [1]
 ATTEMPTS = 2  # a crashed run is repeated once
 POLL = 0.5  # interval of the progress display [s]
-
-
-class Executor(Protocol):
-    """Runs jobs, as many at a time as it has workers."""
-
-    def submit(self, job: Job) -> None:
-        """Add a job; it starts when a worker is free."""
-
-    def wait(self, seconds: float) -> list[tuple[Job, RunResult]]:
-        """Return the jobs that ended; wait up to `seconds` for the first."""
-
-    def close(self) -> None:
-        """Stop the jobs that still run."""
+QUEUED = 3  # limits after which other machines take a run to be lost
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -48,11 +33,10 @@ class Execution:
     Attributes:
         command: command line that continues them.
         seeds: seeds of every sweep.
-        shard: number, from 1, and count of shards; None for all seeds.
         workers: parallel runs on this machine; None for the number of CPUs.
         executor: "local" or "dask://HOST:PORT".
         timeout: wall-clock limit per run [s]; None for the default.
-        keep: run folders that are kept.
+        keep: runs whose tables are kept.
         quiet: whether no progress is shown.
 
     Raises:
@@ -61,7 +45,6 @@ class Execution:
 
     command: str
     seeds: tuple[int, ...]
-    shard: tuple[int, int] | None = None
     workers: int | None = None
     executor: str = "local"
     timeout: float | None = None
@@ -110,135 +93,123 @@ def run_sweeps(
     Raises:
         UsageError: a plugin cannot be read or made, or a folder is invalid.
         RenderingUnavailable: the camera needs OpenGL and there is none.
+        Hsr8Error: a folder can no longer be written, or the scheduler was lost.
     """
-    local = not parse_executor(execution.executor)
-    if local and any(s.camera.source == "rendered" for s in scenarios.values()):
-        require_gl()
-    if local:
+    if not parse_executor(execution.executor):
+        if any(s.camera.source == "rendered" for s in scenarios.values()):
+            require_gl()
         require_temporary()  # of the server that forks the runs
     for scenario in scenarios.values():
         require_plugins(scenario.plugin)
-    folders: dict[str, SweepFolder] = {}
-    jobs: list[Job] = []
-    with ExitStack() as stack:
-        for name, scenario in scenarios.items():
-            folder = SweepFolder.open(out / name, Definition.now(scenario, commands[name]))
-            folder.lock(execution.shard)
-            stack.callback(folder.close)
-            folders[name] = folder
-            limit = execution.timeout or START_TIME + MAX_SLOWNESS * scenario.duration
-            jobs += [
-                Job(
-                    scenario.with_seed(seed),
-                    str(folder.path.resolve()),
-                    folder.definition.command(seed),
-                    limit,
-                    keep=execution.keep,
-                )
-                for seed in pending(execution.seeds, folder.results(), execution.shard)
-            ]
-        interrupted = bool(jobs) and _run(jobs, list(folders.values()), execution)
-        results = {name: folder.results() for name, folder in folders.items()}
-        for name, folder in folders.items():
-            folder.write_report(report(folder.definition, results[name], execution.command))
-    if interrupted:
+    folders = {
+        name: SweepFolder.open(out / name, Definition.now(scenario, commands[name]))
+        for name, scenario in scenarios.items()
+    }
+    waiting, elsewhere = _missing(folders, scenarios, execution)
+    interrupted = False
+    try:
+        if waiting:
+            _run(waiting, execution, len(folders))
+    except KeyboardInterrupt:
+        interrupted = True
         print(f"hsr8: interrupted; continue with: {execution.command}", file=sys.stderr)
-    return SweepRuns(results, folder.definition, interrupted)
+    except Hsr8Error as error:
+        error.add_note(f"continue with: {execution.command}")
+        raise
+    results = {name: folder.results() for name, folder in folders.items()}
+    for name, folder in folders.items():
+        folder.write_report(report(folder.definition, results[name], execution.command))
+    if elsewhere:
+        print(
+            f"hsr8: {elsewhere} runs belong to other processes; the last one reports all runs",
+            file=sys.stderr,
+        )
+    return SweepRuns(results, next(iter(folders.values())).definition, interrupted)
 
 
-def _run(jobs: Sequence[Job], folders: Sequence[SweepFolder], execution: Execution) -> bool:
-    """Run the jobs; return whether they were interrupted."""
-    total = len(pending(execution.seeds, (), execution.shard)) * len(folders)
-    progress = None if execution.quiet else SweepProgress(total, total - len(jobs))
-    by_path = {str(folder.path.resolve()): folder for folder in folders}
+@dataclass(slots=True)
+class _Run:
+    """Run without a result.
 
-    def on_result(job: Job, result: RunResult) -> None:
-        folder = by_path[job.folder]
-        folder.append(result | {"command": job.command})
-        if progress is not None:
-            progress.on_result(result, folder.path.name if len(folders) > 1 else "")
-
-    with ExitStack() as stack:
-        if progress is not None:
-            stack.callback(progress.close)
-        try:
-            executor = open_executor(execution.executor, execution.workers)
-            stack.enter_context(closing(executor))
-            run_jobs(jobs, executor, on_result, progress.refresh if progress else lambda: None)
-        except KeyboardInterrupt:
-            return True
-    return False
-
-
-def run_jobs(
-    jobs: Sequence[Job],
-    executor: Executor,
-    on_result: Callable[[Job, RunResult], None],
-    on_poll: Callable[[], None],
-) -> None:
-    """Run all jobs; repeat a crashed one once.
-
-    Args:
-        jobs: the jobs.
-        executor: runs the jobs; it stays open.
-        on_result: called with every result.
-        on_poll: called at least every half second.
+    Attributes:
+        folder: folder of its sweep.
+        job: the run.
+        number: number of its next folder.
+        first_error: error of the first attempt, if it crashed.
     """
-    for job in jobs:
-        executor.submit(job)
-    remaining = len(jobs)
-    first_errors: dict[tuple[str, int], str] = {}
-    while remaining:
-        for job, result in executor.wait(POLL):
-            key = (job.folder, job.seed)
-            if result["outcome"] == CRASHED and job.attempt < ATTEMPTS:
-                first_errors[key] = str(result.get("error"))
-                executor.submit(replace(job, attempt=job.attempt + 1))
-                continue
-            if key in first_errors:
-                result["first_error"] = first_errors[key]
-            on_result(job, result)
-            remaining -= 1
-        on_poll()
+
+    folder: SweepFolder
+    job: Job
+    number: int
+    first_error: str = ""
+
+    def claim(self) -> bool:
+        """Take the run; return False if another process has done so."""
+        folder = self.folder.claim(self.job.seed, self.number, QUEUED * self.job.timeout)
+        self.job = replace(self.job, run=folder or "")
+        return folder is not None
+
+    def again(self, error: str) -> "_Run":
+        """Return the second attempt."""
+        job = replace(self.job, attempt=self.job.attempt + 1)
+        return _Run(self.folder, job, self.number + 1, error)
 
 
-def pending(
-    seeds: Sequence[int], results: Sequence[RunResult], shard: tuple[int, int] | None
-) -> tuple[int, ...]:
-    """Return the seeds of the shard that have no result, or that crashed or were refused.
+def _missing(
+    folders: Mapping[str, SweepFolder], scenarios: Mapping[str, Scenario], execution: Execution
+) -> tuple[deque[_Run], int]:
+    """Return the runs without a result, and the number of runs of other processes."""
+    waiting, elsewhere = deque[_Run](), 0
+    for name, folder in folders.items():
+        missing, others = folder.missing(execution.seeds)
+        elsewhere += others
+        limit = execution.timeout or START_TIME + MAX_SLOWNESS * scenarios[name].duration
+        path = str(folder.path.resolve())
+        for seed, number in missing.items():
+            scenario, command = scenarios[name].with_seed(seed), folder.definition.command(seed)
+            job = Job(scenario, path, "", command, limit, keep=execution.keep)
+            waiting.append(_Run(folder, job, number))
+    return waiting, elsewhere
 
-    Args:
-        seeds: seeds of the whole sweep.
-        results: results so far.
-        shard: number, from 1, and count of shards; every seed belongs to one of them.
-    """
-    done = {r["seed"] for r in results if r["outcome"] not in (CRASHED, REFUSED)}
-    mine = seeds if shard is None else seeds[shard[0] - 1 :: shard[1]]
-    return tuple(seed for seed in mine if seed not in done)
 
-
-def parse_executor(name: str) -> str:
-    """Return the ``HOST:PORT`` of a Dask scheduler, empty for this machine.
+def _run(waiting: deque[_Run], execution: Execution, sweeps: int) -> None:
+    """Run all that no other process takes first; repeat a crashed run once.
 
     Raises:
-        UsageError: `name` is neither "local" nor "dask://HOST:PORT".
+        KeyboardInterrupt: Ctrl-C or SIGTERM; the runs that were stopped are left to the next
+            sweep, also after an error.
+        Hsr8Error: a folder can no longer be written, or the scheduler was lost.
     """
-    match = re.fullmatch(r"local|dask://((?:[\w.-]+|\[[\da-f:]+\]):(\d{1,5}))", name)
-    if match is None or int(match[2] or 0) > 65535:
-        raise UsageError(
-            f"--executor: unknown executor, got {name}; expected local or dask://HOST:PORT"
-        )
-    return match[1] or ""
+    total, running = len(execution.seeds) * sweeps, dict[tuple[str, int], _Run]()
+    with ExitStack() as stack:
+        progress = None
+        if not execution.quiet:
+            progress = SweepProgress(total, total - len(waiting))
+            stack.callback(progress.close)
+        stack.callback(_release, running)
+        pool = stack.enter_context(closing(open_pool(execution.executor, execution.workers)))
+        while waiting or running:
+            while waiting and pool.free > 0:
+                run = waiting.popleft()
+                if run.claim():
+                    running[run.job.folder, run.job.seed] = run
+                    pool.submit(run.job)
+            for job, result in pool.wait(POLL) if running else ():
+                run = running[job.folder, job.seed]
+                again = result["outcome"] == CRASHED and job.attempt < ATTEMPTS
+                if again:
+                    waiting.append(run.again(str(result.get("error"))))
+                elif run.first_error:
+                    result["first_error"] = run.first_error
+                run.folder.finish(job, result | {"command": job.command})
+                del running[job.folder, job.seed]
+                if progress is not None and not again:
+                    progress.on_result(result, run.folder.path.name if sweeps > 1 else "")
+            if progress is not None:
+                progress.refresh()
 
 
-def open_executor(name: str, workers: int | None) -> Executor:
-    """Return the executor called `name`.
-
-    Args:
-        name: "local" or "dask://HOST:PORT".
-        workers: parallel runs on this machine; None for the number of CPUs.
-    """
-    address = parse_executor(name)
-    if address:
-        return DaskExecutor(address)
-    return LocalExecutor(workers or len(os.sched_getaffinity(0)))
+def _release(running: Mapping[tuple[str, int], _Run]) -> None:
+    """Leave runs that did not end to the next sweep."""
+    for run in running.values():
+        run.folder.release(run.job)

@@ -1,4 +1,4 @@
-"""Seeds, shards and varied values as written on the command line."""
+"""Seeds and varied values as written on the command line."""
 
 import re
 from collections import Counter
@@ -39,18 +39,6 @@ def parse_seeds(text: str, option: str = "--seeds") -> tuple[int, ...]:
     if count > 1:
         raise UsageError(f"{option}: seed {seed} is repeated, got {text}")
     return tuple(seeds)
-
-
-def parse_shard(text: str) -> tuple[int, int]:
-    """Return number and count of ``2/8``, counted from 1.
-
-    Raises:
-        UsageError: `text` is malformed.
-    """
-    match = re.fullmatch(r"(\d{1,6})/(\d{1,6})", text.strip(), re.ASCII)
-    if match is None or not 1 <= int(match[1]) <= int(match[2]):
-        raise UsageError(f"--shard: not a shard, got {text}; expected I/N, such as 1/4")
-    return int(match[1]), int(match[2])
 
 
 def parse_values(text: str) -> tuple[str, tuple[str, ...]]:

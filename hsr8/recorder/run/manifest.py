@@ -2,7 +2,7 @@
 
 import platform
 from collections.abc import Mapping, Sequence
-from dataclasses import asdict, dataclass, field, replace
+from dataclasses import asdict, dataclass, field
 from datetime import UTC, datetime
 from importlib import metadata
 from pathlib import Path
@@ -11,6 +11,7 @@ from typing import Any
 from hsr8 import arithmetic
 from hsr8.files import atomic
 from hsr8.plugin_file import digests
+from hsr8.recorder.run.code_digest import code_digest
 from hsr8.robots.locate import digest
 from hsr8.scenario.schema import Scenario
 from hsr8.scenario.track_file import track_digests
@@ -27,7 +28,7 @@ LIBRARIES = (
     "pydantic",
     "av",
 )
-FORMAT = 6  # of run folders; those without a number are of format 1
+FORMAT = 7  # of run folders; those without a number are of format 1
 RUNNING = "running"
 CALL = "hsr8.run("  # begins the command of a run with a planner or gaze object
 
@@ -46,11 +47,14 @@ class Manifest:
         started: wall-clock time, ISO 8601.
         renderer: OpenGL renderer of the head camera, or ``camera.source`` without OpenGL.
         hsr8: version.
+        code: digest of the program's files.
         python: version.
         machine: operating system and processor.
         libraries: version by name, and the arithmetic in use.
         format: format number of the run folder.
         rows: number of rows of each table, at the end.
+        state_hash: SHA-256 of the last state of the world and the belief.
+        wall_time_s: wall time of the run, without compilation [s].
     """
 
     scenario: str
@@ -60,11 +64,14 @@ class Manifest:
     started: str
     renderer: str
     hsr8: str
+    code: str
     python: str
     machine: str
     libraries: dict[str, str]
     format: int = FORMAT
     rows: dict[str, int] = field(default_factory=dict)
+    state_hash: str = ""
+    wall_time_s: float = 0.0
 
     @classmethod
     def now(cls, scenario: Scenario, command: Sequence[str], renderer: str) -> "Manifest":
@@ -81,14 +88,11 @@ class Manifest:
             started=datetime.now(UTC).isoformat(timespec="seconds"),
             renderer=renderer,
             hsr8=VERSION,
+            code=code_digest(),
             python=platform.python_version(),
             machine=f"{platform.system()} {platform.release()} {platform.machine()}",
             libraries=versions_of(scenario),
         )
-
-    def ended(self, exit_reason: str, rows: Mapping[str, int]) -> "Manifest":
-        """Return the manifest with an exit reason and the number of rows of each table."""
-        return replace(self, exit_reason=exit_reason, rows=dict(rows))
 
     def write(self, path: Path) -> None:
         """Write to `path` atomically; on a full disk overwrite the file in place."""

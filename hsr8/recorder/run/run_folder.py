@@ -4,7 +4,6 @@
     manifest.json    versions, seed, renderer, exit reason
     metrics.json     results, at the end
     *.arrows         tables of the run, see ``docs/data.md``
-    checksums.txt    of the tables
     log.rrd          log for the Rerun viewer, after ``hsr8 replay`` or with ``hsr8 run --log``
     video.mp4        after ``hsr8 render`` or with ``hsr8 run --video``
     crash.txt        traceback of an internal error
@@ -14,9 +13,12 @@ Tables are written once a second, so the folder of a killed run is complete up t
 
 import secrets
 from collections.abc import Iterator, Mapping, Sequence
-from contextlib import ExitStack, contextmanager, suppress
+from contextlib import contextmanager, suppress
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any
+
+import pyarrow as pa
 
 from hsr8.errors import UsageError
 from hsr8.files import atomic
@@ -34,14 +36,35 @@ LOG = "log.rrd"
 VIDEO = "video.mp4"
 
 
+@dataclass
+class Memory:
+    """Contents of a run in memory.
+
+    Attributes:
+        scenario: scenario with the seed of the run.
+        tables: Arrow stream of each table that has rows.
+        metrics: results.
+    """
+
+    scenario: Scenario
+    tables: dict[str, pa.Buffer] = field(default_factory=dict)
+    metrics: dict[str, Any] = field(default_factory=dict)
+
+
 class RunFolder:
-    """Folder of one run, a sink of its recorder.
+    """Folder of one run, or its memory: a sink of its recorder.
 
     Args:
-        path: new folder, see `create`; manifest and scenario are written immediately.
+        path: new folder, see `create`; manifest and scenario are written immediately. None keeps
+            everything in memory.
         scenario: scenario with the seed of the run.
         command: words of the command line that repeats the run.
         renderer: name of the renderer of the head camera.
+
+    Attributes:
+        path: the folder.
+        manifest: versions, seed, exit reason.
+        memory: contents without a folder.
 
     Raises:
         RecordingFailed: here and in every method, the folder cannot be written.
@@ -49,14 +72,16 @@ class RunFolder:
     """
 
     def __init__(
-        self, path: Path, scenario: Scenario, command: Sequence[str], renderer: str
+        self, path: Path | None, scenario: Scenario, command: Sequence[str], renderer: str
     ) -> None:
         self.path = path
-        self._manifest = Manifest.now(scenario, command, renderer)
+        self.manifest = Manifest.now(scenario, command, renderer)
+        self.memory = Memory(scenario) if path is None else None
         self._files = ArrowFiles(path)
-        with writing(path):
-            self._manifest.write(path / MANIFEST)
-            atomic.write_text(path / SCENARIO, dump(scenario))
+        if path is not None:
+            with writing(path):
+                self.manifest.write(path / MANIFEST)
+                atomic.write_text(path / SCENARIO, dump(scenario))
 
     @staticmethod
     def create(out: Path, scenario: str, seed: int) -> Path:
@@ -87,20 +112,32 @@ class RunFolder:
         self._files.add(tables)
 
     def close(self, exit_reason: str) -> None:
-        """Close the files and complete the manifest."""
-        with ExitStack() as stack:
-            stack.callback(self.note, exit_reason, self._files.rows)
-            self._files.close()
+        """Close the files."""
+        buffers = self._files.close()
+        if self.memory is not None:
+            self.memory.tables = buffers
 
-    def note(self, exit_reason: str, rows: Mapping[str, int]) -> None:
-        """Write the exit reason and the number of rows of each table into the manifest."""
-        with writing(self.path):
-            self._manifest.ended(exit_reason, rows).write(self.path / MANIFEST)
+    def end(self, exit_reason: str, **facts: Any) -> None:
+        """Complete the manifest.
 
-    def write_metrics(self, metrics: Mapping[str, Any]) -> None:
+        Args:
+            exit_reason: exit reason of the run.
+            facts: further attributes of the manifest that are known at the end.
+        """
+        self.manifest = replace(
+            self.manifest, exit_reason=exit_reason, **{"rows": dict(self._files.rows), **facts}
+        )
+        if self.path is not None:
+            with writing(self.path):
+                self.manifest.write(self.path / MANIFEST)
+
+    def write_metrics(self, metrics: dict[str, Any]) -> None:
         """Write the results."""
-        with writing(self.path):
-            atomic.write_json(self.path / METRICS, metrics)
+        if self.memory is not None:
+            self.memory.metrics = metrics
+        if self.path is not None:
+            with writing(self.path):
+                atomic.write_json(self.path / METRICS, metrics)
 
 
 @contextmanager

@@ -1,92 +1,17 @@
 """Reading of run folders, also of runs that were killed."""
 
-import json
 import os
 from contextlib import suppress
-from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
 
-from hsr8.errors import ScenarioError, UsageError
-from hsr8.files.regular import read_text
-from hsr8.recorder.rows import TABLES
+from hsr8.errors import UsageError
 from hsr8.recorder.run import run_folder
 from hsr8.recorder.run.manifest import FORMAT
-from hsr8.recorder.run.run import Run
-from hsr8.recorder.stream import SUFFIX, read_table
-from hsr8.recorder.table import Table
-from hsr8.scenario.loader import load_scenario
-from hsr8.scenario.schema import Scenario
+from hsr8.recorder.run.run import Run, read_json
 from hsr8.version import VERSION
 
 
-@dataclass(frozen=True)
-class StoredRun(Run):
-    """A run in a folder.
-
-    Attributes:
-        path: the folder.
-        trust: whether the plugins that its scenario names may run.
-    """
-
-    path: Path
-    trust: bool = False
-
-    @property
-    def scenario_file(self) -> Path:
-        """File of the resolved scenario."""
-        return self.path / run_folder.SCENARIO
-
-    def scenario_text(self) -> str:
-        """Return the resolved scenario as TOML.
-
-        Raises:
-            UsageError: it cannot be read.
-        """
-        try:
-            return read_text(self.scenario_file)
-        except OSError as error:
-            raise UsageError(f"cannot read {self.scenario_file}: {error.strerror}") from error
-
-    def scenario(self) -> Scenario:
-        """Return the scenario with the seed of the run.
-
-        Raises:
-            ScenarioError: this version cannot read it.
-        """
-        try:
-            return load_scenario(str(self.scenario_file), seed=self.seed, trust=self.trust)
-        except ScenarioError as error:
-            made_by = (
-                f"hsr8 {self.manifest.get('hsr8', '?')} of {self.manifest.get('started', '?')}"
-            )
-            raise ScenarioError(
-                f"{error}\n  the run was made by {made_by}, this is hsr8 {VERSION}: "
-                "run it again, or read it with the version that made it"
-            ) from error
-
-    @property
-    def log_file(self) -> Path | None:
-        """Rerun log of the whole run; None without one, or if it was made during the run."""
-        file, manifest = self.path / run_folder.LOG, self.path / run_folder.MANIFEST
-        whole = file.is_file() and file.stat().st_mtime_ns >= manifest.stat().st_mtime_ns
-        return file if whole and not self.running else None
-
-    def metrics(self) -> dict[str, Any]:
-        """Return the results; empty if the run did not get there."""
-        file = self.path / run_folder.METRICS
-        return _json(file) if os.path.lexists(file) else {}
-
-    def _table(self, name: str) -> Table:
-        path = self.path / f"{name}{SUFFIX}"
-        table = read_table(path, TABLES[name], whole=self.ended)
-        expected = self.manifest.get("rows", {}).get(name, int(name == "ticks"))
-        if self.ended and len(table) < expected:
-            raise UsageError(f"{path}: cut off, it holds {len(table)} of {expected} rows")
-        return table
-
-
-def open_run(path: str | Path, *, trust: bool = False) -> StoredRun:
+def open_run(path: str | Path, *, trust: bool = False) -> Run:
     """Return the run at `path`, or the newest one in this folder, see `run_folders`.
 
     Args:
@@ -113,7 +38,7 @@ def open_run(path: str | Path, *, trust: bool = False) -> StoredRun:
     return _run(folders[-1], trust)
 
 
-def runs(folder: str | Path, *, trust: bool = False) -> list[StoredRun]:
+def runs(folder: str | Path, *, trust: bool = False) -> list[Run]:
     """Return the runs in a folder, see `run_folders`; those that cannot be read are left out.
 
     Args:
@@ -162,9 +87,9 @@ def _subfolders(path: Path) -> list[Path]:
     return [folder for folder in folders if os.path.isdir(folder)]  # a looping link is none
 
 
-def _run(path: Path, trust: bool) -> StoredRun:
+def _run(path: Path, trust: bool) -> Run:
     file = path / run_folder.MANIFEST
-    manifest = _json(file)
+    manifest = read_json(file)
     seed, number = manifest.get("seed"), manifest.get("format", 1)
     if not isinstance(seed, int):
         raise UsageError(f"cannot read {file}: seed: expected an integer, got {seed!r}")
@@ -178,7 +103,7 @@ def _run(path: Path, trust: bool) -> StoredRun:
     rows = manifest.get("rows", {})
     if not isinstance(rows, dict) or not all(isinstance(count, int) for count in rows.values()):
         raise UsageError(f"cannot read {file}: rows: expected numbers by table, got {rows!r}")
-    return StoredRun(path, manifest, trust)
+    return Run(path, manifest, trust=trust)
 
 
 def _alternatives(path: Path) -> str:
@@ -190,15 +115,3 @@ def _alternatives(path: Path) -> str:
     if not names:
         return "; `hsr8 run SCENARIO` makes one"
     return f"; {parent} holds {', '.join(names[-8:])}"
-
-
-def _json(path: Path) -> dict[str, Any]:
-    try:
-        value = json.loads(read_text(path))
-    except OSError as error:
-        raise UsageError(f"cannot read {path}: {error.strerror}") from error
-    except (ValueError, RecursionError) as error:
-        raise UsageError(f"cannot read {path}: {error}") from error
-    if not isinstance(value, dict):
-        raise UsageError(f"cannot read {path}: expected a JSON object")
-    return value

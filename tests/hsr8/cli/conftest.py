@@ -13,11 +13,15 @@ GOOD = {
 
 
 class Instant:
-    """Executor whose runs succeed at once, except for the outcomes by seed."""
+    """Pool whose runs succeed at once, except for the outcomes by seed."""
 
     def __init__(self, outcomes):
         self.outcomes, self.queue, self.ran = outcomes, [], []
         self.closed = False
+
+    @property
+    def free(self):
+        return 1 - len(self.queue)
 
     def submit(self, job):
         self.queue.append(job)
@@ -29,8 +33,8 @@ class Instant:
         if isinstance(outcome, BaseException):
             raise outcome
         if callable(outcome):
-            outcome()
-        result = {"seed": job.seed, "outcome": outcome, "attempts": job.attempt, "worker": "here"}
+            outcome = outcome() or "passed"
+        result = {"seed": job.seed, "outcome": outcome, "attempts": job.attempt, "run": job.run}
         return [(job, result | (GOOD if outcome in ("passed", "failed") else {"error": "oh no"}))]
 
     def close(self):
@@ -39,14 +43,12 @@ class Instant:
 
 @pytest.fixture
 def instant(monkeypatch, tmp_path):
-    """Replace the executor; the command runs in `tmp_path`."""
+    """Replace the pool; the command runs in `tmp_path`."""
     monkeypatch.chdir(tmp_path)
 
     def use(outcomes=None):
         executor = Instant(outcomes or {})
-        monkeypatch.setattr(
-            "hsr8.evaluation.sweep.runs.open_executor", lambda name, workers: executor
-        )
+        monkeypatch.setattr("hsr8.evaluation.sweep.runs.open_pool", lambda name, workers: executor)
         return executor
 
     return use

@@ -7,6 +7,7 @@ import pytest
 
 from hsr8.cli.main import entry
 from hsr8.evaluation.bench.entry import read_entry
+from hsr8.evaluation.sweep.folder import SweepFolder
 
 SUITE = """
 name = "tiny"
@@ -102,10 +103,8 @@ def test_the_command_of_an_entry_names_neither_folder_nor_workers(bench, instant
 def test_a_run_of_the_suite_is_repeated_by_its_command(bench, instant):
     instant()
     entry([*bench, "--quick", "--camera", "omnidirectional"])
-    (line,) = (
-        Path("bench/tiny/camera.source=omnidirectional/quick/runs.jsonl").read_text().splitlines()
-    )
-    assert json.loads(line)["command"] == (
+    folder = SweepFolder.read(Path("bench/tiny/camera.source=omnidirectional/quick"))
+    assert folder.results()[0]["command"] == (
         "hsr8 run quick --set robot.body=kinematic camera.source=analytic duration=0.3 "
         "camera.source=omnidirectional --seed 1000"
     )

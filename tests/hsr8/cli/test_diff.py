@@ -141,8 +141,8 @@ def test_a_cut_or_missing_table_of_an_ended_run_is_refused(recorded, tmp_path, c
     for command in (["diff", str(recorded[0]), str(copy)], ["verify", str(copy)]):
         assert entry(command) == 2
         message = capsys.readouterr().err
-        assert f"{name}.arrows: cut off" in message
+        assert f"{name}.arrows: cut off or damaged" in message
         assert message.count("\n") == 1
     file.unlink()
     assert entry(["diff", str(recorded[0]), str(copy)]) == 2
-    assert f"{name}.arrows: cut off, it holds 0 of " in capsys.readouterr().err
+    assert f"{name}.arrows: cut off or damaged, got 0 rows; " in capsys.readouterr().err

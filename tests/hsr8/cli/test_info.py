@@ -19,7 +19,7 @@ def test_json_has_all_contents_of_the_folder(run, capsys):
     assert entry(["info", str(run.path), "--json"]) == 0
     result = json.loads(capsys.readouterr().out)
     assert result["manifest"] == run.manifest
-    assert result["metrics"] == run.metrics()
+    assert result["metrics"] == run.metrics
     assert result["files"] == {f.name: f.stat().st_size for f in run.path.iterdir()}
     assert {c["name"]: c["met"] for c in result["criteria"]} == {
         "falls": True,

@@ -59,7 +59,6 @@ LINES = [
     ("sweep quick --seeds 0:2 --timeout -1", "--timeout: out of range, got -1"),
     ("sweep quick --seeds 0:2 --set seed=3", "--set: the seed is not a setting, got seed=3"),
     ("sweep quick --seeds 0:2 --timeout nan", "--timeout: out of range, got nan"),
-    ("sweep quick --seeds 0:2 --shard 3/2", "--shard: not a shard, got 3/2"),
     ("sweep quick --seeds 0:2 --vary a", "--vary: malformed"),
     ("sweep quick --seeds 0:2 --vary seed=1,2 seed=3", "--vary: a key is repeated"),
     ("sweep quick --seeds 0:2 --vary seed=1", "--vary: the seed is not a setting, got seed=1"),
@@ -171,7 +170,7 @@ def folder(tmp_path_factory):
         (path / name).mkdir(parents=True)
     (path / "damaged/manifest.json").write_text("{")
     run = RunFolder.create(path, "made", 7)
-    RunFolder(run, load_scenario("quick", seed=7), (), "analytic").note("goal", {})
+    RunFolder(run, load_scenario("quick", seed=7), (), "analytic").end("goal", rows={})
     (run / "scenario.toml").write_text("")
     manifest = json.loads((run / "manifest.json").read_text())
     (path / "future/manifest.json").write_text(json.dumps(manifest | {"format": 99}))

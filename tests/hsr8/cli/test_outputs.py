@@ -77,8 +77,7 @@ def test_an_unwritable_folder_is_reported_before_any_work(tmp_path, monkeypatch,
     def never(*_, **__):
         raise AssertionError("the simulation was built")
 
-    monkeypatch.setattr("hsr8.cli.recorded_run.Simulation", never)
-    monkeypatch.setattr("hsr8.api.Simulation", never)
+    monkeypatch.setattr("hsr8.evaluation.recording.Simulation", never)
     (tmp_path / "closed").mkdir(mode=0o500)
     if python:
         with pytest.raises(Exception, match=r"cannot write the run folder .*Permission denied"):
@@ -190,7 +189,7 @@ def test_a_camera_that_fails_leaves_no_open_file(tmp_path, monkeypatch):
         raise RenderingUnavailable("no OpenGL")
 
     monkeypatch.setattr("hsr8.loop.HeadCamera.open", failing)
-    monkeypatch.setattr("hsr8.api.renderer_of", lambda scenario: "none")
+    monkeypatch.setattr("hsr8.evaluation.recording.require_gl", lambda: "none")
     with pytest.raises(RenderingUnavailable) as error:  # whose frames hold the recorder
         api_run("quick", out=tmp_path)
     assert error.traceback

@@ -5,7 +5,7 @@ from rich.console import Console
 
 from hsr8.cli import report
 from hsr8.evaluation.metrics import metrics
-from hsr8.evaluation.verdict import Criterion
+from hsr8.recorder.run.verdict import Criterion
 from navigation.parameters.navigation import MissionParameters
 
 

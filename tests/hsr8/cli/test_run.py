@@ -26,7 +26,7 @@ def test_json_is_the_only_output(tmp_path, capsys):
     assert printed.count("\n") == 1
     assert code == 1  # one second is not enough for the goal
     run = open_run(tmp_path)
-    assert run.metrics().items() <= results.items()
+    assert run.metrics.items() <= results.items()
     assert results["criteria_met"] is False
     assert results["definitions"].keys() == {"success", "criteria_met"}
     assert run.manifest["exit_reason"] == results["exit_reason"] == "timeout"
@@ -38,7 +38,7 @@ def test_the_log_does_not_change_the_run(tmp_path, capsys):
     hashes = set()
     for more in (["--quiet"], [], ["--log", "--quiet"]):
         _run(tmp_path, "--seed", "5", *more)
-        hashes.add(open_run(tmp_path).metrics()["state_hash"])
+        hashes.add(open_run(tmp_path).metrics["state_hash"])
     assert len(hashes) == 1
     log = open_run(tmp_path).log_file
     assert log.stat().st_size > 10_000
@@ -53,9 +53,9 @@ def test_the_folder_has_the_command_to_repeat_the_run(tmp_path, capsys):
     settings = tomllib.loads(run.scenario_file.read_text())
     assert settings["seed"] == 9
     assert settings["world"]["n_static"] == 3
-    first = run.metrics()
+    first = run.metrics
     entry([*run.manifest["command"].split()[1:], "--out", str(tmp_path / "again"), "--quiet"])
-    assert open_run(tmp_path / "again").metrics()["state_hash"] == first["state_hash"]
+    assert open_run(tmp_path / "again").metrics["state_hash"] == first["state_hash"]
 
 
 def test_quiet_is_quiet(tmp_path, capsys):
@@ -99,7 +99,7 @@ def test_ctrl_c_during_setup_leaves_a_whole_folder(tmp_path, monkeypatch, capsys
     monkeypatch.setattr("hsr8.recorder.run.run_folder.dump", interrupted)
     assert _run(tmp_path, "--quiet") == 130
     run = open_run(tmp_path)
-    assert run.manifest["exit_reason"] == run.metrics()["exit_reason"] == "interrupted"
+    assert run.manifest["exit_reason"] == run.metrics["exit_reason"] == "interrupted"
 
 
 def test_a_diverged_run_is_reported_and_recorded(tmp_path, monkeypatch, capsys):
@@ -133,4 +133,4 @@ def test_an_internal_error_leaves_its_traceback_in_the_run_folder(tmp_path, monk
 
 def test_set_overrides_the_other_options(tmp_path, capsys):
     _run(tmp_path, "--quiet", "--set", "duration=0.4")
-    assert open_run(tmp_path).metrics()["sim_time_s"] == pytest.approx(0.4)
+    assert open_run(tmp_path).metrics["sim_time_s"] == pytest.approx(0.4)

@@ -13,6 +13,7 @@ from hsr8.cli.sweep import _combinations
 from hsr8.evaluation.sweep.folder import SweepFolder
 from hsr8.loop import Simulation
 from hsr8.scenario.loader import load_scenario
+from tests.hsr8.cli.conftest import Instant
 
 TINY = ["--body", "kinematic", "--camera", "analytic"]
 FAST = ["sweep", "quick", *TINY, "--duration", "0.3", "--quiet"]
@@ -120,17 +121,33 @@ def test_a_scheduler_s_signal_is_like_ctrl_c(instant):
     assert signal.getsignal(signal.SIGTERM) is handler
 
 
-def test_shards_are_merged(instant, capsys):
-    ran = []
-    for shard in ("1/2", "2/2"):
-        executor = instant()
-        entry([*FAST, "--seeds", "0:5", "--shard", shard, "--out", "s"])
-        ran.append([job.seed for job in executor.ran])
-    assert ran == [[0, 2, 4], [1, 3]]
-    whole = instant()
-    assert entry([*FAST, "--seeds", "0:5", "--out", "s", "--json"]) == 0
-    assert whole.ran == []
-    assert json.loads(capsys.readouterr().out)["runs"] == 5
+def test_processes_with_the_same_line_share_the_runs(instant, capsys):
+    """The second process starts while the first one runs; each seed runs once."""
+    other = Instant({})
+
+    def start():
+        monkeypatch = pytest.MonkeyPatch()
+        with monkeypatch.context() as patch:
+            patch.setattr("hsr8.evaluation.sweep.runs.open_pool", lambda *_: other)
+            patch.setattr("os.getpid", os.getppid)
+            assert entry([*FAST, "--seeds", "0:4"]) == 0
+
+    first = instant({0: start})
+    assert entry([*FAST, "--seeds", "0:4", "--json"]) == 0
+    printed = capsys.readouterr()
+    assert [job.seed for job in first.ran] == [0]
+    assert [job.seed for job in other.ran] == [1, 2, 3]
+    assert "1 runs belong to other processes" in printed.err
+    assert json.loads(printed.out)["runs"] == 4
+
+
+def test_a_crashed_run_is_repeated_once(instant, tmp_path):
+    pool = instant({1: "crashed"})
+    entry([*FAST, "--seeds", "0:2"])
+    assert [(job.seed, job.attempt) for job in pool.ran] == [(0, 1), (1, 1), (1, 2)]
+    runs = tmp_path / "sweeps" / "quick" / "runs" / "quick"
+    assert {folder.name for folder in runs.iterdir()} == {"0-1", "1-1", "1-2"}
+    assert json.loads((runs / "1-2" / "result.json").read_text())["first_error"] == "oh no"
 
 
 def test_every_value_has_a_folder_and_a_line_of_the_page(instant, tmp_path, capsys):
@@ -174,7 +191,7 @@ def test_a_full_disk_is_reported_and_results_stay(instant, tmp_path, monkeypatch
     def full(_):
         raise OSError(28, "No space left on device")
 
-    monkeypatch.setattr("hsr8.evaluation.sweep.folder.os.fsync", full)
+    monkeypatch.setattr("hsr8.files.atomic.os.fsync", full)
     stopped = instant()
     assert entry([*FAST, "--seeds", "0:4"]) == 3
     assert "No space left on device" in capsys.readouterr().err
@@ -196,12 +213,12 @@ def test_the_examples_of_the_documentation_work(instant, monkeypatch, capsys):
     """Every command of it, in order, on runs that end at once; then its Python."""
     page = (Path(__file__).parents[3] / "docs" / "sweeps.md").read_text()
     monkeypatch.setattr("hsr8.evaluation.sweep.runs.require_gl", lambda: "none")
-    monkeypatch.setattr("os.fsync", lambda _: None)  # thousands of runs
+    monkeypatch.setattr("os.fsync", lambda _: None)  # many runs
     instant()
     commands = re.findall(r"^(hsr8 (?:sweep|compare) .*)$", page, re.M)
-    assert len(commands) > 6
+    assert len(commands) > 5
     for command in commands:
-        words = shlex.split(command.replace("$SLURM_ARRAY_TASK_ID", "3"), comments=True)
+        words = shlex.split(command, comments=True)
         assert entry(words[1:]) == 0, command
     for example in re.findall(r"^```python\n(.*?)^```", page, re.M | re.S):
         exec(example, {})

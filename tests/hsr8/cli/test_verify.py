@@ -145,15 +145,10 @@ def test_a_changed_scenario_changes_the_belief(run, capsys):
 @pytest.mark.parametrize(
     ("name", "damage", "expected"),
     [
-        ("frames.arrows", lambda c: c[:9000] + b"?" + c[9001:], "damaged in rows 0 to "),
-        ("frames.arrows", lambda c: c[:-20], "cut off after "),
-        ("frames.arrows", None, "cut off, it holds 0 of 33 rows"),
-        ("ticks.arrows", lambda c: c[:-20], "cut off after 400 rows"),
-        ("ticks.arrows", lambda c: c[:2000], "cut off after 0 rows"),
-        ("seconds.arrows", lambda c: c[:-30] + b"?" + c[-29:], "damaged in rows "),
-        ("checksums.txt", lambda c: c[: len(c) // 2], "cut off, it holds "),
-        ("checksums.txt", lambda c: c.replace(b"ticks 2", b"ticks ?"), "damaged line"),
-        ("checksums.txt", None, "cannot read"),
+        ("frames.arrows", lambda c: c[:-20], "cut off or damaged, got "),
+        ("frames.arrows", None, "cut off or damaged, got 0 rows; expected 33"),
+        ("ticks.arrows", lambda c: c[:2000], "cut off or damaged, got 0 rows"),
+        ("ticks.arrows", lambda c: b"text" + c, "cut off or damaged, got 0 rows"),
     ],
 )
 def test_damaged_cut_and_missing_files_are_one_error(run, capsys, name, damage, expected):

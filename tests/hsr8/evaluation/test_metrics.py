@@ -1,10 +1,11 @@
 from dataclasses import replace
 from math import pi, radians
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
 
-from hsr8.evaluation.metrics import metrics
+from hsr8.evaluation import metrics as module
 from hsr8.world.field.certificate import Certificate
 from navigation.parameters.navigation import MissionParameters
 
@@ -38,15 +39,14 @@ def measure(layout, tables_of):
     """Results of records, with a via point radius of 15 cm and a goal radius of 5 cm."""
 
     def measured(records, reason="timeout", world=layout, certificate=None):
-        return metrics(
-            tables_of(records),
-            world,
-            MissionParameters(r_via=0.15, r_goal=0.05),
-            certificate=certificate,
+        navigation = SimpleNamespace(mission=MissionParameters(r_via=0.15, r_goal=0.05))
+        run = SimpleNamespace(
+            **tables_of(records),
+            manifest={"state_hash": "hash", "wall_time_s": 5.0},
             exit_reason=reason,
-            state_hash="hash",
-            wall_time=5.0,
+            scenario=lambda: SimpleNamespace(navigation=navigation),
         )
+        return module.measure(run, world, certificate)
 
     return measured
 

@@ -1,5 +1,6 @@
 from dataclasses import replace
 from math import cos, pi, sin
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -46,7 +47,7 @@ def records(fake, velocity, duration, *, applied=None, steps=True):
 
 @pytest.fixture
 def results_of(tables_of):
-    return lambda *tables, **ticks: walk_metrics(tables_of(*tables, **ticks))
+    return lambda *tables, **ticks: walk_metrics(SimpleNamespace(**tables_of(*tables, **ticks)))
 
 
 @pytest.mark.parametrize("velocity", [(0.3, 0.0, 0.0), (0.1, 0.05, 0.6), (-0.1, 0.0, -0.8)])

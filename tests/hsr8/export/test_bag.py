@@ -72,7 +72,7 @@ def test_the_position_error_is_that_of_the_metrics(run, messages):
 
     truth, belief = places("/ground_truth/odom"), places("/belief/pose")
     squares = [np.sum((truth[stamp] - belief[stamp]) ** 2) for stamp in belief]
-    expected = run.metrics()["localization_rmse_m"]
+    expected = run.metrics["localization_rmse_m"]
     assert np.sqrt(np.mean(squares)) == pytest.approx(expected, abs=1e-12)
 
 
@@ -189,6 +189,6 @@ def test_a_folder_that_exists_is_kept(run, bag, tmp_path, capsys):
 def test_without_rosbags_the_extra_is_named(run, tmp_path, monkeypatch, capsys):
     monkeypatch.setitem(sys.modules, "rosbags", None)
     assert entry(["export", str(run.path), "--bag", str(tmp_path / "bag")]) == 2
-    assert "pip install '.[ros]'" in capsys.readouterr().err
+    assert "pip install -e '.[ros]'" in capsys.readouterr().err
     assert entry(["run", "quick", "--bag", "--out", str(tmp_path), "--quiet"]) == 2
     assert not [*tmp_path.iterdir()]

@@ -11,16 +11,15 @@ import pytest
 
 from hsr8.cli.main import entry
 from hsr8.evaluation import crash
-from hsr8.recorder.recorder import Memory, Recorder
+from hsr8.recorder.recorder import Recorder
 from hsr8.recorder.run import run_folder
 from hsr8.recorder.run.run_folder import RunFolder
 from hsr8.recorder.run.run_reader import open_run
-from hsr8.recorder.stream import CHECKSUMS, SUFFIX
-from hsr8.recorder.table import Table
+from hsr8.recorder.stream import SUFFIX
 
 FAST = ("--body", "kinematic", "--camera", "analytic", "--quiet")
 TABLES = ("ticks", "records", "frames", "seconds")
-RECORDS = (*(f"{name}{SUFFIX}" for name in TABLES), CHECKSUMS)
+RECORDS = [f"{name}{SUFFIX}" for name in TABLES]
 
 
 def _run(out, *more):
@@ -138,22 +137,3 @@ def test_a_read_only_disk_is_not_a_usage_error(tmp_path, capfd, monkeypatch):
     (line,) = capfd.readouterr().err.splitlines()
     assert line.startswith(f"hsr8: cannot write the run folder {tmp_path / 'quick'}: Read-only")
     assert "--out" in line
-
-
-def test_the_columns_of_all_batches_are_kept(fake, tables_of):
-    columns = {"records": ("time", "robot"), "frames": ("pose",), "seconds": ("time",)}
-    memory = Memory(columns)
-    times = (0.0, 0.02, 0.04)
-    for time in times:
-        frame = fake.frame(time) if time else None
-        batch = tables_of([fake.record(time, (time, 0.0, 0.0), frame=frame)])
-        memory.add({name: table for name, table in batch.items() if len(table)})
-    tables = memory.tables()
-    assert all(isinstance(table, Table) for table in tables.values())
-    assert {name: tuple(table) for name, table in tables.items() if len(table)} == {
-        "records": ("time", "robot"),
-        "frames": ("pose",),
-    }
-    assert tables["records"]["robot"][:, 0].tolist() == list(times)
-    assert len(tables["frames"]["pose"]) == 2
-    assert len(tables["seconds"]["time"]) == 0

@@ -1,6 +1,5 @@
 """A job in this process: outcome, metrics and folder of its run."""
 
-import json
 import os
 import pickle
 import signal
@@ -9,7 +8,7 @@ from dataclasses import replace
 import pytest
 
 from hsr8.errors import RecordingFailed, SimulationDiverged
-from hsr8.evaluation.sweep.job import Job, complete, run_job, unfinished
+from hsr8.evaluation.sweep.job import Job, prune, run_job
 from hsr8.loop import Simulation
 from hsr8.recorder.run.run_reader import open_run
 from hsr8.scenario.loader import load_scenario
@@ -21,7 +20,7 @@ SHORT = ("robot.body=kinematic", "camera.source=analytic", "duration=0.3")
 def job(tmp_path):
     """Job whose run meets its criteria: a walk."""
     scenario = load_scenario("walk", SHORT, 3)
-    return Job(scenario, str(tmp_path / "sweep"), "hsr8 run walk --seed 3", 30.0)
+    return Job(scenario, str(tmp_path / "sweep"), "runs/walk/3-1", "hsr8 run walk --seed 3", 30.0)
 
 
 @pytest.fixture(autouse=True)
@@ -33,19 +32,15 @@ def _handler():
 
 
 def result_of(job):
-    result = unfinished(job)
-    for part in run_job(job):
-        result |= part
-    return complete(job, result)
+    return prune(job, run_job(job))
 
 
 def test_the_metrics_of_the_run_folder_are_the_result(job, tmp_path):
     result = result_of(job)
     assert result["outcome"] == "passed"
-    assert result["seed"] == 3
     assert "error" not in result
     run = open_run(tmp_path / "sweep" / result["run"])
-    assert run.metrics().items() <= result.items()
+    assert run.metrics.items() <= result.items()
     assert run.manifest["command"] == "hsr8 run walk --seed 3"
     alone = Simulation(job.scenario, 3).run()
     assert result["state_hash"] == alone.state_hash
@@ -76,7 +71,7 @@ def raising(error):
             "too fast",
             True,
         ),
-        ("loop.Simulation._build_robot", ValueError("no robot"), "crashed", "no robot", False),
+        ("loop.Simulation._build_robot", RuntimeError("no robot"), "crashed", "no robot", True),
     ],
 )
 def test_other_endings_are_errors(job, monkeypatch, place, error, outcome, word, folder):
@@ -87,19 +82,17 @@ def test_other_endings_are_errors(job, monkeypatch, place, error, outcome, word,
     assert (result["run"] is not None) == folder
 
 
-def test_a_world_that_cannot_be_drawn_is_refused_and_leaves_no_folder(job, tmp_path):
+def test_the_traceback_of_a_simulation_that_cannot_be_built_is_in_the_folder(job, monkeypatch):
+    monkeypatch.setattr("hsr8.loop.Simulation._build_robot", raising(RuntimeError("no robot")))
+    assert result_of(job)["outcome"] == "crashed"
+    assert "no robot" in (job.path / "crash.txt").read_text()
+
+
+def test_a_world_that_cannot_be_drawn_is_refused(job):
     crowded = (*SHORT, "world.n_static=60", "world.size=[2.0,2.0]")
     result = result_of(replace(job, scenario=load_scenario("quick", crowded, 3)))
-    assert result["outcome"] == "refused"
+    assert (result["outcome"], result["run"]) == ("refused", None)
     assert "world" in result["error"]
-    assert not list(tmp_path.glob("sweep/runs/*/*"))
-
-
-def test_a_folder_that_cannot_be_written_is_a_refusal_with_its_reason(job, tmp_path):
-    (tmp_path / "sweep").touch()
-    result = result_of(job)
-    assert result["outcome"] == "refused"
-    assert "cannot write the run folder" in result["error"]
 
 
 def test_sigterm_ends_the_run_after_the_tick_and_leaves_a_whole_folder(job, tmp_path, monkeypatch):
@@ -119,27 +112,19 @@ def test_sigterm_ends_the_run_after_the_tick_and_leaves_a_whole_folder(job, tmp_
 
 
 @pytest.mark.parametrize(
-    ("keep", "outcome", "kept"),
-    [
-        ("all", "passed", True),
-        ("failed", "passed", False),
-        ("failed", "failed", True),
-        ("none", "failed", False),
-        ("none", "crashed", False),
-    ],
+    ("keep", "success", "kept"),
+    [("all", True, True), ("failed", True, False), ("failed", False, True), ("none", False, False)],
 )
 @pytest.mark.parametrize("crash", [False, True])
-def test_run_folders_are_kept_as_requested(job, tmp_path, keep, outcome, kept, crash):
+def test_runs_are_kept_as_requested(job, keep, success, kept, crash):
     """One with the traceback that its result names always is."""
-    folder = tmp_path / "sweep" / "runs" / "quick" / "3-abc"
-    folder.mkdir(parents=True)
-    (folder / "metrics.json").write_text(json.dumps({}))
-    if crash:
-        (folder / "crash.txt").write_text("Traceback")
-    job = replace(job, keep=keep)
-    result = complete(job, unfinished(job) | {"outcome": outcome, "run": "runs/quick/3-abc"})
-    assert folder.exists() == (kept or crash)
-    assert (result["run"] is not None) == folder.exists()
+    job.path.mkdir(parents=True)
+    for name in ("manifest.json", "claim.json", *(["crash.txt"] if crash else [])):
+        (job.path / name).touch()
+    result = prune(replace(job, keep=keep), {"outcome": "passed", "success": success})
+    assert (job.path / "manifest.json").exists() == (kept or crash)
+    assert (job.path / "claim.json").exists()
+    assert result["run"] == (job.run if kept or crash else None)
 
 
 def test_consent_to_plugins_travels_with_the_job(job, tmp_path):

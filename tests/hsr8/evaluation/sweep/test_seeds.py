@@ -5,7 +5,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from hsr8.errors import UsageError
-from hsr8.evaluation.sweep.seeds import parse_seeds, parse_shard, parse_values
+from hsr8.evaluation.sweep.seeds import parse_seeds, parse_values
 
 
 @settings(max_examples=30)
@@ -32,13 +32,6 @@ def test_other_seeds_are_refused(text):
 def test_any_text_is_seeds_or_refused(text):
     with suppress(UsageError):
         assert parse_seeds(text)
-
-
-def test_shards_count_from_one():
-    assert parse_shard("1/4") == (1, 4)
-    for text in ("0/4", "5/4", "1", "a/b", "1/0"):
-        with pytest.raises(UsageError, match="--shard"):
-            parse_shard(text)
 
 
 def test_values_keep_commas_within_brackets_and_quotes():

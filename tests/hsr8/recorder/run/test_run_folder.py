@@ -26,14 +26,14 @@ def test_folders_of_equal_runs_are_different(tmp_path):
 
 
 def test_a_finished_run_can_be_read_back(folder):
-    folder.note("goal", {"ticks": 5})
+    folder.end("goal", rows={"ticks": 5})
     folder.write_metrics({"success": True, "time_to_goal_s": float("nan")})
     run = open_run(folder.path)
     assert run.seed == 7
     assert run.manifest["exit_reason"] == "goal"
     assert run.manifest["rows"] == {"ticks": 5}
     assert run.manifest["libraries"]["mujoco"].startswith("4.0")
-    assert run.metrics() == {"success": True, "time_to_goal_s": None}
+    assert run.metrics == {"success": True, "time_to_goal_s": None}
     assert run.scenario() == load_scenario("quick", seed=7)
 
 

@@ -78,13 +78,13 @@ def test_an_unreadable_sweep_is_one_clear_error(tmp_path, capsys):
 def test_only_a_run_that_ended_must_be_complete(tmp_path, end, ended):
     path = RunFolder.create(tmp_path, "quick", 7)
     folder = RunFolder(path, load_scenario("quick", seed=7), (), "analytic")
-    folder.note(end, {"events": 3})
+    folder.end(end, rows={"events": 3})
     run = open_run(path)
     assert run.ended == ended
     if not ended:
         assert len(run.events) == len(run.ticks) == 0
         return
-    with pytest.raises(UsageError, match=r"events\.arrows: cut off, it holds 0 of 3 rows"):
+    with pytest.raises(UsageError, match=r"events\.arrows: cut off .*, got 0 rows; expected 3"):
         len(run.events)
     with pytest.raises(UsageError, match=r"ticks\.arrows: cut off"):
         len(run.ticks)

@@ -1,6 +1,6 @@
 import pytest
 
-from hsr8.evaluation.verdict import evaluate_criteria, exit_code
+from hsr8.recorder.run.verdict import evaluate_criteria, exit_code
 from hsr8.scenario.schema import Criteria
 
 GOOD = {"falls": 0, "collisions": 0, "goal_reached": True, "via_points_passed": 4}

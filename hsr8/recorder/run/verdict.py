@@ -10,6 +10,9 @@ from typing import Any
 
 from hsr8.scenario.schema import Criteria
 
+ENDED_BY_OTHERS = ("interrupted", "diverged", "running", "failed", "error")
+"""Exit reasons of runs that did not end by themselves."""
+
 
 @dataclass(frozen=True, slots=True)
 class Criterion:
