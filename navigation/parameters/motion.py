@@ -28,9 +28,15 @@ class UnivectorParameters:
     d_con: Annotated[
         Positive, "m", doc("Distance within which the field bends towards the arrival heading [m].")
     ] = 0.80
-    d_e: Annotated[Positive, "m", doc("Radius offset of the spiral (9) [m].")] = 0.125
-    d_b: Annotated[Positive, "m", doc("Width of the outer band of (9) [m].")] = 0.34
-    k_r: Annotated[Positive, "m", doc("Curvature of the outer spiral (9) [m].")] = 0.105
+    d_e: Annotated[
+        Positive, "m", doc('Radius offset of the spiral (9), method "univector" [m].')
+    ] = 0.125
+    d_b: Annotated[
+        Positive, "m", doc('Width of the outer band of (9), method "univector" [m].')
+    ] = 0.34
+    k_r: Annotated[
+        Positive, "m", doc('Curvature of the outer spiral (9), method "univector" [m].')
+    ] = 0.105
 
     k_beta: float = -0.6  # arrival gain on the remaining heading error, negative [1]
     arrival_clamp: float = 1.3  # maximum deviation of the field from the destination [rad]
@@ -39,14 +45,16 @@ class UnivectorParameters:
     side_clear: float = 1.798  # |beta| below which the arrival releases its side [rad]
     # distance within which the body turns to the goal heading
     holonomic_distance: Annotated[float, "m"] = 0.45
-    slow_distance: Annotated[float, "m"] = 0.30  # distance from the goal within which k_rho falls
+    # distance from the goal within which k_rho falls
+    slow_distance: Annotated[Positive, "m"] = 0.30
     slow_fraction: float = 0.2  # k_rho at the goal [1]
     goal_fraction: float = 0.6  # fraction of the room at a destination left to an obstacle [1]
     min_goal_gap: Annotated[float, "m"] = 0.02  # lower bound of that room
     min_goal_offset: Annotated[float, "m"] = 0.03  # lower bound of d_e at a destination
-    fade: float = 0.5  # cosine of the bearing from which an obstacle ahead has its full effect [1]
+    # cosine of the bearing from which an obstacle ahead has its full effect [1]
+    fade: Positive = 0.5
     # depth in an extended radius at which an obstacle abeam or behind has its full effect
-    inside: Annotated[float, "m"] = 0.02
+    inside: Annotated[Positive, "m"] = 0.02
     # time unseen after which only the safety filter avoids a mover
     memory: Annotated[float, "s"] = 4.0
 

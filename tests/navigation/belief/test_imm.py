@@ -7,7 +7,7 @@ from filterpy.kalman import KalmanFilter
 from scipy.stats import multivariate_normal
 
 from compilation.record import record
-from navigation.belief import imm
+from navigation.belief import imm, mode_filter
 from navigation.belief.imm import FORWARD, REVERSED, STATIC
 from navigation.parameters.belief import TrackingParameters
 
@@ -224,7 +224,7 @@ def test_without_turn_rate_it_is_the_kalman_filter_of_filterpy():
     for _ in range(30):
         z, R = rng.standard_normal(2), random_covariances(rng, 2)
         move(x, P, dt, q, 1e-6)
-        likelihood = imm.correct(x[0, FORWARD], P[0, FORWARD], z, R)
+        likelihood = mode_filter.correct(x[0, FORWARD], P[0, FORWARD], z, R)
         kf.predict()
         kf.update(z, R=R)
         assert np.allclose(x[0, FORWARD], [*kf.x, 0.0], atol=1e-12)
