@@ -23,7 +23,14 @@ project = "hsr8"
 author = "hsr8 maintainers"
 version = release = hsr8.__version__
 root_doc = "README"
-extensions = ["myst_parser", "sphinx.ext.autodoc", "sphinx.ext.napoleon", "sphinx.ext.mathjax"]
+copyright = "2026, hsr8 maintainers; Apache License 2.0"
+extensions = [
+    "myst_parser",
+    "sphinx.ext.autodoc",
+    "sphinx.ext.napoleon",
+    "sphinx.ext.mathjax",
+    "sphinx-mathjax-offline",  # formulas without a network
+]
 html_theme = "furo"
 html_title = f"hsr8 {release}"
 myst_enable_extensions = ["dollarmath", "html_image"]
