@@ -39,7 +39,6 @@ from navigation.motion.landmark_obstacles import LandmarkObstacles
 from navigation.observation import CameraModel
 from vision.detector import Detector
 from vision.self_mask import BodyPart
-from walking.dimension import override
 from walking.parameters import CONTROL_PERIOD, WalkingParameters
 from walking.walker import Walker
 
@@ -124,7 +123,7 @@ def build_walker(scenario: Scenario, walker: CustomWalker | None = None) -> Walk
         walker = load_named(scenario.plugin, "walker")
     if walker is None:
         return Walker(body, walking_parameters(humanoid, scenario))
-    parameters = override(humanoid.parameters, scenario.walking, WalkingParameters())
+    parameters = scenario.walking
     plugin = PluginWalker(walker, RobotInfo.of(body, humanoid.file))
     return Walker(body, parameters, partial(PluginEngine, plugin, body, parameters))
 
@@ -135,8 +134,7 @@ def walking_parameters(humanoid: LoadedRobot, scenario: Scenario) -> WalkingPara
     Raises:
         ScenarioError: a margin leaves no support area on the soles.
     """
-    parameters = override(humanoid.parameters, scenario.walking, WalkingParameters())
-    half = humanoid.model.sole.half_width
+    parameters, half = scenario.walking, humanoid.model.sole.half_width
     for section, margin in MARGINS:
         value = getattr(getattr(parameters, section), margin)
         if value >= half:

@@ -9,7 +9,7 @@ import numpy as np
 from compilation.record import Records
 from walking.body.robot_model import RobotModel
 from walking.body.swing_reaction import leg_reaction
-from walking.dimension import HSR_VIII, override, scale_parameters
+from walking.dimension import HSR_VIII, scale_parameters
 from walking.estimate.body import steady_gains
 from walking.model import Joint, Model
 from walking.parameters import CONTROL_PERIOD, GRAVITY, LIGHT_LOAD, WalkingParameters
@@ -20,16 +20,9 @@ from walking.plan.pendulum import natural_frequency
 LEGS = slice(0, 12)  # joints
 
 
-def parameters_for(robot: RobotModel, chosen: WalkingParameters | None = None) -> WalkingParameters:
-    """Return the parameters of a robot; for HSR-VIII exactly the defaults.
-
-    Args:
-        robot: model of the robot.
-        chosen: parameters to keep where they differ from the defaults; the others are scaled.
-    """
-    defaults = WalkingParameters()
-    scaled = scale_parameters(defaults, HSR_VIII, robot.measures())
-    return scaled if chosen is None else override(scaled, chosen, defaults)
+def parameters_for(robot: RobotModel) -> WalkingParameters:
+    """Return the parameters of HSR-VIII scaled to a robot; for HSR-VIII exactly the defaults."""
+    return scale_parameters(WalkingParameters(), HSR_VIII, robot.measures())
 
 
 def parameters_record(parameters: WalkingParameters) -> Records[Model]:

@@ -143,6 +143,8 @@ class FootReference:
     y: float  # [m]
     yaw: float  # [rad]
     height: float  # above the floor [m]
+    climb: float  # rate of the height in a swing [m/s]
+    bend: float  # acceleration of the height in a swing [m/s²]
     rate: Pose  # of x, y and yaw
     acceleration: Pose  # of x, y and yaw
 
@@ -272,6 +274,7 @@ class PlanError:
     right_weight: float  # planned load fraction of the right foot [1]
     dcm_x: float  # [m]
     dcm_y: float  # [m]
+    pressed: bool  # whether a foot carries load
     pressure_x: float  # of the centre of pressure, forward [m]
     pressure_y: float  # to the left [m]
 
@@ -285,12 +288,11 @@ class Corrections:
     max_error: float  # decaying maximum of the DCM error [m]
     held: float  # held offset of the heading [rad]
     turn: float  # yaw rate that corrects it [rad/s]
-    steady: bool  # whether the command is steady
-    command: Twist  # this command
     speed: Planar  # correction of the velocity, forward and left [m/s]
-    posed: bool  # whether the last pose is known
+    posed: bool  # whether the last poses are known
     pose: Pose  # last pose by odometry
-    displacement: Planar  # of the cycle, forward and left [m]
+    planned: Pose  # last planned pose of the pelvis
+    slip: Planar  # planned minus measured displacement of the cycle, forward and left [m]
     ticks: int  # of the cycle [1]
     whole: bool  # whether the cycle is undisturbed so far
     goal: Planar  # of the CoM offset [m]

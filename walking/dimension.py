@@ -146,15 +146,3 @@ def rules_of(section: type) -> dict[str, Rule]:
             if isinstance(mark, Dimension | DecayPerTick | GainPerTick):
                 rules[name] = mark
     return rules
-
-
-def override(scaled: Section, chosen: Section, defaults: Section) -> Section:
-    """Return `chosen` with the scaled value wherever it equals the default."""
-    values: dict[str, Any] = {}
-    for name in (field.name for field in fields(chosen)):
-        value, default = getattr(chosen, name), getattr(defaults, name)
-        if is_dataclass(value):
-            values[name] = override(getattr(scaled, name), value, default)
-        elif value == default:
-            values[name] = getattr(scaled, name)
-    return replace(chosen, **values)

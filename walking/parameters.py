@@ -143,7 +143,7 @@ class OdometryParameters:
 class StabilizerParameters:
     """Balance feedback and servo feed-forward."""
 
-    # decay rate of the DCM error by the ankles; sets the gain, see `pole_placement.dcm_gain` [1/s]
+    # decay rate of the DCM error by the ankles; sets the gain, see `ankle_gain` [1/s]
     dcm_rate: Annotated[float, RATE] = 4.24
     sole_margin: Annotated[float, SOLE] = 0.010  # ZMP shifted by the ankles to the sole's edge [m]
     gyro_gain: Annotated[float, ANKLE_TIME] = 0.02  # ankle setpoint per angular velocity [s]
@@ -167,7 +167,7 @@ class StabilizerParameters:
     step_error_ratio: Annotated[float, NUMBER] = 1.0  # DCM error per ZMP margin to step [1]
     heading_gain: Annotated[float, RATE] = 2.0  # yaw rate per heading error [1/s]
     max_heading_rate: Annotated[float, RATE] = 0.3  # of heading control [rad/s]
-    speed_gain: Annotated[float, NUMBER] = 0.5  # correction per mean speed error of a cycle [1]
+    speed_gain: Annotated[float, NUMBER] = 0.5  # filter gain of the mean slip, per gait cycle [1]
     max_speed_correction: Annotated[float, SPEED] = 0.06  # forward and lateral [m/s]
     # capture shift of a landing below which a gait cycle is steady for the slow corrections [m]
     max_steady_shift: Annotated[float, LENGTH] = 0.010

@@ -15,13 +15,13 @@ from walking.body.kinematics import tree_pass
 from walking.body.posture import advance_head, head_joints, pelvis_over, set_posture
 from walking.body.robot_model import RobotModel
 from walking.body.swing_reaction import compensate
-from walking.command import SWING_HEIGHT
+from walking.command import FALLEN, SWING_HEIGHT
 from walking.data import Data, DeadReckoning, Gait
 from walking.estimate.body import measure, reckon_body, update_error
 from walking.model import LEFT, RIGHT, Joint, Link, Model
 from walking.parameters import CONTROL_PERIOD
 from walking.plan.admission import remember
-from walking.plan.balance import place_foot, zmp_shift
+from walking.plan.balance import is_fallen, place_foot, zmp_shift
 from walking.plan.corrections import restart_cycle
 from walking.plan.decision import detect_touchdown, follow, start_walk, want_strides
 from walking.plan.departure import end_capture
@@ -36,7 +36,7 @@ from walking.plane import Array, Indices, Point, rotate
 from walking.state import BodySensors
 
 SAME_HEIGHT = 1e-9  # rounding error of swing heights [m]
-DIVERGED = 1e6  # distance of the pendulum from the support foot per length of the leg [1]
+DIVERGED = 10.0  # distance of the pendulum from the support foot per length of the leg [1]
 
 
 class Parts(NamedTuple):
@@ -142,6 +142,10 @@ def plan_tick(
     gait = plan.gait
     reckon_body(odometry[0], walk.body, gait.stepping)
     update_error(walk, robot)
+    if walk.limbs.moved and is_fallen(walk.body, robot):
+        walk.limits = FALLEN if explicit or command[:3] != STILL else 0
+        _keep_posture(parts, angles)
+        return 0.0
     remember(walk)
     limits = follow(walk, command, explicit, robot)
     want_strides(walk, odometry[0], robot)
@@ -155,10 +159,8 @@ def plan_tick(
         return distance
     _balance(walk, region, robot)
     advance(plan, walk.limbs.feet, robot)
-    if (
-        not is_double(gait)
-        and abs(gait.swing_height - gait.clock.timing.swing_height) > SAME_HEIGHT
-    ):
+    height = gait.clock.timing.swing_height
+    if not is_double(gait) and abs(gait.swing_height - height) > SAME_HEIGHT:
         limits |= SWING_HEIGHT
     end_capture(walk)
     walk.limits = limits
@@ -261,6 +263,17 @@ def _move_body(
         limbs.moved = True
         for k in range(angles.size):
             joints[k].angle = angles[k]
+
+
+@compiled
+def _keep_posture(parts: Parts, angles: Array) -> None:
+    """Keep the posture after a fall: footsteps and head stop."""
+    for k in range(angles.size):
+        joint = parts.joints[k]
+        angles[k], joint.rate, joint.rate_ahead = joint.angle, 0.0, 0.0
+        parts.q[joint.in_q] = joint.angle
+    parts.v[:] = 0.0
+    parts.a[:] = 0.0
 
 
 @compiled

@@ -38,11 +38,11 @@ class Body:
         return np.arccos(1.0 - 2.0 * (x * x + y * y))
 
 
-def walk(size, folder, command, seconds, parameters=None):
+def walk(size, folder, command, seconds, change=lambda parameters: parameters):
     """Walk with lengths in units of the size, and times in units of its square root."""
     body = Body(size, folder)
     robot = body.robot
-    engine = WalkingEngine(robot, parameters_for(robot, parameters))
+    engine = WalkingEngine(robot, change(parameters_for(robot)))
     scaled, tilt = scale_parameters(command, HSR_VIII, robot.measures()), 0.0
     for _ in range(round(seconds * sqrt(size) / CONTROL_PERIOD)):
         body.apply(engine.step(body.sense(), scaled, HeadTarget()))
@@ -68,9 +68,10 @@ def test_the_walk_is_the_same_in_longer_steps_and_slower_time(tmp_path, size, co
 
 @pytest.mark.parametrize("generator", ["preview", "mwpg"])
 def test_every_generator_walks_a_robot_of_half_the_size(tmp_path, generator):
-    pattern = replace(WalkingParameters().pattern, generator=generator)
-    parameters = replace(WalkingParameters(), pattern=pattern)
-    position, tilt, steps = walk(0.5, tmp_path, VelocityCommand(0.2), 2.4, parameters)
+    def change(parameters):
+        return replace(parameters, pattern=replace(parameters.pattern, generator=generator))
+
+    position, tilt, steps = walk(0.5, tmp_path, VelocityCommand(0.2), 2.4, change)
     assert tilt < np.radians(3.0)
     assert steps > 3
     assert position[0] > 0.2

@@ -7,8 +7,10 @@ import numpy as np
 import pytest
 from scipy.spatial import ConvexHull
 
+from tests.walking.conftest import IdealBody
+from walking.body.robot_model import RobotModel
 from walking.body.tree import HEAD
-from walking.command import CommandState, HeadTarget, VelocityCommand
+from walking.command import CommandState, HeadTarget, Limit, VelocityCommand
 from walking.engine import WalkingEngine
 from walking.parameters import CONTROL_PERIOD, HeadParameters, WalkingParameters
 from walking.plan.footsteps import STANCE_YAW_TOLERANCE
@@ -115,6 +117,45 @@ def test_a_lying_robot_knows_it_and_does_not_step(robot, ideal_body):
         engine.step(sensors, VelocityCommand(0.2, 0.0, 0.0), AHEAD)
     assert engine.state().fallen
     assert engine.state().phase is Phase.STANDING
+
+
+def test_the_first_tick_of_a_robot_in_its_ready_posture_moves_no_joint(robot):
+    engine, tree = WalkingEngine(RobotModel(robot.tree), WalkingParameters()), robot.tree
+    body = IdealBody(RobotModel(tree))
+    targets = engine.step(body.sense(), VelocityCommand(), AHEAD)
+    assert targets.position == pytest.approx(body.sense().joint_position, abs=1e-6)
+
+
+def test_a_robot_that_falls_while_walking_takes_no_more_steps(robot, ideal_body):
+    engine, sensors = WalkingEngine(robot, WalkingParameters()), ideal_body.sense()
+    for _ in range(300):
+        sensors = ideal_body.sense()
+        ideal_body.apply(engine.step(sensors, VelocityCommand(0.2), AHEAD))
+    steps = engine.state().step_count
+    lying = replace(
+        sensors,
+        orientation=np.array([np.cos(0.7), 0.0, np.sin(0.7), 0.0]),
+        foot_force=np.zeros((2, 4)),
+    )
+    while not engine.fallen:
+        engine.step(lying, VelocityCommand(0.2), AHEAD)
+    held = [engine.step(lying, VelocityCommand(0.2), AHEAD).position for _ in range(400)]
+    assert steps > 0
+    assert engine.state().step_count <= steps + 1
+    assert np.ptp(held, axis=0).max() == 0.0
+    assert engine.limits == (Limit.FALLEN,)
+
+
+def test_reading_the_state_changes_nothing(robot, ideal_body):
+    engines = [WalkingEngine(robot, WalkingParameters()) for _ in range(2)]
+    for k in range(200):
+        command, sensors = VelocityCommand(0.6, 0.3, 2.0 * (k % 2)), ideal_body.sense()
+        one, other = (engine.step(sensors, command, AHEAD) for engine in engines)
+        before = bytes(engines[0]._walks)
+        engines[0].state()
+        assert bytes(engines[0]._walks) == before
+        assert one.position.tolist() == other.position.tolist()
+        ideal_body.apply(one)
 
 
 def test_a_push_while_standing_is_answered_by_a_step(robot, ideal_body):

@@ -58,22 +58,6 @@ def test_the_parameters_of_the_reference_are_the_defaults(robot):
     assert parameters_for(robot) == WalkingParameters()
 
 
-def test_a_choice_is_kept_and_the_rest_is_the_robots_own(robot):
-    chosen = replace(WalkingParameters().gait, footstep_time=0.4)
-    given = replace(WalkingParameters(), gait=chosen)
-    assert parameters_for(robot, given) == given
-
-    class Giant:
-        def measures(self):
-            return scaled(HSR_VIII, 4.0)
-
-    made = parameters_for(Giant(), given)
-    assert made.gait.footstep_time == 0.4
-    assert made.gait.swing_height == pytest.approx(4.0 * given.gait.swing_height)
-    assert made.limits.vx == pytest.approx(2.0 * given.limits.vx)
-    assert made.pattern.generator == given.pattern.generator
-
-
 @pytest.mark.parametrize("size", [0.3, 0.8, 1.3, 4.0])
 def test_dimensionless_numbers_stay_what_they_are(size):
     old, new = HSR_VIII, scaled(HSR_VIII, size)

@@ -60,7 +60,7 @@ def set_offsets(
 
     Args:
         joints: offsets are set (n,).
-        walk: pelvis, load and ZMP shift of this tick.
+        walk: pelvis, load and ZMP shift of this tick; load of the feet.
         forces: generalised forces of the motion without contact, force [N] and moment [N m] at the
             base first.
         gyro: angular velocity of the trunk (3,) [rad/s].
@@ -81,7 +81,7 @@ def set_offsets(
     dx = -(ny + height * fx) / fz - left_load * lx - right_load * rx
     dy = (nx - height * fy) / fz - left_load * ly - right_load * ry
     for side in range(2):
-        load = right_load if side == RIGHT else left_load
+        load = _touching(walk, side, robot) * (right_load if side == RIGHT else left_load)
         if load > 0.0:
             x, y = (rx, ry) if side == RIGHT else (lx, ly)
             point = (x + dx, y + dy, -height)
@@ -101,6 +101,12 @@ def set_offsets(
                 axis, compliance = axes[side, k], joint.compliance
                 offset = ankle_offset(axis, shift, gyro, compliance, robot)
                 joint.offset += load * offset
+
+
+@compiled
+def _touching(walk: Data, side: int, robot: Model) -> float:
+    """Return 1 for a foot on the floor and 0 for one in the air, by its load [1]."""
+    return within(walk.body.feet[side].load / robot.light_load - 1.0, 0.0, 1.0)
 
 
 @compiled
@@ -154,10 +160,10 @@ def set_within_range(
     """
     for k in range(joints.size):
         joint = joints[k]
-        goal = within(angles[k] + joint.offset, joint.lower, joint.upper)
+        goal = angles[k] + joint.offset
         if robot.stiffening > 1.0 and k < 2 * LEG_JOINTS:
             goal += (robot.stiffening - 1.0) * (goal - measured[k])
-        setpoint[k] = goal
+        setpoint[k] = within(goal, joint.lower, joint.upper)
 
 
 @compiled

@@ -13,9 +13,9 @@ from compilation.record import Records
 from walking.body import kinematics
 from walking.body.kinematics import FootPose, Leg
 from walking.body.tree import LEFT_LEG, RIGHT_LEG, Frame, RobotTree
-from walking.dimension import RobotMeasures
+from walking.dimension import HSR_VIII, RobotMeasures, scale_parameters
 from walking.model import Link, NeckRecord, Sole
-from walking.parameters import GRAVITY
+from walking.parameters import GRAVITY, WalkingParameters
 from walking.plane import Array, Point, clamp, within
 
 
@@ -111,7 +111,8 @@ class RobotModel:
         neck: pan and tilt of the camera.
         sole: rectangle of each sole.
         support: part of it that the ankles can press on the floor.
-        ready: joint angles of the ready posture, see `stand` (n,) [rad].
+        ready: joint angles of the ready posture; at first that of the parameters of HSR-VIII scaled
+            to this robot, see `stand` (n,) [rad].
         indices: indices of the joints in position and velocity of the dynamic model (n,).
         lower, upper: joint limits (n,) [rad].
         dynamics: dynamics of the robot; see `with_own_buffers`.
@@ -141,11 +142,13 @@ class RobotModel:
         self.neck = Neck(tree)
         self.sole = tree.sole
         self.support = self._support()
-        self.ready = tree.posture.copy()
+        self.ready = tree.posture
         self.lower, self.upper = tree.lower, tree.upper
         self.stiffness = tree.stiffness.copy()
         self.damping: Array = tree.servo_damping + tree.joint_damping
         self.stiffening = self._stiffen()
+        walk = scale_parameters(WalkingParameters(), HSR_VIII, self.measures())
+        self.stand(walk.pattern.pelvis_height, walk.gait.half_stance)
 
     def stand(self, height: float, half_stance: float) -> float:
         """Set the ready posture: level feet below the centre of mass, legs bent.
@@ -158,6 +161,7 @@ class RobotModel:
             remaining error of the legs; above 1e-9 the posture is out of reach [rad].
         """
         base, error = height - self.legs[0].hip[2], 0.0
+        self.ready = self.tree.posture.copy()
         for _ in range(12):  # the legs carry a part of the mass
             ahead = float(self.com(self.ready)[0]) - self.support.centre
             for leg, part, y in zip(

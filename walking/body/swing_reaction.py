@@ -32,6 +32,7 @@ from walking.parameters import CONTROL_PERIOD, GRAVITY
 from walking.plan.footsteps import Foothold, foothold
 from walking.plan.gait import phase_of, support_foot, swing_foot, zmp_under
 from walking.plan.pendulum import ramp_weights
+from walking.plan.swing import lift_profile, minimum_jerk
 from walking.plane import Point, Vector
 
 SMALL = 1e-4  # step of finite differences [m]
@@ -99,10 +100,8 @@ def accelerations(ticks: int, tick: int) -> Moments:
     square = time * time
     u = tick / ticks
     rest = 1.0 - u
-    covered = u * u * u * (10.0 - 15.0 * u + 6.0 * u * u)
-    # Of the height 64 u³ (1 - u)³.
-    up = 384.0 * u * rest * (rest * rest - 3.0 * u * rest + u * u) / square
-    return Moments(60.0 * u * rest * (rest - u) / square, up, up * covered)
+    up = lift_profile(u).acceleration / square
+    return Moments(60.0 * u * rest * (rest - u) / square, up, up * minimum_jerk(u))
 
 
 @compiled

@@ -12,7 +12,7 @@ from scipy.linalg import solve_discrete_are
 
 from compilation import compiled
 from compilation.record import Records
-from walking.body.kinematics import MOVE, frame_pose, tree_pass
+from walking.body.kinematics import MOVE, frame_pose, inclined, rotated, tree_pass
 from walking.data import Body, Data, DeadReckoning, FootReference, PlanError
 from walking.estimate.odometry import reckon
 from walking.model import LEFT, RIGHT, Link, Model, Sole
@@ -91,12 +91,14 @@ def set_body(
     """
     roll, pitch, body.heading = roll_pitch_yaw(orientation)
     follow_tilt(body, roll, pitch, gyro, robot.estimator.tilt_gain)
-    body.turn_rate = gyro[2]
-    tilt = (body.roll, body.pitch)
+    tilt, attitude = (body.roll, body.pitch), inclined(body.roll, body.pitch)
+    # Of the heading, not about the axis of the trunk.
+    body.turn_rate = (sin(body.roll) * gyro[1] + cos(body.roll) * gyro[2]) / cos(body.pitch)
     for side in range(2):
         foot, frame = body.feet[side], body.frames[side]
         foot.x, foot.y, foot.z = level((frame[MOVE], frame[MOVE + 1], frame[MOVE + 2]), tilt)
-        foot.yaw = atan2(frame[3], frame[0])
+        ahead, aside, _ = rotated(attitude, frame[0], frame[3], frame[6])
+        foot.yaw = atan2(aside, ahead)
         foot.load, foot.pressure_x, foot.pressure_y = load_of(pads[side], robot.sole)
     body.com_x, body.com_y, body.com_z = level(com, tilt)
     left = max(0.0, body.feet[LEFT].load - robot.light_load)
@@ -141,7 +143,8 @@ def update_error(walk: Data, robot: Model) -> None:
         error, off, (walk.zmp_shift.x, walk.zmp_shift.y), (-slip * arm_y, slip * arm_x), robot
     )
     x, y, load = pressure(body, (left.x, left.y, left.yaw), (right.x, right.y, right.yaw))
-    if load > 0.0:
+    error.pressed = load > 0.0
+    if error.pressed:
         x, y = rotate_back(limbs.pelvis.yaw, x - pendulum.zmp_x, y - pendulum.zmp_y)
     error.pressure_x, error.pressure_y = x, y
     error.dcm_x, error.dcm_y = dcm(error.x, error.vx, robot), dcm(error.y, error.vy, robot)

@@ -11,7 +11,7 @@ from typing import NamedTuple
 from compilation import compiled
 from walking.command import BALANCE, LANDING_FROZEN, LANDING_SPEED, ZMP_REGION
 from walking.data import Body, Data
-from walking.model import Model
+from walking.model import LEFT, RIGHT, Model
 from walking.parameters import CONTROL_PERIOD
 from walking.plan.departure import return_to_plan
 from walking.plan.footsteps import (
@@ -25,11 +25,11 @@ from walking.plan.footsteps import (
     reachable,
 )
 from walking.plan.gait import aimed, is_adjustable, is_double, phase_of, shorten, support_foot
-from walking.plan.generator import admit, keeps_plan, planned_dcm
+from walking.plan.generator import admit, keeps_plan, planned_dcm, planned_zmp
 from walking.plan.pendulum import dcm_of
 from walking.plan.reference import plan_walk
 from walking.plan.steering import moves
-from walking.plan.support import Region, clip
+from walking.plan.support import Region, clip, support_region
 from walking.plan.timing import equal_clocks
 from walking.plane import Point, clamp, dead_zone, norm, rotate, rotate_back
 
@@ -72,18 +72,46 @@ def zmp_shift(zmp: Point, error: Point, region: Region, robot: Model) -> Point:
 
 
 @compiled
-def sole_margins(robot: Model) -> Point:
-    """Return the ZMP margins of a sole, forward and lateral [m]."""
-    support, margin = robot.support, robot.stabilizer.sole_margin
-    return support.half_length - margin, support.half_width - margin
+def exceeds_support(walk: Data, ratio: float, robot: Model) -> bool:
+    """Whether the ZMP that answers the DCM error of a standing robot is outside the support.
+
+    Args:
+        walk: state.
+        ratio: DCM error per shift of the ZMP [1].
+        robot: constants.
+    """
+    gait, pendulum, error = walk.plan.gait, walk.pendulum, walk.error
+    left, right = foothold(gait.footholds[LEFT]), foothold(gait.footholds[RIGHT])
+    region = support_region(robot.support, left, right, robot.stabilizer.sole_margin)
+    x, y = pendulum.zmp_x + error.dcm_x / ratio, pendulum.zmp_y + error.dcm_y / ratio
+    return clip(region, x, y) != (x, y)
 
 
 @compiled
-def exceeds(foot: Foothold, error: Point, ratio: float, robot: Model) -> bool:
-    """Whether a DCM error [m] exceeds a ratio [1] of the ZMP margins of the sole."""
-    length, width = sole_margins(robot)
-    x, y = rotate_back(foot.yaw, error[0], error[1])
-    return abs(x) > ratio * length or abs(y) > ratio * width
+def ankle_room(foot: Foothold, zmp: Point, error: Point, robot: Model) -> Point:
+    """Return by how much the ankles can shift the ZMP of a foot against an error [m].
+
+    Args:
+        foot: support foot.
+        zmp: planned ZMP [m].
+        error: DCM error, along and across the foot [m].
+        robot: constants.
+
+    Returns:
+        range from the planned ZMP to the edge of the sole, less its margin, along and across.
+    """
+    support, margin, (zmp_x, zmp_y), (x, y) = (
+        robot.support,
+        robot.stabilizer.sole_margin,
+        zmp,
+        error,
+    )
+    u, v = rotate_back(foot.yaw, zmp_x - foot.x, zmp_y - foot.y)
+    u -= support.centre
+    return (
+        max(0.0, support.half_length - margin - (u if x > 0.0 else -u)),
+        max(0.0, support.half_width - margin - (v if y > 0.0 else -v)),
+    )
 
 
 # Capture step
@@ -132,7 +160,13 @@ def capture_time(omega: float, time: float, off: float, ahead: float, reach: flo
 
 @compiled
 def capture_step(
-    support: Foothold, landing: Foothold, error: Point, ahead: Point, ticks_left: int, robot: Model
+    support: Foothold,
+    landing: Foothold,
+    error: Point,
+    zmp: Point,
+    dcm: Point,
+    ticks_left: int,
+    robot: Model,
 ) -> Capture:
     """Return the capture step for the DCM error beyond the dead zone of the ankles.
 
@@ -142,20 +176,24 @@ def capture_step(
         support: support foot.
         landing: nominal landing.
         error: error of the measured DCM [m].
-        ahead: planned DCM minus ZMP of the support foot [m].
+        zmp: planned ZMP [m].
+        dcm: planned DCM [m].
         ticks_left: control ticks until the end of single support [1].
         robot: constants.
     """
-    p, omega, yaw = robot.stabilizer, robot.omega, support.yaw
-    length, width = sole_margins(robot)
-    off_x, off_y = rotate_back(yaw, error[0], error[1])
+    p, omega, yaw, (error_x, error_y) = robot.stabilizer, robot.omega, support.yaw, error
+    off_x, off_y = rotate_back(yaw, error_x, error_y)
+    length, width = ankle_room(support, zmp, (off_x, off_y), robot)
     x = dead_zone(off_x, p.capture_dead_zone * length)
     y = dead_zone(off_y, p.capture_dead_zone * width)
+    if x == 0.0 and y == 0.0:
+        return Capture(False, landing, ticks_left)
     planned = ticks_left * CONTROL_PERIOD
-    growth = exp(omega * ticks_left * CONTROL_PERIOD)
+    growth = exp(omega * planned)
     dx, dy = rotate(yaw, clamp(growth * x, p.capture_forward), clamp(growth * y, p.capture_side))
     reached = reachable(support, landing, dx, dy, robot)
-    ahead_x, ahead_y = rotate_back(yaw, ahead[0], ahead[1])
+    (zmp_x, zmp_y), (dcm_x, dcm_y) = zmp, dcm
+    ahead_x, ahead_y = rotate_back(yaw, dcm_x - zmp_x, dcm_y - zmp_y)
     reach_x, reach_y = rotate_back(yaw, reached.x - landing.x, reached.y - landing.y)
     missing_x, missing_y = dead_zone(off_x, length), dead_zone(off_y, width)
     time = min(planned, capture_time(omega, planned, missing_x, ahead_x, reach_x))
@@ -166,14 +204,11 @@ def capture_step(
 @compiled
 def _needed_capture(walk: Data, landing: Foothold, robot: Model) -> Capture:
     """Return the capture step for the measured DCM."""
-    gait, error, ramp = walk.plan.gait, walk.error, walk.plan.ramps[0]
-    support, (x, y) = support_foot(gait), planned_dcm(walk, robot)
-    body_x, body_y = dcm_of(walk.pendulum, robot)
+    gait, error, dcm = walk.plan.gait, walk.error, planned_dcm(walk, robot)
+    (x, y), (body_x, body_y) = dcm, dcm_of(walk.pendulum, robot)
     off = (body_x + error.dcm_x - x, body_y + error.dcm_y - y)
-    if not exceeds(support, off, robot.stabilizer.capture_dead_zone, robot):
-        return Capture(False, landing, 0)
-    ahead = (x - ramp.bx, y - ramp.by)
-    return capture_step(support, landing, off, ahead, phase_of(gait).ticks_left, robot)
+    support, ticks_left = support_foot(gait), phase_of(gait).ticks_left
+    return capture_step(support, landing, off, planned_zmp(walk, robot), dcm, ticks_left, robot)
 
 
 # Foot placement

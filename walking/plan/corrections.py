@@ -4,13 +4,13 @@ A gait cycle is two footsteps, one with each foot. A sideways walk or a turn ope
 one foot and closes it with the other one; only the mean over both is the commanded velocity.
 """
 
-from math import cos, exp, sin
+from math import exp
 
 from compilation import compiled
-from walking.data import Corrections
+from walking.data import Corrections, Pose
 from walking.model import Model
 from walking.parameters import CONTROL_PERIOD
-from walking.plane import Point, Vector, clamp, within
+from walking.plane import Point, Vector, clamp, rotate_back, within
 
 NO_FOOT = -1
 
@@ -70,7 +70,7 @@ def heading_rate(corrections: Corrections, ahead: float, renew: bool, robot: Mod
 @compiled
 def reset_speed(corrections: Corrections) -> None:
     """Discard the correction of the speed."""
-    corrections.steady = corrections.posed = corrections.whole = False
+    corrections.posed = corrections.whole = False
     corrections.speed.x = corrections.speed.y = 0.0
 
 
@@ -78,59 +78,53 @@ def reset_speed(corrections: Corrections) -> None:
 def speed_correction(
     corrections: Corrections,
     pose: Vector,
-    velocity: Vector,
+    planned: Vector,
     begins: bool,
     disturbed: bool,
     robot: Model,
 ) -> Point:
     """Return the correction of (vx, vy) [m/s, m/s] against slip and short landings of the feet.
 
-    Integral correction under a steady command, once per gait cycle; zero until the command is
-    steady. Displacements are summed in the present heading: a robot turns in one of two footsteps,
-    so its heading at the begin of a cycle differs from the mean.
+    Mean of the planned minus the measured velocity, updated once per gait cycle. Planned footsteps
+    follow any change of the command, so it does not show as slip. Displacements are summed in the
+    present heading: a robot turns in one of two footsteps, so its heading at the begin of a cycle
+    differs from the mean.
 
     Args:
         corrections: changed.
         pose: pose by odometry, heading unwrapped [m, m, rad].
-        velocity: wanted (vx, vy, wz) [m/s, m/s, rad/s].
+        planned: pose of the pelvis in the plan frame [m, m, rad].
         begins: whether a gait cycle begins.
         disturbed: whether balance changes the footsteps.
         robot: constants.
     """
     c = corrections
-    if not c.steady or velocity != (c.command.vx, c.command.vy, c.command.wz):
-        reset_speed(c)
-        c.steady = True
-        c.command.vx, c.command.vy, c.command.wz = velocity
     if c.posed:
-        _add_displacement(c, pose)
+        planned_x, planned_y = _displacement(c.planned, planned)
+        x, y = _displacement(c.pose, pose)
+        c.slip.x, c.slip.y = c.slip.x + planned_x - x, c.slip.y + planned_y - y
+        c.ticks += 1
     c.posed = True
     c.pose.x, c.pose.y, c.pose.yaw = pose
+    c.planned.x, c.planned.y, c.planned.yaw = planned
     c.whole = c.whole and not disturbed
     if begins:
         if c.whole:
             p, time = robot.stabilizer, c.ticks * CONTROL_PERIOD
-            vx, vy, _ = velocity
-            x = c.speed.x - p.speed_gain * (c.displacement.x / time - vx)
-            y = c.speed.y - p.speed_gain * (c.displacement.y / time - vy)
-            c.speed.x, c.speed.y = (
-                clamp(x, p.max_speed_correction),
-                clamp(y, p.max_speed_correction),
-            )
+            x = c.speed.x + p.speed_gain * (c.slip.x / time - c.speed.x)
+            y = c.speed.y + p.speed_gain * (c.slip.y / time - c.speed.y)
+            limit = p.max_speed_correction
+            c.speed.x, c.speed.y = clamp(x, limit), clamp(y, limit)
         c.whole, c.ticks = True, 0
-        c.displacement.x = c.displacement.y = 0.0
+        c.slip.x = c.slip.y = 0.0
     return c.speed.x, c.speed.y
 
 
 @compiled
-def _add_displacement(corrections: Corrections, pose: Vector) -> None:
-    """Add the displacement of a tick in the mean heading."""
-    before, displacement, (x, y, yaw) = corrections.pose, corrections.displacement, pose
-    dx, dy, middle = x - before.x, y - before.y, 0.5 * (before.yaw + yaw)
-    c, s = cos(middle), sin(middle)
-    displacement.x = displacement.x + c * dx + s * dy
-    displacement.y = displacement.y + c * dy - s * dx
-    corrections.ticks += 1
+def _displacement(before: Pose, pose: Vector) -> Point:
+    """Return the displacement of a tick in the mean heading [m]."""
+    x, y, yaw = pose
+    return rotate_back(0.5 * (before.yaw + yaw), x - before.x, y - before.y)
 
 
 @compiled
@@ -141,7 +135,12 @@ def discard_offset_cycle(corrections: Corrections) -> None:
 
 @compiled
 def correct_offset(
-    corrections: Corrections, error: Point, begins: bool, disturbed: bool, robot: Model
+    corrections: Corrections,
+    error: Point,
+    pressed: bool,
+    begins: bool,
+    disturbed: bool,
+    robot: Model,
 ) -> None:
     """Correct the CoM offset from the measured centre of pressure, once per gait cycle.
 
@@ -151,6 +150,7 @@ def correct_offset(
     Args:
         corrections: changed.
         error: centre of pressure minus planned ZMP, forward and left [m].
+        pressed: whether a foot carries load; ticks in the air do not count.
         begins: whether a gait cycle begins.
         disturbed: whether balance changes the footsteps.
         robot: constants.
@@ -165,7 +165,7 @@ def correct_offset(
         c.errors = 0
     if disturbed:
         discard_offset_cycle(c)
-    elif c.errors >= 0:
+    elif c.errors >= 0 and pressed:
         x, y = error
         c.error_sum.x, c.error_sum.y = c.error_sum.x + x, c.error_sum.y + y
         c.errors += 1

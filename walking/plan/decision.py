@@ -1,11 +1,11 @@
 """Decisions of a tick: follow the command, correct slip, start to walk, detect touchdown."""
 
 from compilation import compiled
-from walking.command import BALANCE, FALLEN, TIMING
+from walking.command import BALANCE, TIMING
 from walking.data import Data, DeadReckoning
 from walking.model import LEFT, RIGHT, Model
 from walking.parameters import CONTROL_PERIOD
-from walking.plan.balance import exceeds, is_fallen
+from walking.plan.balance import exceeds_support
 from walking.plan.corrections import (
     correct_offset,
     cycle_begins,
@@ -17,7 +17,7 @@ from walking.plan.corrections import (
     speed_correction,
     speed_ratio,
 )
-from walking.plan.footsteps import STILL, StepValues, foothold, tendency
+from walking.plan.footsteps import STILL, StepValues, tendency
 from walking.plan.gait import phase_of, retime, start, swing_of, touch_down
 from walking.plan.steering import (
     follow_command,
@@ -76,9 +76,10 @@ def want_strides(walk: Data, odometry: DeadReckoning, robot: Model) -> None:
     shift = norm(walk.placing.moved_x, walk.placing.moved_y)
     disturbed = gait.shortened or shift > robot.stabilizer.max_steady_shift
     pressure = (error.pressure_x, error.pressure_y)
-    correct_offset(corrections, pressure, begins, disturbed, robot)
-    pose, velocity = (odometry.x, odometry.y, odometry.yaw), wanted_velocity(steering)
-    vx, vy = speed_correction(corrections, pose, velocity, begins, disturbed, robot)
+    correct_offset(corrections, pressure, error.pressed, begins, disturbed, robot)
+    pose, pelvis = (odometry.x, odometry.y, odometry.yaw), walk.limbs.pelvis
+    planned = (pelvis.x, pelvis.y, pelvis.yaw)
+    vx, vy = speed_correction(corrections, pose, planned, begins, disturbed, robot)
     wz = heading_rate(corrections, ahead, begins or disturbed, robot)
     set_wanted_strides(steering, (vx, vy, wz), robot)
 
@@ -89,11 +90,8 @@ def start_walk(walk: Data, robot: Model) -> int:
     gait = walk.plan.gait
     if gait.stepping or not is_settled(walk, robot):
         return 0
-    foot, moving, bound = foothold(gait.footholds[LEFT]), moves(walk.steering), 0
-    error = (walk.error.dcm_x, walk.error.dcm_y)
-    pushed = exceeds(foot, error, robot.stabilizer.step_error_ratio, robot)
-    if is_fallen(walk.body, robot):
-        return FALLEN if moving else 0
+    moving, bound = moves(walk.steering), 0
+    pushed = exceeds_support(walk, robot.stabilizer.step_error_ratio, robot)
     if not (moving or pushed):
         return 0
     sideways = tendency(wanted_velocity(walk.steering), robot)
@@ -102,7 +100,7 @@ def start_walk(walk: Data, robot: Model) -> int:
         # Only the foot on the side of the fall can make the capture step.
         if not moving:
             bound |= BALANCE
-        _, aside = rotate_back(foot.yaw, walk.error.dcm_x, walk.error.dcm_y)
+        _, aside = rotate_back(gait.footholds[LEFT].yaw, walk.error.dcm_x, walk.error.dcm_y)
         opening_left = aside > 0.0
     elif sideways == 0.0:
         opening_left = not walk.last_opening_left

@@ -110,9 +110,6 @@ def is_same(one: Foothold, other: Foothold, robot: Model) -> bool:
     )
 
 
-# Timing
-
-
 # Strides
 
 

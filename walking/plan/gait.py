@@ -13,7 +13,7 @@ from walking.data import FootReference, Gait, Plan, Timing
 from walking.model import LEFT, RIGHT, Model
 from walking.parameters import CONTROL_PERIOD
 from walking.plan.footsteps import Foothold, foothold, is_parallel, landing_of, put
-from walking.plan.swing import lift_profile, min_swing_ticks, move_foot, moved, rest_at
+from walking.plan.swing import lift_foot, min_swing_ticks, move_foot, moved, rest_at
 from walking.plan.timing import (
     put_shift,
     put_single_support,
@@ -286,14 +286,17 @@ def advance(plan: Plan, feet: Records[FootReference], robot: Model) -> None:
     gait = plan.gait
     gait.tick += 1
     single, phase = gait.clock.single, phase_of(gait)
+    swinging = gait.stepping and single.first < phase.elapsed <= single.last
+    swinging = swinging and not gait.landed_early
     for side in range(2):
-        feet[side].height *= robot.stabilizer.contact_decay
-    if gait.stepping and not gait.landed_early and single.first < phase.elapsed <= single.last:
-        change = gait.clock.timing.swing_height - gait.swing_height
+        if not swinging or side == gait.support:
+            feet[side].height *= robot.stabilizer.contact_decay
+    if swinging:
+        foot, change = feet[swing_of(gait)], gait.clock.timing.swing_height - gait.swing_height
         gait.swing_height += clamp(change, robot.gait.swing_height_rate * CONTROL_PERIOD)
-        height = gait.swing_height * lift_profile(phase.swing)
-        ticks_left = single.last - phase.elapsed + 1
-        move_foot(feet[swing_of(gait)], foothold(gait.landing), ticks_left, height)
+        ticks_left, before = single.last - phase.elapsed + 1, swing_phase(single, phase.elapsed - 1)
+        move_foot(foot, foothold(gait.landing), ticks_left)
+        lift_foot(foot, gait.swing_height, phase.swing, phase.swing - before, ticks_left)
     if gait.stepping and phase.ticks_left == 0:
         _land(plan, feet, robot)
 

@@ -12,7 +12,7 @@ from walking.model import Model
 from walking.plan.admission import admit_modified
 from walking.plan.departure import advance_modified
 from walking.plan.footsteps import Foothold, foothold, landing_of
-from walking.plan.gait import is_adjustable, support_foot
+from walking.plan.gait import is_adjustable, is_double, support_foot
 from walking.plan.mwpg import reachable_dcm
 from walking.plan.pendulum import dcm_reference, plan_pendulum, track_reference
 from walking.plan.reference import plan_walk, reference_of
@@ -74,3 +74,13 @@ def planned_dcm(walk: Data, robot: Model) -> Point:
     if keeps_plan(walk.plan.gait, robot):
         return reachable_dcm(walk.functions, plan_pendulum(walk), robot)
     return dcm_reference(reference_of(walk.plan), robot)
+
+
+@compiled
+def planned_zmp(walk: Data, robot: Model) -> Point:
+    """Return the ZMP of the plan on the support foot [m]."""
+    gait, ramp = walk.plan.gait, walk.plan.ramps[0]
+    if keeps_plan(gait, robot) and not is_double(gait):
+        pendulum = plan_pendulum(walk)
+        return pendulum.zmp_x, pendulum.zmp_y
+    return ramp.bx, ramp.by

@@ -5,6 +5,7 @@ to a landing at rest, replanned in every tick.
 """
 
 from math import ceil
+from typing import NamedTuple
 
 from compilation import compiled
 from walking.data import FootReference
@@ -30,30 +31,76 @@ def rest_at(foot: FootReference, foothold: Foothold) -> None:
     rate, acceleration = foot.rate, foot.acceleration
     rate.x = rate.y = rate.yaw = 0.0
     acceleration.x = acceleration.y = acceleration.yaw = 0.0
+    foot.climb = foot.bend = 0.0
+
+
+class Lift(NamedTuple):
+    """Height of the swing foot relative to mid-swing, and its derivatives by the phase.
+
+    Attributes:
+        height, rate, acceleration: 64 s³ (1 - s)³ and its derivatives [1].
+    """
+
+    height: float
+    rate: float
+    acceleration: float
 
 
 @compiled
-def lift_profile(phase: float) -> float:
-    """Return the height of the swing foot relative to mid-swing, at rest at both ends [1]."""
-    bump = 4.0 * phase * (1.0 - phase)
-    return bump * bump * bump
+def lift_profile(phase: float) -> Lift:
+    """Return the lift at a phase of the swing, at rest at both ends."""
+    rest = 1.0 - phase
+    bump = phase * rest
+    return Lift(
+        64.0 * bump * bump * bump,
+        192.0 * bump * bump * (rest - phase),
+        384.0 * bump * (rest * rest - 3.0 * bump + phase * phase),
+    )
 
 
 @compiled
-def move_foot(foot: FootReference, landing: Foothold, ticks_left: int, height: float) -> None:
-    """Move the swing foot by one tick.
+def move_foot(foot: FootReference, landing: Foothold, ticks_left: int) -> None:
+    """Move the swing foot along the floor by one tick.
 
     Args:
         foot: reference of the foot, changed.
         landing: foothold of the foot.
         ticks_left: control ticks until touchdown [1].
-        height: height of the foot after this tick [m].
     """
     v, a = foot.rate, foot.acceleration
     foot.x, v.x, a.x = _towards(foot.x, v.x, a.x, landing.x, ticks_left)
     foot.y, v.y, a.y = _towards(foot.y, v.y, a.y, landing.y, ticks_left)
     foot.yaw, v.yaw, a.yaw = _towards(foot.yaw, v.yaw, a.yaw, landing.yaw, ticks_left)
-    foot.height = height
+
+
+@compiled
+def lift_foot(
+    foot: FootReference, lift: float, phase: float, change: float, ticks_left: int
+) -> None:
+    """Lift the swing foot by one tick.
+
+    The deviation from the profile, as after a change of the timing in the air, goes to rest by
+    touchdown with continuous rate and acceleration.
+
+    Args:
+        foot: reference of the foot, its height is changed.
+        lift: height at mid-swing [m].
+        phase: phase of the swing after this tick [1].
+        change: its change in this tick [1].
+        ticks_left: control ticks until touchdown [1].
+    """
+    rate = change / CONTROL_PERIOD
+    now, then = lift_profile(phase - change), lift_profile(phase)
+    height, climb, bend = _towards(
+        foot.height - lift * now.height,
+        foot.climb - lift * rate * now.rate,
+        foot.bend - lift * rate * rate * now.acceleration,
+        0.0,
+        ticks_left,
+    )
+    foot.height = max(0.0, height + lift * then.height)
+    foot.climb = climb + lift * rate * then.rate
+    foot.bend = bend + lift * rate * rate * then.acceleration
 
 
 @compiled

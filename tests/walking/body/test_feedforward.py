@@ -17,7 +17,7 @@ from walking.body.feedforward import (
 from walking.body.tree import LEFT_LEG, RIGHT_LEG
 from walking.constants import joint_records
 from walking.data import Data
-from walking.parameters import CONTROL_PERIOD, StabilizerParameters, WalkingParameters
+from walking.parameters import CONTROL_PERIOD, GRAVITY, StabilizerParameters, WalkingParameters
 
 PAN = 12
 SOLES = ((0.01, 0.042), (0.01, -0.042))
@@ -38,6 +38,7 @@ class Feed:
         axes, origins = zip(*(leg.joints(robot.ready[part]) for leg, part in legs), strict=True)
         self.walk = np.zeros(1, Data)[0]
         self.walk.limbs.axes, self.walk.limbs.origins = axes, origins
+        self.walk.body.feet["load"] = 0.5 * robot.mass * GRAVITY
 
     def offsets(
         self,
@@ -196,3 +197,25 @@ def test_soft_legs_are_stiffened_by_the_measured_angles(feed, robot, model):
     set_within_range(ahead.joints, angles, measured, setpoint, constants)
     np.testing.assert_allclose(setpoint[:12], angles[:12] + 0.005)
     np.testing.assert_allclose(setpoint[12:], angles[12:].clip(robot.lower[12:], robot.upper[12:]))
+
+
+def test_stiffened_setpoints_stay_within_the_range_of_the_joints(feed, robot, model):
+    ahead, angles = feed(), robot.upper - 0.001
+    ahead.joints["offset"] = 0.0
+    constants, setpoint = model.robot.copy(), np.zeros_like(angles)
+    constants.stiffening = 3.0
+    set_within_range(ahead.joints, angles, angles - 0.1, setpoint, constants)
+    assert setpoint[:12].tolist() == robot.upper[:12].tolist()
+
+
+def test_a_foot_in_the_air_carries_nothing_although_it_is_planned_to(feed):
+    landed, airborne = feed(), feed()
+    airborne.walk.body.feet[0].load = 0.0
+    carried = landed.offsets(right_load=0.5) - airborne.offsets(right_load=0.5)
+    alone = feed()
+    alone.walk.body.feet["load"] = 0.0
+    np.testing.assert_array_equal(carried[6:], 0.0)
+    np.testing.assert_array_equal(
+        airborne.offsets(right_load=0.5)[:4], alone.offsets(right_load=0.5)[:4]
+    )
+    assert np.abs(carried[:6]).max() > 1e-3

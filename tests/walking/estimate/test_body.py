@@ -1,11 +1,13 @@
 """Attitude, complementary filter, loads, and the error of the body against the plan."""
 
+from dataclasses import replace
 from math import cos, pi, sin
 
 import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
+from scipy.spatial.transform import Rotation
 
 from walking.data import Body, Data, PlanError
 from walking.estimate.body import (
@@ -200,6 +202,19 @@ def test_a_tilted_body_over_flat_feet_is_measured_level(body):
     assert ahead > before.com_x - foot.x + 0.01
     arm = np.hypot(before.com_x - foot.x, before.com_z - foot.z)
     assert np.hypot(ahead, sensing.com_z - sensing.feet[0].z) == pytest.approx(arm)
+
+
+@pytest.mark.parametrize("tilt", [(0.3, 0.0), (0.0, -0.4), (0.3, -0.4)])
+def test_heading_rate_and_foot_yaw_are_those_of_the_level_frame(body, tilt):
+    attitude = Rotation.from_euler("ZYX", (0.0, *tilt[::-1])).as_matrix()
+    for side, yaw in enumerate((0.25, -0.1)):
+        flat = attitude.T @ Rotation.from_euler("z", yaw).as_matrix()
+        body.body.frames[side, :9] = flat.ravel()
+    rate = attitude.T @ [0.0, 0.0, 0.7]
+    body.sensors = replace(body.sensors, gyro=rate)
+    measured = body.measure(orientation=np.array(quaternion(*tilt, 0.0)))
+    assert measured.turn_rate == pytest.approx(0.7)
+    assert [foot.yaw for foot in measured.feet] == pytest.approx([0.25, -0.1])
 
 
 def test_light_pad_noise_is_not_a_load(body):

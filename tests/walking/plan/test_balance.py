@@ -1,7 +1,7 @@
 """Ankles, capture step, and landing of the swing foot on a pendulum without a body."""
 
 from itertools import pairwise
-from math import exp
+from math import cos, exp, sin
 
 import numpy as np
 import pytest
@@ -13,9 +13,10 @@ from walking.parameters import CONTROL_PERIOD, StabilizerParameters
 from walking.plan.admission import remember
 from walking.plan.balance import (
     ankle_gain,
+    ankle_room,
     capture_step,
     capture_time,
-    exceeds,
+    exceeds_support,
     place_foot,
     zmp_shift,
 )
@@ -30,6 +31,7 @@ from walking.plan.gait import (
     support_foot,
     swing_foot,
     swing_of,
+    zmp_under,
 )
 from walking.plan.generator import advance_pendulum
 from walking.plan.pendulum import hold_tick
@@ -106,22 +108,50 @@ def test_the_ankles_push_the_zmp_beyond_the_error_within_the_sole(model, robot):
 
 def captured(model, error, ticks_left=40, velocity=None, strides_of=None):
     landing = landing_of(LEFT, strides_of(velocity or STILL))
-    arguments = (error, AHEAD, ticks_left, model.robot)
-    return capture_step(LEFT, landing, *arguments), landing
+    x, y = zmp_under(LEFT, model.robot)
+    dcm = (x + AHEAD[0], y + AHEAD[1])
+    return capture_step(LEFT, landing, error, (x, y), dcm, ticks_left, model.robot), landing
 
 
 def test_small_errors_need_no_step_and_larger_ones_grow_from_nothing(model, strides_of):
-    zone = STABILIZER.capture_dead_zone
     for error, expected in (((0.005, 0.002), False), ((0.05, 0.0), True), ((0.0, -0.05), True)):
-        assert exceeds(LEFT, error, zone, model.robot) is expected
+        assert captured(model, error, strides_of=strides_of)[0].needed is expected
     capture, landing = captured(model, (0.005, 0.002), strides_of=strides_of)
     assert capture.landing == pytest.approx(landing)
     assert capture.ticks == 40
 
 
+@pytest.mark.parametrize("yaw", [0.0, 0.6])
+def test_the_room_of_the_ankles_is_from_the_planned_zmp_to_the_edge(model, yaw):
+    robot, foot = model.robot, Foothold(True, 0.3, 0.1, yaw)
+    length = float(robot.support.half_length) - STABILIZER.sole_margin
+    width = float(robot.support.half_width) - STABILIZER.sole_margin
+    u, v = robot.support.centre + 0.008, -0.012
+    zmp = (0.3 + cos(yaw) * u - sin(yaw) * v, 0.1 + sin(yaw) * u + cos(yaw) * v)
+    for sign in (1.0, -1.0):
+        room = ankle_room(foot, zmp, (0.01 * sign, 0.01 * sign), robot)
+        assert room == pytest.approx((length - sign * 0.008, width + sign * 0.012))
+    assert ankle_room(foot, (9.0, 9.0), (1.0, 1.0), robot) == (0.0, 0.0)
+
+
+def test_a_standing_robot_has_the_support_of_two_soles(model, make_walk):
+    walk, robot = make_walk(), model.robot
+    pendulum, error = walk.pendulum, walk.error
+    pendulum.zmp_x = float(robot.support.centre)
+    width = float(robot.support.half_width) - STABILIZER.sole_margin
+    for aside, expected in ((width + 0.01, False), (0.042 + width + 0.001, True)):
+        for sign in (1.0, -1.0):
+            error.dcm_x, error.dcm_y = 0.0, sign * aside
+            assert exceeds_support(walk, 1.0, robot) is expected
+    length = float(robot.support.half_length) - STABILIZER.sole_margin
+    error.dcm_x, error.dcm_y = length + 0.001, 0.0
+    assert exceeds_support(walk, 1.0, robot)
+
+
 def test_the_capture_step_lands_where_the_error_will_be(model, strides_of):
-    length = model.robot.support.half_length - STABILIZER.sole_margin
-    zone = STABILIZER.capture_dead_zone * float(length)
+    zmp = zmp_under(LEFT, model.robot)
+    length, _ = ankle_room(LEFT, zmp, (1.0, 0.0), model.robot)
+    zone = STABILIZER.capture_dead_zone * length
     capture, landing = captured(
         model, (zone + 0.01, 0.0), 30, velocity=(0.1, 0.0, 0.0), strides_of=strides_of
     )

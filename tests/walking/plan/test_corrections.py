@@ -87,71 +87,88 @@ def test_the_yaw_rate_is_constant_over_a_cycle_and_limited():
     assert turn(corrections(), -2.0, renew=True) == -LIMITS.max_heading_rate
 
 
-def walk(velocity, slip, *, cycles=25, disturbed=lambda tick: False, record=None, sway=0.0):
-    """Corrections tick by tick of a body on an arc, faster by `slip` than commanded.
+def moved(pose, velocity, yaw):
+    """Pose after a tick, with the yaw of then."""
+    x, y, before = pose
+    vx, vy, middle = *velocity, 0.5 * (before + yaw)
+    return (
+        x + CONTROL_PERIOD * (cos(middle) * vx - sin(middle) * vy),
+        y + CONTROL_PERIOD * (sin(middle) * vx + cos(middle) * vy),
+        yaw,
+    )
 
-    Its heading sways by `sway` [rad] within a cycle.
+
+def walk(velocity_at, slip, *, cycles=25, disturbed=lambda tick: False, sway=0.0):
+    """Corrections tick by tick of a body that is faster by `slip` than its footsteps.
+
+    Plan and body turn in frames of their own; the heading sways by `sway` [rad] within a cycle.
     """
-    record = corrections() if record is None else record
-    x = y = 0.0
-
-    def heading(tick):
-        return velocity[2] * tick * CONTROL_PERIOD + sway * cos(2.0 * pi * tick / CYCLE)
-
-    result = []
+    record, yaw, result = corrections(), 0.0, []
+    pose, planned = (0.0, 0.0, 0.0), (0.4, -0.2, 0.9)
     for tick in range(cycles * CYCLE):
-        pose, begins = (x, y, heading(tick)), tick % CYCLE == 0
-        forward, left = speed_correction(
-            record, pose, velocity, begins, disturbed(tick), PARAMETERS
-        )
+        vx, vy, wz = velocity_at(tick)
+        begins = tick % CYCLE == 0
+        forward, left = speed_correction(record, pose, planned, begins, disturbed(tick), PARAMETERS)
         result.append((forward, left))
-        middle = 0.5 * (heading(tick) + heading(tick + 1))
-        vx, vy = velocity[0] + slip[0] + forward, velocity[1] + slip[1] + left
-        x += CONTROL_PERIOD * (cos(middle) * vx - sin(middle) * vy)
-        y += CONTROL_PERIOD * (sin(middle) * vx + cos(middle) * vy)
+        yaw += wz * CONTROL_PERIOD
+        heading = yaw + sway * sin(2.0 * pi * (tick + 1) / CYCLE)
+        vx, vy = vx + forward, vy + left
+        pose = moved(pose, (vx + slip[0], vy + slip[1]), heading)
+        planned = moved(planned, (vx, vy), heading + 0.9)
     return result
+
+
+def always(*velocity):
+    return lambda tick: velocity
+
+
+def changing(tick):
+    """Another velocity every quarter of a second."""
+    return tuple(np.random.default_rng(tick // 50).uniform(-0.3, 0.3, 3).tolist())
 
 
 @settings(max_examples=20)
 @given(st.floats(-0.4, 0.4), st.floats(-0.15, 0.15), st.floats(-1.5, 1.5), slips, slips)
-def test_a_steady_walk_on_any_arc_gets_its_velocity(vx, vy, wz, ahead, aside):
-    result = walk((vx, vy, wz), (ahead, aside))
+def test_a_walk_on_any_arc_gets_its_velocity(vx, vy, wz, ahead, aside):
+    result = walk(always(vx, vy, wz), (ahead, aside))
     assert result[-1] == pytest.approx((-ahead, -aside), abs=1e-4)
+
+
+def test_a_walk_whose_command_changes_all_the_time_gets_its_velocity():
+    assert walk(changing, (0.01, -0.008))[-1] == pytest.approx((-0.01, 0.008), abs=1e-4)
 
 
 @settings(max_examples=20)
 @given(st.floats(-0.4, 0.4), st.floats(-1.5, 1.5), st.floats(-0.2, 0.2))
 def test_sway_of_the_heading_is_not_an_error(forward, turn, sway):
-    result = walk((forward, 0.0, turn), (0.0, 0.0), cycles=4, sway=sway)
+    result = walk(always(forward, 0.0, turn), (0.0, 0.0), cycles=4, sway=sway)
     assert result[-1] == pytest.approx((0.0, 0.0), abs=1e-9)
 
 
-def test_the_speed_is_corrected_only_in_a_steady_undisturbed_walk():
-    assert set(walk((0.2, 0.0, 0.0), (0.01, 0.0), cycles=1)) == {(0.0, 0.0)}
-    record = corrections()
-    walk((0.2, 0.0, 0.0), (0.01, 0.0), record=record)
-    other = speed_correction(record, (0.0, 0.0, 0.0), (0.3, 0.0, 0.0), False, False, PARAMETERS)
-    assert other == (0.0, 0.0)
-    balancing = walk((0.2, 0.0, 0.0), (0.1, 0.0), disturbed=lambda tick: tick % CYCLE == CYCLE // 2)
+def test_the_speed_is_corrected_only_after_an_undisturbed_cycle():
+    assert set(walk(always(0.2, 0.0, 0.0), (0.01, 0.0), cycles=1)) == {(0.0, 0.0)}
+    balancing = walk(
+        always(0.2, 0.0, 0.0), (0.1, 0.0), disturbed=lambda tick: tick % CYCLE == CYCLE // 2
+    )
     assert set(balancing) == {(0.0, 0.0)}
 
 
 def test_the_speed_correction_is_limited_and_mirrored():
-    one = walk((0.2, 0.05, 0.4), (-0.1, 0.1))
-    other = walk((0.2, -0.05, -0.4), (-0.1, -0.1))
+    one = walk(always(0.2, 0.05, 0.4), (-0.1, 0.1))
+    other = walk(always(0.2, -0.05, -0.4), (-0.1, -0.1))
     limit = LIMITS.max_speed_correction
     assert one[-1] == pytest.approx((limit, -limit))
-    assert other == [(x, pytest.approx(-y, abs=1e-12)) for x, y in one]
+    assert np.array(other) == pytest.approx(np.array(one) * [1.0, -1.0], abs=1e-12)
 
 
-def offsets(off, *, cycles=30, sway=0.02, disturbed=lambda tick: False):
+def offsets(off, *, cycles=30, sway=0.02, disturbed=lambda tick: False, pressed=lambda tick: True):
     """CoM offsets tick by tick; the centre of pressure sways about the mass centre."""
     record, result = corrections(), []
     for tick in range(cycles * CYCLE):
         swayed = sway * sin(2.0 * pi * tick / CYCLE)
         x, y = record.com_offset.tolist()
-        error = off[0] + x + swayed, off[1] + y - swayed
-        correct_offset(record, error, tick % CYCLE == 0, disturbed(tick), PARAMETERS)
+        error = (off[0] + x + swayed, off[1] + y - swayed) if pressed(tick) else (0.0, 0.0)
+        correct_offset(record, error, pressed(tick), tick % CYCLE == 0, disturbed(tick), PARAMETERS)
         result.append(tuple(record.com_offset.tolist()))
     return result
 
@@ -160,6 +177,11 @@ def offsets(off, *, cycles=30, sway=0.02, disturbed=lambda tick: False):
 @given(offs, offs)
 def test_the_mean_centre_of_pressure_is_moved_under_the_plan(ahead, aside):
     assert offsets((ahead, aside))[-1] == pytest.approx((-ahead, -aside), abs=2e-4)
+
+
+def test_ticks_in_the_air_do_not_count():
+    hopping = offsets((0.004, -0.003), sway=0.0, pressed=lambda tick: tick % 3 > 0)
+    assert np.array(hopping) == pytest.approx(np.array(offsets((0.004, -0.003), sway=0.0)))
 
 
 def test_the_offset_moves_slowly_and_within_its_limit():
@@ -176,11 +198,11 @@ def test_footsteps_that_balance_do_not_change_the_offset():
 def test_the_offset_outlasts_a_rest():
     record = corrections()
     for tick in range(4 * CYCLE):
-        correct_offset(record, (0.01, 0.0), tick % CYCLE == 0, False, PARAMETERS)
+        correct_offset(record, (0.01, 0.0), True, tick % CYCLE == 0, False, PARAMETERS)
     before = float(record.com_offset[0])
     assert before < 0.0
     discard_offset_cycle(record)
-    correct_offset(record, (-0.3, 0.0), False, False, PARAMETERS)
+    correct_offset(record, (-0.3, 0.0), True, False, False, PARAMETERS)
     assert record.com_offset[0] <= before
 
 

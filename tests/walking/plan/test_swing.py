@@ -10,6 +10,7 @@ from walking.parameters import CONTROL_PERIOD
 from walking.plan.footsteps import Foothold
 from walking.plan.swing import (
     PEAK,
+    lift_foot,
     lift_profile,
     min_swing_ticks,
     minimum_jerk,
@@ -39,7 +40,7 @@ def run(start, targets):
     feet[1].x = start
     rows = []
     for k, target in enumerate(targets):
-        move_foot(feet[1], Foothold(False, target, 0.0, 0.0), len(targets) - k, 0.02)
+        move_foot(feet[1], Foothold(False, target, 0.0, 0.0), len(targets) - k)
         rows.append((feet[1].x, feet[1].rate.x, feet[1].acceleration.x))
     return np.array(rows)
 
@@ -63,10 +64,47 @@ def test_position_velocity_and_acceleration_belong_together():
 
 
 def test_the_lift_starts_and_ends_at_rest_and_peaks_in_the_middle():
-    heights = np.array([lift_profile(p) for p in np.linspace(0.0, 1.0, 201).tolist()])
+    heights = np.array([lift_profile(p).height for p in np.linspace(0.0, 1.0, 201).tolist()])
     assert heights[0] == heights[-1] == 0.0
     assert heights.max() == heights[100] == 1.0
     assert abs(heights[[1, -2]] / 0.005).max() < 0.01
+
+
+@given(st.floats(0.01, 0.99))
+def test_rate_and_acceleration_of_the_lift_are_its_derivatives(phase):
+    step = 1e-4
+    below, here, above = (lift_profile(phase + k * step) for k in (-1.0, 0.0, 1.0))
+    rate = (above.height - below.height) / (2.0 * step)
+    acceleration = (above.rate - below.rate) / (2.0 * step)
+    assert (here.rate, here.acceleration) == pytest.approx((rate, acceleration), abs=1e-4)
+
+
+def lifted(ticks):
+    """Height, rate and acceleration of a swing that takes as many ticks from each tick on."""
+    foot, phase, rows = np.zeros(1, FootReference)[0], 0.0, []
+    for left in ticks:
+        change = (1.0 - phase) / left
+        phase += change
+        lift_foot(foot, 0.025, phase, change, left)
+        rows.append((foot.height, foot.climb, foot.bend))
+    return np.array(rows)
+
+
+def test_a_swing_in_time_follows_the_profile():
+    rows = lifted(range(50, 0, -1))
+    expected = [0.025 * lift_profile(k / 50).height for k in range(1, 51)]
+    np.testing.assert_allclose(rows[:, 0], expected, atol=1e-12)
+
+
+@pytest.mark.parametrize("change", [-8, 25])
+def test_the_height_of_a_retimed_swing_is_smooth_and_ends_at_rest(change):
+    rows = lifted([*range(50, 30, -1), *range(30 + change, 0, -1)])
+    heights = np.array([0.0, *rows[:, 0]])
+    speeds = np.diff(heights) / CONTROL_PERIOD
+    usual = np.diff(lifted(range(50, 0, -1))[:, 1])
+    assert np.abs(np.diff(rows[:, 1])).max() < 3.0 * np.abs(usual).max()
+    np.testing.assert_allclose(speeds[1:], 0.5 * (rows[1:, 1] + rows[:-1, 1]), atol=0.01)
+    assert rows[-1] == pytest.approx((0.0, 0.0, 0.0), abs=1e-9)
 
 
 def test_a_foot_that_stands_rests_on_its_foothold_at_the_height_it_has():
