@@ -10,24 +10,25 @@ import numpy as np
 from numpy.typing import NDArray
 
 from hsr8.errors import ModelError
-from hsr8.robots.description import MAX_FOV, MIN_FOV, TRUNK, RobotDescription, read_description
-from hsr8.robots.files import package_folders, reading_models, stamp_of
-from hsr8.robots.key_mistake import KeyMistake, at_least, joint_error, reading_keys
-from hsr8.robots.linkage import drive_serially
-from hsr8.robots.locate import find_description, find_model, model_files
-from hsr8.robots.normal_form import normalise
-from hsr8.robots.posed_shapes import arm_spheres, exclude_neighbours, robot_radius
-from hsr8.robots.posture import check_joint_names, completed_posture, stated_posture
-from hsr8.robots.prepare import LEG_JOINTS, LIMITED, TO_JOINT, Prepared, prepare
-from hsr8.robots.read import compile_spec, drop_drawn_meshes, read_spec
-from hsr8.robots.refusals import check_roles
-from hsr8.robots.rehearsal import within_joints
-from hsr8.robots.roles import Roles, base_note, find_roles, present
-from hsr8.robots.rules import fit, one_leg_load
-from hsr8.robots.servos import choose_servos
-from hsr8.robots.skeleton import HINGE, Posed
-from hsr8.robots.soles import soles_of
-from hsr8.robots.tree import tree_of
+from hsr8.robots.checks.refusals import check_roles
+from hsr8.robots.file.description import MAX_FOV, MIN_FOV, TRUNK, RobotDescription, read_description
+from hsr8.robots.file.files import package_folders, reading_models, stamp_of
+from hsr8.robots.file.key_mistake import KeyMistake, at_least, joint_error, reading_keys
+from hsr8.robots.file.locate import find_description, find_model, model_files
+from hsr8.robots.file.read import compile_spec, drop_drawn_meshes, read_spec
+from hsr8.robots.model.linkage import drive_serially
+from hsr8.robots.model.normal_form import normalise
+from hsr8.robots.model.posed_shapes import arm_spheres, exclude_neighbours, robot_radius
+from hsr8.robots.model.prepare import LIMITED, TO_JOINT, prepare
+from hsr8.robots.model.servos import choose_servos
+from hsr8.robots.model.tree import tree_of
+from hsr8.robots.parts.places import Prepared
+from hsr8.robots.parts.posture import check_joint_names, completed_posture, stated_posture
+from hsr8.robots.parts.roles import Roles, base_note, find_roles, present
+from hsr8.robots.parts.skeleton import HINGE, LEG_JOINTS, Posed
+from hsr8.robots.parts.soles import soles_of
+from hsr8.robots.walk.rehearsal import within_joints
+from hsr8.robots.walk.rules import fit, one_leg_load
 from walking.body.robot_model import RobotModel
 from walking.constants import parameters_for
 from walking.parameters import HeadParameters, WalkingParameters

@@ -14,7 +14,7 @@ from typing import Any
 from hsr8.errors import ScenarioError
 from hsr8.evaluation.tables import flatten
 from hsr8.recorder.run.manifest import versions_of
-from hsr8.robots.files import models_dir
+from hsr8.robots.file.files import models_dir
 from hsr8.scenario.layers import Table
 from hsr8.scenario.loader import dump, loads, tables
 from hsr8.scenario.schema import Scenario

@@ -10,11 +10,11 @@ import mujoco
 import numpy as np
 from numpy.typing import NDArray
 
-from hsr8.robots.description import RobotDescription, ServoRule
-from hsr8.robots.key_mistake import KeyMistake
-from hsr8.robots.mechanism import is_position_servo, joint_actuators
-from hsr8.robots.roles import Roles
-from hsr8.robots.skeleton import HINGE, Posed
+from hsr8.robots.checks.mechanism import is_position_servo, joint_actuators
+from hsr8.robots.file.description import RobotDescription, ServoRule
+from hsr8.robots.file.key_mistake import KeyMistake
+from hsr8.robots.parts.roles import Roles
+from hsr8.robots.parts.skeleton import HINGE, Posed
 from walking.parameters import CONTROL_PERIOD
 
 Array = NDArray[np.float64]
