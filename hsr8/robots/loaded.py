@@ -404,7 +404,7 @@ def _strength(
 
 
 def _compare(before: Posed, after: Posed, source: str) -> None:
-    """Check that mass, centre of mass and joints are those of the file.
+    """Check that mass, centre of mass, inertia and joints are those of the file.
 
     Raises:
         ModelError: a quantity differs.
@@ -413,6 +413,8 @@ def _compare(before: Posed, after: Posed, source: str) -> None:
     root = int(raw.jnt_bodyid[0])
     _same(source, "mass [kg]", raw.body_subtreemass[root], normal.body_subtreemass[1])
     _same(source, "centre of mass [m]", before.data.subtree_com[root], after.data.subtree_com[1])
+    inertias = (posed.data.cinert[:, :6].sum(axis=0) for posed in (before, after))
+    _same(source, "inertia about the centre of mass [kg m²]", next(inertias), next(inertias))
     for joint in (raw.joint(j) for j in range(1, raw.njnt)):
         anchor = after.data.joint(joint.name).xanchor
         _same(source, f"place of joint {joint.name!r} [m]", before.data.xanchor[joint.id], anchor)
