@@ -10,13 +10,13 @@ from typing import Self, SupportsIndex
 import cv2
 import numpy as np
 
+from hsr8.controller import Robot, SensorFrame
 from hsr8.decisions import FrameRecord, Situation
 from hsr8.errors import ScenarioError, SimulationDiverged
 from hsr8.plugin_decisions import GazePlugin, PlannerPlugin
 from hsr8.plugin_method import number
 from hsr8.plugin_walker import CustomWalker
 from hsr8.record import Event, EventWatch, RunOutcome, Second, Tick, TickRecord
-from hsr8.robot import Robot, SensorFrame
 from hsr8.robot_builder import build_body, build_model, build_robot, camera_model, require_planner
 from hsr8.robots.loaded import load_robot
 from hsr8.scenario.schema import Scenario

@@ -13,15 +13,15 @@ from hsr8.command_schedule import (
     ScheduledPlanner,
     command_schedule,
 )
+from hsr8.controller import Robot
 from hsr8.decisions import Decisions, GazeController, MissionPlanner, MotionPlanner
 from hsr8.errors import ScenarioError, UsageError
 from hsr8.plugin_decisions import GazePlugin, Limits, PlannerPlugin, PluginGaze, PluginPlanner
 from hsr8.plugin_file import load_named
 from hsr8.plugin_walker import CustomWalker, PluginEngine, PluginWalker, RobotInfo
-from hsr8.robot import Robot
-from hsr8.robots.files import reading_models
+from hsr8.robots.file.files import reading_models
 from hsr8.robots.loaded import LoadedRobot, load_robot
-from hsr8.robots.posed_shapes import ground_shadow
+from hsr8.robots.model.posed_shapes import ground_shadow
 from hsr8.scenario.mission import Walk
 from hsr8.scenario.schema import Scenario
 from hsr8.seeds import named_rng

@@ -16,8 +16,8 @@ from typing import Any
 
 from hsr8.evaluation.sweep.folder import SweepFolder
 from hsr8.evaluation.sweep.seeds import parse_seeds
-from hsr8.robots.description import read_description
-from hsr8.robots.locate import find_description, installed_model
+from hsr8.robots.file.description import read_description
+from hsr8.robots.file.locate import find_description, installed_model
 
 DEFINITION = Path(__file__).with_suffix("").with_name("benchmarks.toml")
 NOTHING_RAN, LOST, INTERRUPTED = 2, 3, 130  # exit codes of a sweep

@@ -12,7 +12,7 @@ os.environ.setdefault("MUJOCO_GL", "egl")
 
 from hsr8.cli.color_table import MASK, mask_colors
 from hsr8.robots.loaded import load_robot
-from hsr8.robots.normal_form import HEAD_CAMERA
+from hsr8.robots.model.normal_form import HEAD_CAMERA
 from hsr8.scenario.loader import load_scenario
 from hsr8.seeds import named_rng
 from hsr8.world.body.kinematic import KinematicBody

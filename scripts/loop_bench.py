@@ -20,7 +20,7 @@ from hsr8.loop import Simulation
 from hsr8.record import Tick
 from hsr8.recorder.recorder import Recorder
 from hsr8.recorder.run.run_folder import RunFolder
-from hsr8.robots.normal_form import HEAD_CAMERA
+from hsr8.robots.model.normal_form import HEAD_CAMERA
 from hsr8.scenario.schema import Scenario
 from hsr8.world.body.physics import place_robot
 from hsr8.world.camera.image_noise import ImageNoise

@@ -9,9 +9,9 @@ from dataclasses import dataclass
 from math import sqrt
 from pathlib import Path
 
-from hsr8.robots.files import models_dir
+from hsr8.robots.file.files import models_dir
+from hsr8.robots.file.locate import find_description
 from hsr8.robots.loaded import LoadedRobot, load_robot
-from hsr8.robots.locate import find_description
 
 import mujoco
 import numpy as np

@@ -25,8 +25,8 @@ from hsr8.cli.command_line import settings
 from hsr8.cli.main import COMMANDS, entry, parse
 from hsr8.errors import RenderingUnavailable, UsageError
 from hsr8.gl import require_gl
-from hsr8.robots.description import read_description
-from hsr8.robots.locate import find_description, installed_model, robot_names
+from hsr8.robots.file.description import read_description
+from hsr8.robots.file.locate import find_description, installed_model, robot_names
 
 ROOT = Path(__file__).parents[1]
 PAGES = [ROOT / "README.md", ROOT / "CONTRIBUTING.md", *sorted((ROOT / "docs").rglob("*.md"))]

@@ -8,7 +8,7 @@ from types import ModuleType, SimpleNamespace
 import numpy as np
 import pytest
 
-from hsr8.robots.description import read_description
+from hsr8.robots.file.description import read_description
 from hsr8.robots.loaded import load_robot
 from walking.command import VelocityCommand
 from walking.parameters import GRAVITY

@@ -15,7 +15,7 @@ from hsr8.files import atomic
 from hsr8.gl import APT_LINE, BACKENDS, REQUESTED, VULKAN_LINE, is_software
 from hsr8.recorder.run.manifest import versions
 from hsr8.render import viewer
-from hsr8.robots.files import models_dir
+from hsr8.robots.file.files import models_dir
 from hsr8.version import VERSION
 
 PROBE_LIMIT = 60.0  # an OpenGL that takes longer hangs [s]

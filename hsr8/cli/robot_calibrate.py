@@ -14,10 +14,10 @@ from hsr8.cli.options import RobotCalibrate
 from hsr8.cli.output_file import require_file_name, require_new, writing
 from hsr8.errors import UsageError
 from hsr8.files import atomic
-from hsr8.robots.description import Calibration, read_description
-from hsr8.robots.description_file import moved, with_calibration
+from hsr8.robots.file.description import Calibration, read_description
+from hsr8.robots.file.description_file import moved, with_calibration
+from hsr8.robots.file.locate import find_description
 from hsr8.robots.loaded import build_robot
-from hsr8.robots.locate import find_description
 from hsr8.trials.calibration import calibrate
 from hsr8.version import VERSION
 

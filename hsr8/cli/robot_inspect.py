@@ -12,8 +12,7 @@ from hsr8.errors import ModelError, UsageError
 from hsr8.files import atomic
 from hsr8.render.image import write_png
 from hsr8.render.portrait import portrait
-from hsr8.robots.description_file import description_text
-from hsr8.robots.inspection import Inspection, facts, inspect, load_inspected
+from hsr8.robots.inspection import Inspection, description_text, facts, inspect, load_inspected
 from hsr8.robots.loaded import LoadedRobot
 
 

@@ -7,7 +7,25 @@ from dataclasses import replace
 from hsr8.cli.command_line import command_words, option_tables, settings
 from hsr8.cli.options import Run
 from hsr8.plugin_file import inspect_plugins
+from hsr8.robots.file.description import read_description
+from hsr8.robots.file.locate import find_description
+from hsr8.robots.scale import DEFAULT_ROBOT
 from hsr8.scenario.loader import load_scenario
+
+
+def warn_of_rehearsed_robot(model: str) -> None:
+    """Print that the noise of a robot is that of HSR-VIII, if the robot is not calibrated."""
+    file = find_description(model)
+    if file.suffix != ".toml":
+        return
+    description = read_description(file)
+    if description.calibration is None and not description.tuned:
+        print(
+            f"warning: {model} is not calibrated: speeds are rehearsed, and the noise of odometry "
+            f"and camera pose is that of {DEFAULT_ROBOT}; run `hsr8 robot calibrate {model}`",
+            file=sys.stderr,
+            flush=True,
+        )
 
 
 def main(options: Run) -> int:
@@ -22,6 +40,7 @@ def main(options: Run) -> int:
     inspect_plugins(scenario.plugin)
     if not options.quiet:
         print(f"{scenario.name}, seed {scenario.seed}", file=sys.stderr, flush=True)
+        warn_of_rehearsed_robot(scenario.robot.model)
     from hsr8.cli.recorded_run import start  # noqa: PLC0415  takes seconds
 
     repeated = replace(options, seed=scenario.seed, view=None)

@@ -9,7 +9,7 @@ from hsr8.files import atomic
 from hsr8.recorder.run.manifest import other_versions
 from hsr8.recorder.run.run import Run
 from hsr8.recorder.run.run_reader import open_run
-from hsr8.robots.locate import digest
+from hsr8.robots.file.locate import digest
 
 if TYPE_CHECKING:
     from hsr8.evaluation.replay import Replayed

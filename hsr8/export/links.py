@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 
 from hsr8.errors import UsageError
 from hsr8.robots.loaded import LoadedRobot
-from hsr8.robots.normal_form import CAMERA_SITE, FEET, IMU
+from hsr8.robots.model.normal_form import CAMERA_SITE, FEET, IMU
 
 Array = NDArray[np.float64]
 

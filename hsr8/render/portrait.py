@@ -8,7 +8,7 @@ import numpy as np
 from hsr8.render.push_arrows import Arrow
 from hsr8.render.scene_renderer import Image, SceneRenderer
 from hsr8.robots.loaded import LoadedRobot
-from hsr8.robots.normal_form import SOLES
+from hsr8.robots.model.normal_form import SOLES
 from hsr8.robots.shown import SHOWN_GROUP, stature
 from hsr8.world.body.physics import place_robot
 from hsr8.world.field.layout import Layout

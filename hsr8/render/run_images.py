@@ -18,7 +18,7 @@ from hsr8.render.push_arrows import Arrow, PushArrow, push_arrows
 from hsr8.render.scene_renderer import Image, SceneRenderer
 from hsr8.render.top_down import TRAIL
 from hsr8.robots.loaded import load_robot
-from hsr8.robots.normal_form import HEAD_CAMERA
+from hsr8.robots.model.normal_form import HEAD_CAMERA
 from hsr8.robots.scale import DEFAULT_STATURE
 from hsr8.robots.shown import stature
 from hsr8.world.field.generator import draw_layout

@@ -13,7 +13,7 @@ from hsr8.recorder.table import Table
 from hsr8.rerun_log.camera import CAMERA
 from hsr8.rerun_log.shapes import batches_of, poses, raised, shapes
 from hsr8.rerun_log.stream import LogStream
-from hsr8.robots.normal_form import HEAD_CAMERA
+from hsr8.robots.model.normal_form import HEAD_CAMERA
 from hsr8.robots.shown import VISUAL_GROUPS
 from hsr8.world.field.layout import Layout
 from hsr8.world.model.assembly import FIELD

@@ -7,26 +7,29 @@ from typing import Any
 
 import mujoco
 import numpy as np
+import tomlkit
 
 from hsr8.errors import ModelError
 from hsr8.robots.defaults import navigation_speed
-from hsr8.robots.description import (
+from hsr8.robots.file.description import (
     MODEL_SUFFIXES,
     RobotDescription,
     checked,
     read_description,
 )
-from hsr8.robots.guess import Finding, Guess, guess
-from hsr8.robots.key_mistake import KeyMistake, RepairableError
+from hsr8.robots.file.key_mistake import KeyMistake, RepairableError
+from hsr8.robots.file.locate import find_description, find_model
+from hsr8.robots.file.read import compile_spec, drop_drawn_meshes, read_spec
 from hsr8.robots.loaded import LoadedRobot, RawRobot, build_robot, read_robot
-from hsr8.robots.locate import find_description, find_model
-from hsr8.robots.posed_shapes import SelfCollision
-from hsr8.robots.prepare import Prepared, prepare
-from hsr8.robots.read import compile_spec, drop_drawn_meshes, read_spec
-from hsr8.robots.rehearsal import postures
-from hsr8.robots.roles import find_roles
-from hsr8.robots.skeleton import HINGE, Posed, Skeleton, root_of, skeleton_of
-from hsr8.robots.soles import flat_feet
+from hsr8.robots.model.posed_shapes import SelfCollision
+from hsr8.robots.model.prepare import prepare
+from hsr8.robots.parts.guess import Finding, Guess, guess
+from hsr8.robots.parts.places import Prepared
+from hsr8.robots.parts.roles import find_roles
+from hsr8.robots.parts.skeleton import HINGE, Posed, Skeleton, root_of, skeleton_of
+from hsr8.robots.parts.soles import flat_feet
+from hsr8.robots.walk.rehearsal import postures
+from hsr8.version import VERSION
 from walking.body.robot_model import MAX_STIFFENING
 from walking.command import VelocityCommand
 
@@ -133,6 +136,39 @@ def _flat_feet(
     except KeyMistake:  # loading the robot reports it
         return {}
     return flat_feet(model, roles.feet, guessed.legs, roles.frame)
+
+
+def description_text(inspection: Inspection, file: Path, command: str) -> str:
+    """Return the text of a guessed description; comments have the reason of each guess.
+
+    Args:
+        inspection: inspection of a model, with a description.
+        file: file to be written, next to which the model may be.
+        command: command line that guessed the roles.
+    """
+    keys = inspection.require_description().model_dump(mode="json", exclude_defaults=True)
+    model, folder = inspection.model.resolve(), file.resolve().parent
+    keys["model"] = str(model.relative_to(folder) if model.is_relative_to(folder) else model)
+    tables = [key for key, value in keys.items() if isinstance(value, dict)]
+    reasons = {f.role: f"{f.sureness}: {f.reason}" for f in inspection.findings}
+    document = tomlkit.document()
+    document.add(tomlkit.comment(f"Guessed by {command}, version {VERSION}: check every line."))
+
+    def add(key: str) -> None:
+        item = tomlkit.item(keys[key])
+        if key in reasons:
+            item.comment(reasons[key])
+        document.add(key, item)
+
+    for key in (key for key in keys if key not in tables):
+        add(key)
+    for finding in inspection.findings:
+        if finding.role not in keys:
+            text = finding.part or finding.sureness
+            document.add(tomlkit.comment(f"{finding.role}: {text}: {finding.reason}"))
+    for key in tables:
+        add(key)
+    return tomlkit.dumps(document)
 
 
 def facts(robot: LoadedRobot) -> dict[str, Any]:

@@ -10,24 +10,25 @@ import numpy as np
 from numpy.typing import NDArray
 
 from hsr8.errors import ModelError
-from hsr8.robots.description import MAX_FOV, MIN_FOV, TRUNK, RobotDescription, read_description
-from hsr8.robots.files import package_folders, reading_models, stamp_of
-from hsr8.robots.key_mistake import KeyMistake, at_least, joint_error, reading_keys
-from hsr8.robots.linkage import drive_serially
-from hsr8.robots.locate import find_description, find_model, model_files
-from hsr8.robots.normal_form import normalise
-from hsr8.robots.posed_shapes import arm_spheres, exclude_neighbours, robot_radius
-from hsr8.robots.posture import check_joint_names, completed_posture, stated_posture
-from hsr8.robots.prepare import LEG_JOINTS, LIMITED, TO_JOINT, Prepared, prepare
-from hsr8.robots.read import compile_spec, drop_drawn_meshes, read_spec
-from hsr8.robots.refusals import check_roles
-from hsr8.robots.rehearsal import within_joints
-from hsr8.robots.roles import Roles, base_note, find_roles, present
-from hsr8.robots.rules import fit, one_leg_load
-from hsr8.robots.servos import choose_servos
-from hsr8.robots.skeleton import HINGE, Posed
-from hsr8.robots.soles import soles_of
-from hsr8.robots.tree import tree_of
+from hsr8.robots.checks.refusals import check_roles
+from hsr8.robots.file.description import MAX_FOV, MIN_FOV, TRUNK, RobotDescription, read_description
+from hsr8.robots.file.files import package_folders, reading_models, stamp_of
+from hsr8.robots.file.key_mistake import KeyMistake, at_least, joint_error, reading_keys
+from hsr8.robots.file.locate import find_description, find_model, model_files
+from hsr8.robots.file.read import compile_spec, drop_drawn_meshes, read_spec
+from hsr8.robots.model.linkage import drive_serially
+from hsr8.robots.model.normal_form import normalise
+from hsr8.robots.model.posed_shapes import arm_spheres, exclude_neighbours, robot_radius
+from hsr8.robots.model.prepare import LIMITED, TO_JOINT, prepare
+from hsr8.robots.model.servos import choose_servos
+from hsr8.robots.model.tree import tree_of
+from hsr8.robots.parts.places import Prepared
+from hsr8.robots.parts.posture import check_joint_names, completed_posture, stated_posture
+from hsr8.robots.parts.roles import Roles, base_note, find_roles, present
+from hsr8.robots.parts.skeleton import HINGE, LEG_JOINTS, Posed
+from hsr8.robots.parts.soles import soles_of
+from hsr8.robots.walk.rehearsal import within_joints
+from hsr8.robots.walk.rules import fit, one_leg_load
 from walking.body.robot_model import RobotModel
 from walking.constants import parameters_for
 from walking.parameters import HeadParameters, WalkingParameters
@@ -403,7 +404,7 @@ def _strength(
 
 
 def _compare(before: Posed, after: Posed, source: str) -> None:
-    """Check that mass, centre of mass and joints are those of the file.
+    """Check that mass, centre of mass, inertia and joints are those of the file.
 
     Raises:
         ModelError: a quantity differs.
@@ -412,6 +413,8 @@ def _compare(before: Posed, after: Posed, source: str) -> None:
     root = int(raw.jnt_bodyid[0])
     _same(source, "mass [kg]", raw.body_subtreemass[root], normal.body_subtreemass[1])
     _same(source, "centre of mass [m]", before.data.subtree_com[root], after.data.subtree_com[1])
+    inertias = (posed.data.cinert[:, :6].sum(axis=0) for posed in (before, after))
+    _same(source, "inertia about the centre of mass [kg m²]", next(inertias), next(inertias))
     for joint in (raw.joint(j) for j in range(1, raw.njnt)):
         anchor = after.data.joint(joint.name).xanchor
         _same(source, f"place of joint {joint.name!r} [m]", before.data.xanchor[joint.id], anchor)

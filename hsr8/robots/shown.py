@@ -12,11 +12,11 @@ import mujoco
 import numpy as np
 from numpy.typing import NDArray
 
+from hsr8.robots.file.meshes import Array, Triangles, decimated
 from hsr8.robots.loaded import LoadedRobot
-from hsr8.robots.meshes import Array, Triangles, decimated
-from hsr8.robots.normal_form import COLLISION_GROUP
-from hsr8.robots.posed_shapes import robot_height
-from hsr8.robots.skeleton import Posed, matrix_of
+from hsr8.robots.model.normal_form import COLLISION_GROUP
+from hsr8.robots.model.posed_shapes import robot_height
+from hsr8.robots.parts.skeleton import Posed, matrix_of
 
 VISUAL_GROUPS = (0, 1, 2)
 """Groups of geoms that MuJoCo draws; those from 3 are collision shapes."""

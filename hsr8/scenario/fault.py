@@ -6,7 +6,7 @@ from typing import Annotated, Literal
 from annotated_types import Interval, Len, doc
 from pydantic import AfterValidator, Field, model_validator
 
-from hsr8.robots.description import TRUNK
+from hsr8.robots.file.description import TRUNK
 from hsr8.scenario.mission import SecondsRange
 from hsr8.scenario.section import CONTROL_PERIOD_MS, Degrees, Point, Section, ordered
 

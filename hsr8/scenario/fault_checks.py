@@ -5,7 +5,7 @@ from math import ceil, isfinite
 
 from hsr8.keys import Path
 from hsr8.mistakes import Mistake
-from hsr8.robots.description import TRUNK
+from hsr8.robots.file.description import TRUNK
 from hsr8.robots.scale import DEFAULT_ROBOT
 from hsr8.scenario.fault import (
     JOINT_GROUPS,

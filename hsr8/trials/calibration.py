@@ -7,9 +7,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from hsr8.errors import ModelError
-from hsr8.robots.description import MIN_SPEED
+from hsr8.robots.file.description import MIN_SPEED
 from hsr8.robots.loaded import LoadedRobot
-from hsr8.robots.rehearsal import AXES, command_of
+from hsr8.robots.walk.rehearsal import AXES, command_of
 from hsr8.trials.commands import random_commands, random_head, time_scale
 from hsr8.trials.robot_check import MAX_TILT, check_robot
 from hsr8.trials.walk import Trial, Walked
@@ -32,7 +32,7 @@ FLOOR = 0.0002  # smallest odometry noise, as simulation knows no other ground [
 
 @dataclass(frozen=True, slots=True)
 class Measured:
-    """Result of a calibration; units as in `hsr8.robots.description.Calibration`."""
+    """Result of a calibration; units as in `hsr8.robots.file.description.Calibration`."""
 
     speed: dict[str, float]
     turn_delay: float

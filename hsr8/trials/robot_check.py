@@ -8,9 +8,9 @@ from numpy.typing import NDArray
 
 from hsr8.robots.defaults import navigation_speed
 from hsr8.robots.loaded import LoadedRobot
-from hsr8.robots.rehearsal import command_of
-from hsr8.robots.rules import one_leg_load
-from hsr8.robots.servos import OWN_SERVOS
+from hsr8.robots.model.servos import OWN_SERVOS
+from hsr8.robots.walk.rehearsal import command_of
+from hsr8.robots.walk.rules import one_leg_load
 from hsr8.trials.commands import random_commands, random_head, time_scale
 from hsr8.trials.walk import Trial, Walked
 from walking.body.robot_model import RobotModel

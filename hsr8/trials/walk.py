@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from hsr8.robots.loaded import LoadedRobot
-from hsr8.robots.normal_form import HEAD_CAMERA
+from hsr8.robots.model.normal_form import HEAD_CAMERA
 from hsr8.scenario.sensors import SensorNoise
 from hsr8.world.body.physics import PhysicsBody
 from hsr8.world.body.pushes import ScheduledPush

@@ -13,7 +13,7 @@ from hypothesis import strategies as st
 from hsr8.cli.main import entry
 from hsr8.errors import ScenarioError, SimulationDiverged, UsageError
 from hsr8.loop import Simulation
-from hsr8.robots import files
+from hsr8.robots.file import files
 from hsr8.scenario.layers import BUILT_IN, built_in_names
 from hsr8.scenario.loader import load_scenario, loads
 from tests.hsr8.bad_input import keys, model_changed, mutated, near, value, written

@@ -6,7 +6,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from hsr8.keys import annotation_at, chosen, texts
-from hsr8.robots.description import Name, RobotDescription, SoleRectangle
+from hsr8.robots.file.description import Name, RobotDescription, SoleRectangle
 from hsr8.scenario.mission import Stretch, Walk
 from hsr8.scenario.schema import Navigation, Scenario
 from hsr8.seeds import named_rng

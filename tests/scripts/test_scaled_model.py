@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 from scaled_model import scale_robot, scaled_robot
 
-from hsr8.robots.files import models_dir
+from hsr8.robots.file.files import models_dir
 from walking.dimension import HSR_VIII
 
 ROBOT = models_dir() / "hsr8" / "hsr8.xml"

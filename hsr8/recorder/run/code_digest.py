@@ -5,7 +5,7 @@ from collections.abc import Iterator
 from importlib.util import find_spec
 from pathlib import Path
 
-from hsr8.robots.files import models_dir
+from hsr8.robots.file.files import models_dir
 
 PACKAGES = ("compilation", "hsr8", "navigation", "walking", "vision")
 # Folders and files of hsr8 that influence no run:

@@ -12,7 +12,7 @@ from hsr8 import arithmetic
 from hsr8.files import atomic
 from hsr8.plugin_file import digests
 from hsr8.recorder.run.code_digest import code_digest
-from hsr8.robots.locate import digest
+from hsr8.robots.file.locate import digest
 from hsr8.scenario.schema import Scenario
 from hsr8.scenario.track_file import track_digests
 from hsr8.version import VERSION

@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from compilation import compiled
-from hsr8.robots.normal_form import HEAD_CAMERA
+from hsr8.robots.model.normal_form import HEAD_CAMERA
 from hsr8.scenario.fault import ticks
 from hsr8.scenario.sensors import Camera
 from hsr8.world.body.body import Body

@@ -8,7 +8,7 @@ import mujoco
 import numpy as np
 from numpy.typing import NDArray
 
-from hsr8.robots.normal_form import HEAD_CAMERA
+from hsr8.robots.model.normal_form import HEAD_CAMERA
 from hsr8.scenario.fault import ticks
 from hsr8.scenario.sensors import Camera
 from hsr8.world.camera.feed import CameraFaults

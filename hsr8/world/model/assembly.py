@@ -13,9 +13,9 @@ from typing import Any, Literal
 import mujoco
 import numpy as np
 
-from hsr8.robots.files import models_dir, reading_models
+from hsr8.robots.file.files import models_dir, reading_models
 from hsr8.robots.loaded import LoadedRobot
-from hsr8.robots.normal_form import HEAD_CAMERA
+from hsr8.robots.model.normal_form import HEAD_CAMERA
 from hsr8.robots.shown import camera_spec, visual_spec
 from hsr8.scenario.fault import Bump
 from hsr8.world.field.layout import Beacon, Layout, Obstacle

@@ -9,9 +9,9 @@ import mujoco
 import numpy as np
 from numpy.typing import NDArray
 
-from hsr8.robots.files import reading_models
-from hsr8.robots.normal_form import ACCELEROMETER, FEET, PADS, SOLES, pad
-from hsr8.robots.tree import servos_of
+from hsr8.robots.file.files import reading_models
+from hsr8.robots.model.normal_form import ACCELEROMETER, FEET, PADS, SOLES, pad
+from hsr8.robots.model.tree import servos_of
 from hsr8.world.model.assembly import FIELD
 
 if TYPE_CHECKING:  # reading a run needs no robot

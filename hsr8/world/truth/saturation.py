@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from compilation import compiled
-from hsr8.robots.tree import max_torque
+from hsr8.robots.model.tree import max_torque
 from hsr8.world.model.index import ModelIndex
 
 Array = NDArray[np.float64]

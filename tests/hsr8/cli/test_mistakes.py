@@ -204,7 +204,7 @@ def test_a_mistake_is_one_message(line, expected, capsys):
 
 
 def test_missing_models_are_one_message(folder, monkeypatch, capsys):
-    monkeypatch.setattr("hsr8.robots.files.PACKAGE", folder / "hsr8")
+    monkeypatch.setattr("hsr8.robots.file.files.PACKAGE", folder / "hsr8")
     assert entry(["run", "quick", "--camera", "analytic", "--quiet"]) == 2
     message = capsys.readouterr().err
     assert message.startswith("hsr8: ")

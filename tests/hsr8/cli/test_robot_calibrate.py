@@ -6,8 +6,8 @@ from datetime import UTC, datetime
 import pytest
 
 from hsr8.cli.main import entry
-from hsr8.robots.description import read_description
-from hsr8.robots.locate import find_description
+from hsr8.robots.file.description import read_description
+from hsr8.robots.file.locate import find_description
 from hsr8.trials.calibration import Measured
 from hsr8.version import VERSION
 

@@ -5,7 +5,7 @@ import cv2
 import pytest
 
 from hsr8.cli.main import entry
-from hsr8.robots.description import read_description
+from hsr8.robots.file.description import read_description
 from tests.hsr8.robots.small_humanoid import SmallHumanoid
 
 FEET = ["l_ankle_roll_link", "r_ankle_roll_link"]

@@ -1,9 +1,9 @@
 import json
 
 from hsr8.cli.main import entry
-from hsr8.robots import locate
-from hsr8.robots.files import models_dir
-from hsr8.robots.locate import robot_names
+from hsr8.robots.file import locate
+from hsr8.robots.file.files import models_dir
+from hsr8.robots.file.locate import robot_names
 
 
 def listed(capsys):

@@ -7,7 +7,7 @@ from hsr8.rerun_log.shapes import batches_of, colors, sole_outline
 from hsr8.rerun_log.stream import LogStream
 from hsr8.rerun_log.world import WorldShapes
 from hsr8.robots.loaded import load_robot
-from hsr8.robots.normal_form import FEET, HEAD_CAMERA, SOLES
+from hsr8.robots.model.normal_form import FEET, HEAD_CAMERA, SOLES
 from tests.hsr8.rerun_log.reading import Log
 
 

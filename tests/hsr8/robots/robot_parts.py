@@ -10,11 +10,11 @@ from xml.etree.ElementTree import Element, SubElement
 import mujoco
 import pytest
 
-from hsr8.robots.description import RobotDescription, read_description
+from hsr8.robots.checks.refusals import check_roles
+from hsr8.robots.file.description import RobotDescription, read_description
+from hsr8.robots.file.locate import find_description, find_model, installed_model, robot_names
 from hsr8.robots.loaded import RawRobot, read_robot
-from hsr8.robots.locate import find_description, find_model, installed_model, robot_names
-from hsr8.robots.refusals import check_roles
-from hsr8.robots.roles import Roles, find_roles
+from hsr8.robots.parts.roles import Roles, find_roles
 from tests.hsr8.robots.small_humanoid import SmallHumanoid
 
 MENAGERIE = pytest.mark.skipif(

@@ -9,7 +9,7 @@ from pathlib import Path
 from xml.etree import ElementTree
 from xml.etree.ElementTree import Element, SubElement
 
-from hsr8.robots.files import models_dir
+from hsr8.robots.file.files import models_dir
 
 ARM, WIDTH, ROD = 0.02, 0.02, 0.06  # of a crank, of the feet of the rods, and of a rod [m]
 STIFFNESS, DAMPING, TORQUE = 30.0, 0.3, 3.0  # of a crank's servo

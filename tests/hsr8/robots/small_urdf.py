@@ -13,7 +13,7 @@ from xml.etree.ElementTree import Element, SubElement
 import numpy as np
 from scipy.spatial.transform import Rotation
 
-from hsr8.robots.description import RobotDescription, checked
+from hsr8.robots.file.description import RobotDescription, checked
 from hsr8.robots.loaded import LoadedRobot, RawRobot, build_robot, read_robot
 
 WORDS = {"y": "yaw", "r": "roll", "p": "pitch"}

@@ -2,8 +2,8 @@ import tomllib
 
 import pytest
 
-from hsr8.robots.description import Calibration, checked
-from hsr8.robots.description_file import moved, with_calibration
+from hsr8.robots.file.description import Calibration, checked
+from hsr8.robots.file.description_file import moved, with_calibration
 
 BARE = 'model = "a.xml"\nfeet = ["l", "r"]'
 TEXTS = [

@@ -8,15 +8,13 @@ import numpy as np
 import pytest
 
 from hsr8.errors import ModelError
-from hsr8.robots.description import read_description
-from hsr8.robots.description_file import description_text
-from hsr8.robots.inspection import inspect, load_inspected, touching_parts
+from hsr8.robots.file.description import read_description
+from hsr8.robots.inspection import description_text, inspect, load_inspected, touching_parts
 from hsr8.robots.loaded import load_robot
 from hsr8.trials.walk import Trial
 from tests.hsr8.robots.robot_parts import adding, part, setting
 from tests.hsr8.robots.small_humanoid import SmallHumanoid
 from walking.command import VelocityCommand
-
 
 PLAIN = SmallHumanoid()
 

@@ -4,7 +4,7 @@ import shutil
 import pytest
 
 from hsr8.cli.main import entry
-from hsr8.robots import files
+from hsr8.robots.file import files
 
 LIGHT = ["--camera", "analytic", "--quiet", "--duration", "0.1"]
 ROBOT = "hsr8/hsr8.xml"

@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
 
-from hsr8.robots.guess import guess
 from hsr8.robots.inspection import inspect
+from hsr8.robots.parts.guess import guess
 from tests.hsr8.robots.robot_parts import (
     ICUB,
     MENAGERIE,

@@ -6,7 +6,7 @@ from xml.etree import ElementTree
 import pytest
 
 from hsr8.errors import ModelError
-from hsr8.robots.description import read_description
+from hsr8.robots.file.description import read_description
 from hsr8.robots.inspection import inspect
 from hsr8.robots.loaded import load_robot
 from tests.hsr8.robots.small_humanoid import SmallHumanoid

@@ -8,13 +8,12 @@ import numpy as np
 import pytest
 
 from hsr8.errors import ModelError
-from hsr8.robots.description import checked, read_description
-from hsr8.robots.description_file import description_text
-from hsr8.robots.inspection import inspect, load_inspected
-from hsr8.robots.linkage import close_loops
+from hsr8.robots.file.description import checked, read_description
+from hsr8.robots.inspection import description_text, inspect, load_inspected
 from hsr8.robots.loaded import build_robot, load_robot, read_robot
-from hsr8.robots.servos import own_efforts
-from hsr8.robots.skeleton import Posed
+from hsr8.robots.model.linkage import close_loops
+from hsr8.robots.model.servos import own_efforts
+from hsr8.robots.parts.skeleton import Posed
 from hsr8.trials.walk import Trial
 from tests.hsr8.robots import rod_legs
 from tests.hsr8.robots.robot_parts import checked_roles, described, part, raw

@@ -6,9 +6,9 @@ from importlib.machinery import ModuleSpec
 import pytest
 
 from hsr8.errors import ModelError
-from hsr8.robots import locate
-from hsr8.robots.description import RobotDescription, read_description
-from hsr8.robots.files import models_dir
+from hsr8.robots.file import locate
+from hsr8.robots.file.description import RobotDescription, read_description
+from hsr8.robots.file.files import models_dir
 from hsr8.robots.loaded import load_robot
 
 NAMES = ["alexander", "apollo", "berkeley", "g1", "hsr8", "icub", "jvrc1", "op3", "t1"]

@@ -6,8 +6,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from hsr8.errors import ModelError
-from hsr8.robots.files import find_mesh, package_folders
-from hsr8.robots.meshes import decimated, is_binary_stl, read_mesh
+from hsr8.robots.file.files import find_mesh, package_folders
+from hsr8.robots.file.meshes import decimated, is_binary_stl, read_mesh
 from tests.hsr8.robots.mesh_files import CORNERS, FORMATS, dae, write_mesh
 from tests.hsr8.robots.mesh_humanoid import sphere
 

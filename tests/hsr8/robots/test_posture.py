@@ -7,8 +7,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from hsr8.errors import ModelError
-from hsr8.robots.posture import stated_posture
-from hsr8.robots.prepare import clip_to_range
+from hsr8.robots.parts.posture import stated_posture
+from hsr8.robots.parts.skeleton import clip_to_range
 from tests.hsr8.robots.small_urdf import describe
 
 SRDF = '<robot name="r"><group_state name="home" group="g">{}</group_state></robot>'

@@ -11,12 +11,12 @@ import pytest
 from scipy.spatial.transform import Rotation
 
 from hsr8.errors import ModelError
+from hsr8.robots.file.read import compile_spec, read_spec
 from hsr8.robots.loaded import read_robot
-from hsr8.robots.normal_form import rebase
-from hsr8.robots.prepare import hold, prepare
-from hsr8.robots.read import compile_spec, read_spec
-from hsr8.robots.roles import find_roles
-from hsr8.robots.skeleton import Posed
+from hsr8.robots.model.normal_form import rebase
+from hsr8.robots.model.prepare import hold, prepare
+from hsr8.robots.parts.roles import find_roles
+from hsr8.robots.parts.skeleton import Posed
 from tests.hsr8.robots.robot_parts import described, part, setting
 from tests.hsr8.robots.small_humanoid import SmallHumanoid
 from tests.hsr8.robots.small_urdf import SmallUrdf, built, describe, joint, link, raw, write

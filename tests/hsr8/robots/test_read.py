@@ -7,9 +7,9 @@ import mujoco
 import pytest
 
 from hsr8.errors import ModelError
-from hsr8.robots.description import read_description
+from hsr8.robots.file.description import read_description
+from hsr8.robots.file.locate import digest, find_description
 from hsr8.robots.loaded import load_robot, read_robot
-from hsr8.robots.locate import digest, find_description
 from tests.hsr8.robots.mesh_humanoid import write_robot
 from tests.hsr8.robots.robot_parts import SHIPPED, adding, described, part, setting
 from tests.hsr8.robots.small_humanoid import SmallHumanoid

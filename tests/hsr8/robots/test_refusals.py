@@ -7,12 +7,12 @@ import numpy as np
 import pytest
 
 from hsr8.errors import ModelError
-from hsr8.robots.key_mistake import KeyMistake
-from hsr8.robots.normal_form import dropped_options
-from hsr8.robots.refusals import check_roles
-from hsr8.robots.roles import find_roles
-from hsr8.robots.servos import own_efforts
-from hsr8.robots.tree import driven_joints, max_torque, servos_of
+from hsr8.robots.checks.refusals import check_roles
+from hsr8.robots.file.key_mistake import KeyMistake
+from hsr8.robots.model.normal_form import dropped_options
+from hsr8.robots.model.servos import own_efforts
+from hsr8.robots.model.tree import driven_joints, max_torque, servos_of
+from hsr8.robots.parts.roles import find_roles
 from tests.hsr8.robots.robot_parts import (
     SOURCE,
     add_toes,

@@ -4,7 +4,7 @@ from dataclasses import replace
 
 import pytest
 
-from hsr8.robots.rehearsal import rehearse, within_joints
+from hsr8.robots.walk.rehearsal import rehearse, within_joints
 from walking.body.robot_model import RobotModel
 from walking.command import VelocityCommand
 from walking.parameters import WalkingParameters

@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from hsr8.robots import rules
+from hsr8.robots.walk import rules
 from walking.body.robot_model import MAX_COMPLIANCE, MAX_STIFFENING, RobotModel
 from walking.constants import parameters_for
 from walking.parameters import CONTROL_PERIOD, WalkingParameters

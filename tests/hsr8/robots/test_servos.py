@@ -9,9 +9,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from hsr8.errors import ModelError
-from hsr8.robots import servos
-from hsr8.robots.roles import find_roles
-from hsr8.robots.servos import (
+from hsr8.robots.model import servos
+from hsr8.robots.model.servos import (
     armature_floor,
     choose_servos,
     critical_damping,
@@ -21,7 +20,8 @@ from hsr8.robots.servos import (
     own_efforts,
     upper_stiffness,
 )
-from hsr8.robots.skeleton import Posed
+from hsr8.robots.parts.roles import find_roles
+from hsr8.robots.parts.skeleton import Posed
 from tests.hsr8.robots import robot_parts, small_urdf
 from tests.hsr8.robots.small_humanoid import SmallHumanoid
 from tests.hsr8.robots.small_urdf import SmallUrdf, describe, link

@@ -6,7 +6,7 @@ import pytest
 
 from hsr8.robots import shown
 from hsr8.robots.loaded import load_robot
-from hsr8.robots.normal_form import SOLES
+from hsr8.robots.model.normal_form import SOLES
 from hsr8.robots.shown import (
     CELL,
     HIDDEN_GROUP,

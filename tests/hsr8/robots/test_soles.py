@@ -8,7 +8,7 @@ from hypothesis import strategies as st
 from scipy.spatial.transform import Rotation
 
 from hsr8.robots.inspection import inspect
-from hsr8.robots.soles import sole_tilt
+from hsr8.robots.parts.soles import sole_tilt
 from tests.hsr8.robots.robot_parts import MENAGERIE, model_file
 from tests.hsr8.robots.small_humanoid import SmallHumanoid
 from tests.hsr8.robots.small_urdf import SmallUrdf, write

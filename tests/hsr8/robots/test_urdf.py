@@ -6,10 +6,10 @@ import numpy as np
 import pytest
 
 from hsr8.errors import ModelError
-from hsr8.robots.roles import find_roles
-from hsr8.robots.servos import own_efforts
-from hsr8.robots.skeleton import Posed
-from hsr8.robots.soles import soles_of
+from hsr8.robots.model.servos import own_efforts
+from hsr8.robots.parts.roles import find_roles
+from hsr8.robots.parts.skeleton import Posed
+from hsr8.robots.parts.soles import soles_of
 from tests.hsr8.robots.mesh_files import FORMATS, write_mesh
 from tests.hsr8.robots.small_urdf import SmallUrdf, built, describe, joint, link, raw
 

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from hsr8.errors import ModelError
-from hsr8.robots.description import MIN_SPEED, Calibration
+from hsr8.robots.file.description import MIN_SPEED, Calibration
 from hsr8.robots.loaded import load_robot
 from hsr8.trials import calibration
 from hsr8.trials.commands import random_commands

@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 
 from hsr8.robots.loaded import load_robot
-from hsr8.robots.tree import max_torque
+from hsr8.robots.model.tree import max_torque
 from hsr8.scenario.fault import (
     AttitudeBias,
     Bump,

@@ -8,7 +8,7 @@ import pytest
 
 from hsr8.robot_builder import build_model, camera_model
 from hsr8.robots.loaded import load_robot
-from hsr8.robots.normal_form import HEAD_CAMERA
+from hsr8.robots.model.normal_form import HEAD_CAMERA
 from hsr8.scenario.loader import load_scenario
 from hsr8.world.body.kinematic import KinematicBody
 from hsr8.world.camera.analytic import project

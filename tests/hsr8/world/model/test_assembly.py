@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 
 from hsr8.robots.loaded import load_robot
-from hsr8.robots.normal_form import SOLES
+from hsr8.robots.model.normal_form import SOLES
 from hsr8.scenario.loader import load_scenario
 from hsr8.world.body.physics import place_robot
 from hsr8.world.field.generator import draw_layout

@@ -14,14 +14,15 @@ import mujoco
 import numpy as np
 from numpy.typing import NDArray
 
-from hsr8.robots.description import RobotDescription
-from hsr8.robots.key_mistake import KeyMistake
-from hsr8.robots.limbs import bent
-from hsr8.robots.mechanism import is_position_servo, joint_actuators
-from hsr8.robots.prepare import Prepared, hold
-from hsr8.robots.roles import find_roles, present
-from hsr8.robots.servos import max_torque_of
-from hsr8.robots.skeleton import FREE, Posed, skeleton_of
+from hsr8.robots.checks.mechanism import is_position_servo, joint_actuators
+from hsr8.robots.file.description import RobotDescription
+from hsr8.robots.file.key_mistake import KeyMistake
+from hsr8.robots.model.prepare import hold
+from hsr8.robots.model.servos import max_torque_of
+from hsr8.robots.parts.limbs import bent
+from hsr8.robots.parts.places import Prepared
+from hsr8.robots.parts.roles import find_roles, present
+from hsr8.robots.parts.skeleton import FREE, Posed, skeleton_of
 
 Array = NDArray[np.float64]
 

@@ -8,10 +8,10 @@ import mujoco
 import numpy as np
 
 from hsr8.errors import ModelError
-from hsr8.robots.files import reading_models
-from hsr8.robots.meshes import is_pointer
-from hsr8.robots.skeleton import label
-from hsr8.robots.urdf import drop_invalid_meshes, read_urdf
+from hsr8.robots.file.files import reading_models
+from hsr8.robots.file.key_mistake import label
+from hsr8.robots.file.meshes import is_pointer
+from hsr8.robots.file.urdf import drop_invalid_meshes, read_urdf
 
 MIN_STEP = 1e-5  # of the physics [s]
 MAX_OFFSET = 5.0  # of a body from the one that carries it [m]

@@ -3,6 +3,7 @@
 The rule scales the servos of HSR-VIII by weight and height, and is the same for all robots.
 """
 
+from collections import Counter
 from collections.abc import Mapping
 from math import ceil, pi, sqrt
 
@@ -10,11 +11,11 @@ import mujoco
 import numpy as np
 from numpy.typing import NDArray
 
-from hsr8.robots.description import RobotDescription, ServoRule
-from hsr8.robots.key_mistake import KeyMistake
-from hsr8.robots.mechanism import is_position_servo, joint_actuators
-from hsr8.robots.roles import Roles
-from hsr8.robots.skeleton import HINGE, Posed
+from hsr8.robots.checks.mechanism import is_position_servo, joint_actuators
+from hsr8.robots.file.description import RobotDescription, ServoRule
+from hsr8.robots.file.key_mistake import KeyMistake
+from hsr8.robots.parts.roles import Roles
+from hsr8.robots.parts.skeleton import HINGE, Posed
 from walking.parameters import CONTROL_PERIOD
 
 Array = NDArray[np.float64]
@@ -203,6 +204,7 @@ def _add_servos(
             f"servo: the CoM is {com_height:.3f} m above the soles; expected a positive height: "
             "check feet, sole and zero"
         )
+    replaced = _replaced(model)
     _remove_actuators(spec)
     timestep = physics_step(float(spec.option.timestep))
     stiff = leg_stiffness(mass, com_height, rule.compliance)
@@ -231,6 +233,8 @@ def _add_servos(
         f"servos by rule: {len(joints)}, those of the legs with {stiff:.0f} N m/rad for "
         f"{mass:.1f} kg with the CoM {com_height:.3f} m above the soles"
     ]
+    if replaced:
+        notes.append(f"actuators of the model replaced: {replaced}")
     if springs:
         notes.append(f"springs of {len(springs)} joints removed: {', '.join(springs[:MAX_LISTED])}")
     if armatures:
@@ -276,6 +280,16 @@ def max_torque_of(model: mujoco.MjModel, actuator: int) -> float:
 def smaller_side(limits: Array) -> float:
     """Return the smaller absolute value of two limits."""
     return float(np.abs(limits).min())
+
+
+def _replaced(model: mujoco.MjModel) -> str:
+    """Return the number of actuators by kind; those with a state have the kind of its dynamics."""
+    kinds = Counter[str]()
+    for a in range(model.nu):
+        dynamics = mujoco.mjtDyn(model.actuator_dyntype[a]).name.removeprefix("mjDYN_").lower()
+        servo = "position servo" if is_position_servo(model, a) else "motor or other kind"
+        kinds[servo if dynamics == "none" else f"with state {dynamics}"] += 1
+    return ", ".join(f"{count} {kind}" for kind, count in kinds.items())
 
 
 def _remove_actuators(spec: mujoco.MjSpec) -> None:

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 import mujoco
 import numpy as np
 
-from hsr8.robots.files import models_dir
+from hsr8.robots.file.files import models_dir
 
 MAX_LISTED = 6  # elements in a note
 OPTION_KINDS = {

@@ -9,9 +9,9 @@ from pathlib import Path
 from xml.etree import ElementTree
 
 from hsr8.errors import ModelError
-from hsr8.robots.key_mistake import KeyMistake
+from hsr8.robots.file.key_mistake import KeyMistake
 
-PACKAGE = Path(__file__).resolve().parents[1]
+PACKAGE = Path(__file__).resolve().parents[2]
 
 
 def models_dir() -> Path:

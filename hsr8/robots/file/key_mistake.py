@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import Any
 
 from hsr8.errors import ModelError
-from hsr8.robots.description import RobotDescription
+from hsr8.robots.file.description import RobotDescription
 from hsr8.suggestion import suggestion
 
 MAX_LISTED = 12  # names in a message
@@ -104,3 +104,8 @@ def require_name(
     raise KeyMistake(
         f"{key}: {owner} has no {kind} {name!r}{suggestion(name, names)}; expected {listed}"
     )
+
+
+def label(name: str, index: int) -> str:
+    """Return a name, or the index of an element without a name."""
+    return name or f"#{index}"

@@ -6,7 +6,6 @@ do not move apart become one body.
 """
 
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass
 from typing import Any
 
 import mujoco
@@ -14,16 +13,15 @@ import numpy as np
 from numpy.typing import NDArray
 
 from hsr8.errors import ModelError
-from hsr8.robots.ignored import drop_ignored
-from hsr8.robots.inertia import complete_inertias
-from hsr8.robots.key_mistake import KeyMistake, require_name
-from hsr8.robots.read import ModelFile
-from hsr8.robots.skeleton import matrix_of
+from hsr8.robots.file.key_mistake import KeyMistake, require_name
+from hsr8.robots.file.read import ModelFile
+from hsr8.robots.model.ignored import drop_ignored
+from hsr8.robots.model.inertia import complete_inertias
+from hsr8.robots.parts.places import Prepared, orientation, places_of
+from hsr8.robots.parts.skeleton import LEG_JOINTS, clip_to_range
 
 Array = NDArray[np.float64]
 
-LEG_JOINTS = 6
-LIMIT_MARGIN = 0.02  # distance of a clipped angle from its limit, by the range [1]
 MAX_LISTED = 6  # joints in a note
 FREE, HINGE = mujoco.mjtJoint.mjJNT_FREE, mujoco.mjtJoint.mjJNT_HINGE
 LIMITED, UNLIMITED = mujoco.mjtLimited.mjLIMITED_TRUE, mujoco.mjtLimited.mjLIMITED_FALSE
@@ -31,46 +29,6 @@ JOINT_TIE = mujoco.mjtEq.mjEQ_JOINT
 CLOSING = (mujoco.mjtEq.mjEQ_CONNECT, mujoco.mjtEq.mjEQ_WELD)
 TO_JOINT = (mujoco.mjtTrn.mjTRN_JOINT, mujoco.mjtTrn.mjTRN_JOINTINPARENT)
 COUPLINGS = (JOINT_TIE, mujoco.mjtEq.mjEQ_TENDON)
-
-
-@dataclass(frozen=True, slots=True, eq=False)
-class Place:
-    """Link of a file in a prepared model.
-
-    Attributes:
-        body: body that it is a part of.
-        pose: pose of its origin in that body (4, 4) [m].
-    """
-
-    body: str
-    pose: Array
-
-
-@dataclass(frozen=True, slots=True, eq=False)
-class Prepared:
-    """Prepared model.
-
-    Attributes:
-        spec: MuJoCo model.
-        root: body with the free joint.
-        base: link of the base, a part of `root` or fixed to it.
-        places: places of the links that are a part of another body, by name.
-        held: reason of each joint that is held.
-        held_above: those above each foot.
-        notes: derived facts, a line each.
-    """
-
-    spec: mujoco.MjSpec
-    root: str
-    base: str
-    places: Mapping[str, Place]
-    held: Mapping[str, str]
-    held_above: Mapping[str, tuple[str, ...]]
-    notes: tuple[str, ...]
-
-    def where(self, link: str) -> Place:
-        """Return the place of a link of the file."""
-        return self.places.get(link, Place(link, np.eye(4)))
 
 
 def prepare(
@@ -128,7 +86,7 @@ def prepare(
         hold(spec, name, angle)
     _forget_zero_efforts(spec)
     notes += _held_notes(held)
-    places = _places(spec, root)
+    places = places_of(spec, root)
     base = base or _common_link(spec, root, feet)
     if base != root and (base not in places or places[base].body != root):
         raise KeyMistake(
@@ -194,29 +152,6 @@ def hold(spec: mujoco.MjSpec, name: str, angle: float) -> None:
     body.quat, body.alt.type = product, mujoco.mjtOrientation.mjORIENTATION_QUAT
     for part in (*_referring(spec, name), joint):
         spec.delete(part)
-
-
-def clip_to_range(angle: float, lower: float, upper: float) -> float:
-    """Return an angle that is inside its range; one outside moves in by 2 % of the range [rad]."""
-    if lower <= angle <= upper:
-        return angle
-    margin = LIMIT_MARGIN * (upper - lower)
-    return min(max(angle, lower + margin), upper - margin)
-
-
-def orientation(spec: mujoco.MjSpec, body: mujoco.MjsBody) -> Array:
-    """Return the stated orientation of a body in its parent, a quaternion (4,)."""
-    if body.alt.type == mujoco.mjtOrientation.mjORIENTATION_QUAT:
-        quat = np.array(body.quat, float)
-        normalised: Array = quat / np.linalg.norm(quat)
-        return normalised
-    return np.array(
-        mujoco.MjSpec.resolve_orientation(
-            degree=bool(spec.compiler.degree),
-            sequence=spec.compiler.eulerseq,
-            orientation=body.alt,
-        )
-    )
 
 
 def _referring(spec: mujoco.MjSpec, joint: str) -> list[Any]:
@@ -399,20 +334,6 @@ def _held_notes(held: Mapping[str, str]) -> Iterator[str]:
         names = [name for name, its in held.items() if its == reason]
         more = " ..." if len(names) > MAX_LISTED else ""
         yield f"{len(names)} joints held ({reason}): {', '.join(names[:MAX_LISTED])}{more}"
-
-
-def _places(spec: mujoco.MjSpec, root: str) -> dict[str, Place]:
-    """Return the place of every body below the root that has no joint, in the one that moves it."""
-    places: dict[str, Place] = {}
-    for body in spec.bodies[1:]:
-        if body.joints or body.name == root:
-            continue
-        above = places.get(body.parent.name, Place(body.parent.name, np.eye(4)))
-        pose = np.eye(4)
-        pose[:3, :3], pose[:3, 3] = matrix_of(orientation(spec, body)), body.pos
-        with np.errstate(invalid="ignore"):  # wrong numbers are reported later
-            places[body.name] = Place(above.body, above.pose @ pose)
-    return places
 
 
 def _rotated(quaternion: Array, vector: Array) -> Array:

@@ -9,11 +9,10 @@ import mujoco
 import numpy as np
 
 from hsr8.errors import ModelError
-from hsr8.robots.description import RobotDescription
-from hsr8.robots.key_mistake import KeyMistake, require_name
-from hsr8.robots.prepare import clip_to_range
-from hsr8.robots.roles import Roles
-from hsr8.robots.skeleton import HINGE
+from hsr8.robots.file.description import RobotDescription
+from hsr8.robots.file.key_mistake import KeyMistake, require_name
+from hsr8.robots.parts.roles import Roles
+from hsr8.robots.parts.skeleton import HINGE, clip_to_range
 
 COORDINATES = {0: 7, 1: 4, 2: 1, 3: 1}  # of a free, ball, slide and hinge joint in a keyframe
 

@@ -1,19 +1,16 @@
 """Inertias of the bodies of a model file: completed where missing, refused where impossible."""
 
 from collections.abc import Mapping
-from typing import TYPE_CHECKING
 
 import mujoco
 import numpy as np
 from numpy.typing import NDArray
 
 from hsr8.errors import ModelError
-from hsr8.robots.key_mistake import RepairableError
-from hsr8.robots.skeleton import matrix_of, quaternion_of
-
-if TYPE_CHECKING:
-    from hsr8.robots.prepare import Place
-    from hsr8.robots.read import ModelFile
+from hsr8.robots.file.key_mistake import RepairableError
+from hsr8.robots.file.read import ModelFile
+from hsr8.robots.parts.places import Place
+from hsr8.robots.parts.skeleton import matrix_of, quaternion_of
 
 Array = NDArray[np.float64]
 
@@ -25,7 +22,7 @@ DENSITY = 1000.0  # of the ball whose inertia replaces an impossible one [kg/m³
 
 
 def complete_inertias(
-    spec: mujoco.MjSpec, places: Mapping[str, "Place"], source: "ModelFile", *, repair: bool
+    spec: mujoco.MjSpec, places: Mapping[str, Place], source: ModelFile, *, repair: bool
 ) -> list[str]:
     """Check the stated inertias of a model, and complete them; return notes.
 
@@ -91,7 +88,7 @@ def _fuse(
     carrier: mujoco.MjsBody,
     bodies: list[mujoco.MjsBody],
     heavy: list[mujoco.MjsBody],
-    places: Mapping[str, "Place"],
+    places: Mapping[str, Place],
 ) -> dict[str, Array]:
     """Move the masses of bodies to their carrier; return impossible moments by the heaviest."""
     mass, com, inertia = _fused(heavy, places)
@@ -135,9 +132,7 @@ def _ball(mass: float) -> Array:
     return np.full(3, 0.4 * mass * radius**2)
 
 
-def _fused(
-    bodies: list[mujoco.MjsBody], places: Mapping[str, "Place"]
-) -> tuple[float, Array, Array]:
+def _fused(bodies: list[mujoco.MjsBody], places: Mapping[str, Place]) -> tuple[float, Array, Array]:
     """Return mass [kg], centre of mass (3,) [m] and inertia (3, 3) [kg m²] of fused bodies."""
     poses = [places[b.name].pose if b.name in places else np.eye(4) for b in bodies]
     masses = np.array([b.mass for b in bodies], float)

@@ -9,11 +9,11 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.spatial import ConvexHull, QhullError
 
-from hsr8.robots.description import RobotDescription, SoleRectangle
-from hsr8.robots.key_mistake import KeyMistake, at_least, require_name
-from hsr8.robots.prepare import Prepared
-from hsr8.robots.roles import Roles, pose_of
-from hsr8.robots.skeleton import BaseFrame, Posed
+from hsr8.robots.file.description import RobotDescription, SoleRectangle
+from hsr8.robots.file.key_mistake import KeyMistake, at_least, require_name
+from hsr8.robots.parts.places import Prepared
+from hsr8.robots.parts.roles import Roles, pose_of
+from hsr8.robots.parts.skeleton import BaseFrame, Posed
 
 Array = NDArray[np.float64]
 

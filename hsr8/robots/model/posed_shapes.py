@@ -11,9 +11,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from hsr8.errors import ModelError
-from hsr8.robots.normal_form import COLLISION_GROUP
-from hsr8.robots.roles import Roles
-from hsr8.robots.skeleton import Posed, is_below, path_up
+from hsr8.robots.model.normal_form import COLLISION_GROUP
+from hsr8.robots.parts.roles import Roles
+from hsr8.robots.parts.skeleton import Posed, is_below, path_up
 
 Array = NDArray[np.float64]
 

@@ -11,13 +11,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from hsr8.errors import ModelError
-from hsr8.robots.description import RobotDescription
-from hsr8.robots.key_mistake import KeyMistake, at_most, joint_error
-from hsr8.robots.limbs import BENT, bent, foot_joint, side_vote, toe_vote
-from hsr8.robots.mechanism import check_mechanism
-from hsr8.robots.prepare import Prepared
-from hsr8.robots.roles import Roles, present
-from hsr8.robots.skeleton import MirroredPair, Skeleton, mirrored_pairs, skeleton_of
+from hsr8.robots.checks.mechanism import check_mechanism
+from hsr8.robots.file.description import RobotDescription
+from hsr8.robots.file.key_mistake import KeyMistake, at_most, joint_error
+from hsr8.robots.parts.limbs import BENT, bent, foot_joint, side_vote, toe_vote
+from hsr8.robots.parts.places import Prepared
+from hsr8.robots.parts.roles import Roles, present
+from hsr8.robots.parts.skeleton import MirroredPair, Skeleton, mirrored_pairs, skeleton_of
 
 Array = NDArray[np.float64]
 

@@ -11,6 +11,8 @@ import mujoco
 import numpy as np
 from numpy.typing import NDArray
 
+from hsr8.robots.file.key_mistake import label
+
 Array = NDArray[np.float64]
 
 HINGE = int(mujoco.mjtJoint.mjJNT_HINGE)
@@ -19,6 +21,8 @@ BALL = int(mujoco.mjtJoint.mjJNT_BALL)
 MIN_LIMITS = 0.3  # difference of the limits of a knee that shows where it bends [rad]
 PARALLEL = 0.9  # minimum cosine of an axis that counts as a yaw or pitch axis [1]
 CANTED = 0.5  # the same of the pitch axis of a hip, which may be canted [1]
+LEG_JOINTS = 6
+LIMIT_MARGIN = 0.02  # distance of a clipped angle from its limit, by the range [1]
 BELOW_HIP = 3  # joints of a leg below the hip: knee and ankle
 
 
@@ -270,11 +274,6 @@ def skeleton_of(
     )
 
 
-def label(name: str, index: int) -> str:
-    """Return a name, or the index of an element without a name."""
-    return name or f"#{index}"
-
-
 def path_up(model: mujoco.MjModel, body: int) -> list[int]:
     """Return a body and those above it, without the world."""
     path = []
@@ -355,3 +354,11 @@ def mirrored_pairs(
             range=float(np.abs(differences).max()),
             reversed=cosine <= 0.0,
         )
+
+
+def clip_to_range(angle: float, lower: float, upper: float) -> float:
+    """Return an angle that is inside its range; one outside moves in by 2 % of the range [rad]."""
+    if lower <= angle <= upper:
+        return angle
+    margin = LIMIT_MARGIN * (upper - lower)
+    return min(max(angle, lower + margin), upper - margin)

@@ -7,8 +7,7 @@ from itertools import combinations
 import numpy as np
 from numpy.typing import NDArray
 
-from hsr8.robots.prepare import LEG_JOINTS
-from hsr8.robots.skeleton import BaseFrame, Skeleton, mirrored_pairs
+from hsr8.robots.parts.skeleton import LEG_JOINTS, BaseFrame, Skeleton, mirrored_pairs
 
 Array = NDArray[np.float64]
 

@@ -12,8 +12,8 @@ from importlib.util import find_spec
 from pathlib import Path
 
 from hsr8.errors import ModelError
-from hsr8.robots.description import MODEL_SUFFIXES, RobotDescription, read_description
-from hsr8.robots.files import digest_of, files_of, models_dir
+from hsr8.robots.file.description import MODEL_SUFFIXES, RobotDescription, read_description
+from hsr8.robots.file.files import digest_of, files_of, models_dir
 from hsr8.robots.scale import DEFAULT_ROBOT
 from hsr8.suggestion import suggestion
 

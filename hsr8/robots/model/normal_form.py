@@ -12,15 +12,15 @@ import mujoco
 import numpy as np
 from numpy.typing import NDArray
 
-from hsr8.robots.description import CameraMount, RobotDescription
-from hsr8.robots.ignored import dropped_options
-from hsr8.robots.prepare import Prepared
-from hsr8.robots.roles import Roles, pose_of
+from hsr8.robots.file.description import CameraMount, RobotDescription
+from hsr8.robots.model.ignored import dropped_options
+from hsr8.robots.model.servos import physics_step
+from hsr8.robots.model.tree import Parts
+from hsr8.robots.parts.places import Prepared
+from hsr8.robots.parts.roles import Roles, pose_of
+from hsr8.robots.parts.skeleton import BaseFrame, Posed, quaternion_of
+from hsr8.robots.parts.soles import Rectangle
 from hsr8.robots.scale import DEFAULT_FOV_DEG
-from hsr8.robots.servos import physics_step
-from hsr8.robots.skeleton import BaseFrame, Posed, quaternion_of
-from hsr8.robots.soles import Rectangle
-from hsr8.robots.tree import Parts
 from walking.model import Sole
 
 Array = NDArray[np.float64]

@@ -8,10 +8,10 @@ import mujoco
 import numpy as np
 from numpy.typing import NDArray
 
-from hsr8.robots.description import CameraMount, RobotDescription
-from hsr8.robots.key_mistake import KeyMistake, require_name
-from hsr8.robots.prepare import LEG_JOINTS, Prepared
-from hsr8.robots.skeleton import HINGE, SAME, BaseFrame, Posed, path_up
+from hsr8.robots.file.description import CameraMount, RobotDescription
+from hsr8.robots.file.key_mistake import KeyMistake, require_name
+from hsr8.robots.parts.places import Prepared
+from hsr8.robots.parts.skeleton import HINGE, LEG_JOINTS, SAME, BaseFrame, Posed, path_up
 
 Array = NDArray[np.float64]
 Leg = tuple[str, str, str, str, str, str]

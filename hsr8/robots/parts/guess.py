@@ -9,7 +9,7 @@ import mujoco
 import numpy as np
 from numpy.typing import NDArray
 
-from hsr8.robots.limbs import (
+from hsr8.robots.parts.limbs import (
     Limb,
     Stance,
     find_stance,
@@ -21,8 +21,7 @@ from hsr8.robots.limbs import (
     toe_vote,
     turned_back,
 )
-from hsr8.robots.prepare import LEG_JOINTS
-from hsr8.robots.skeleton import PARALLEL, Skeleton, root_of, skeleton_of
+from hsr8.robots.parts.skeleton import LEG_JOINTS, PARALLEL, Skeleton, root_of, skeleton_of
 
 Array = NDArray[np.float64]
 Sureness = Literal["certain", "likely", "unsure", "missing"]

@@ -207,5 +207,6 @@ def _walk(
         angles.append(engine.leg_angles)
         torques.append(engine.torques[:12])
         loaded.append(np.repeat((load < 1.0, load > 0.0), 6))
-    positions, angles, torques = (np.array(part)[settle:] for part in (positions, angles, torques))
-    return positions, angles, torques, np.array(loaded)[settle:]
+    walked = slice(settle, None)
+    whole = np.array(positions)[walked], np.array(angles)[walked], np.array(torques)[walked]
+    return *whole, np.array(loaded)[walked]

@@ -7,9 +7,7 @@ from typing import Any
 import tomlkit
 from tomlkit.items import InlineTable, Table
 
-from hsr8.robots.description import Calibration
-from hsr8.robots.inspection import Inspection
-from hsr8.version import VERSION
+from hsr8.robots.file.description import Calibration
 
 
 def with_calibration(text: str, calibration: Calibration) -> str:
@@ -56,39 +54,6 @@ def moved(text: str, source: Path, target: Path) -> str:
         path = source / Path(table[key]).expanduser()
         if path.exists() and not Path(table[key]).is_absolute():
             table[key] = str(path.resolve())
-    return tomlkit.dumps(document)
-
-
-def description_text(inspection: Inspection, file: Path, command: str) -> str:
-    """Return the text of a guessed description; comments have the reason of each guess.
-
-    Args:
-        inspection: inspection of a model, with a description.
-        file: file to be written, next to which the model may be.
-        command: command line that guessed the roles.
-    """
-    keys = inspection.require_description().model_dump(mode="json", exclude_defaults=True)
-    model, folder = inspection.model.resolve(), file.resolve().parent
-    keys["model"] = str(model.relative_to(folder) if model.is_relative_to(folder) else model)
-    tables = [key for key, value in keys.items() if isinstance(value, dict)]
-    reasons = {f.role: f"{f.sureness}: {f.reason}" for f in inspection.findings}
-    document = tomlkit.document()
-    document.add(tomlkit.comment(f"Guessed by {command}, version {VERSION}: check every line."))
-
-    def add(key: str) -> None:
-        item = tomlkit.item(keys[key])
-        if key in reasons:
-            item.comment(reasons[key])
-        document.add(key, item)
-
-    for key in (key for key in keys if key not in tables):
-        add(key)
-    for finding in inspection.findings:
-        if finding.role not in keys:
-            text = finding.part or finding.sureness
-            document.add(tomlkit.comment(f"{finding.role}: {text}: {finding.reason}"))
-    for key in tables:
-        add(key)
     return tomlkit.dumps(document)
 
 

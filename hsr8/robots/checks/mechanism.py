@@ -11,10 +11,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from hsr8.errors import ModelError
-from hsr8.robots.description import RobotDescription
-from hsr8.robots.key_mistake import RepairableError, at_most
-from hsr8.robots.roles import Roles
-from hsr8.robots.skeleton import HINGE, label, path_up
+from hsr8.robots.file.description import RobotDescription
+from hsr8.robots.file.key_mistake import RepairableError, at_most, label
+from hsr8.robots.parts.roles import Roles
+from hsr8.robots.parts.skeleton import HINGE, path_up
 
 RIGID_TIES = {
     int(mujoco.mjtEq.mjEQ_CONNECT): "connect",

@@ -7,9 +7,9 @@ import mujoco
 import numpy as np
 from numpy.typing import NDArray
 
-from hsr8.robots.mechanism import TO_JOINT
-from hsr8.robots.roles import Roles
-from hsr8.robots.skeleton import HINGE, matrix_of
+from hsr8.robots.checks.mechanism import TO_JOINT
+from hsr8.robots.parts.roles import Roles
+from hsr8.robots.parts.skeleton import HINGE, matrix_of
 from walking.body.tree import Frame, RobotTree, turn
 from walking.model import Sole
 

@@ -15,8 +15,8 @@ import mujoco
 import numpy as np
 
 from hsr8.errors import ModelError
-from hsr8.robots.files import find_mesh
-from hsr8.robots.meshes import is_binary_stl, is_pointer, read_mesh
+from hsr8.robots.file.files import find_mesh
+from hsr8.robots.file.meshes import is_binary_stl, is_pointer, read_mesh
 
 Element = ElementTree.Element
 

@@ -1,0 +1,1 @@
+"""Refusals of robots that cannot walk, and mistakes in the keys of descriptions."""

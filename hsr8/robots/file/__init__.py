@@ -1,0 +1,1 @@
+"""Files of robots: descriptions, where models are, and their readers."""

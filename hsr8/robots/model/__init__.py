@@ -1,0 +1,1 @@
+"""MuJoCo model of a robot: completed and brought into normal form."""

@@ -1,0 +1,1 @@
+"""Parts of a robot and their roles: legs, soles, head, arms, from its kinematic tree."""
