@@ -92,3 +92,11 @@ def test_damaged_compiled_code_is_noticed(monkeypatch):
     (finding,) = doctor.damaged_code()
     assert finding.state == "note"
     assert "2 damaged, a.compiled" in finding.text
+
+
+def test_a_checkout_that_is_installed_as_a_copy_is_reported(tmp_path):
+    here = Path(doctor.__file__).parents[2]
+    assert doctor.copied_checkout(here, here / "docs") == []
+    assert doctor.copied_checkout(here, tmp_path) == []
+    (finding,) = doctor.copied_checkout(tmp_path, here / "docs")
+    assert (finding.state, str(here) in finding.text) == ("note", True)
