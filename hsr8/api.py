@@ -1,6 +1,5 @@
 """Runs from Python, with an optional custom planner, gaze controller or walker."""
 
-import shlex
 from collections.abc import Mapping, Sequence
 from contextlib import ExitStack
 from pathlib import Path
@@ -8,6 +7,7 @@ from typing import Any, SupportsIndex
 
 from hsr8.errors import UsageError
 from hsr8.evaluation.recording import run_scenario
+from hsr8.files.shell import shell_line
 from hsr8.files.writing import require_temporary
 from hsr8.plugin_decisions import GazePlugin, PlannerPlugin
 from hsr8.plugin_walker import CustomWalker
@@ -67,7 +67,7 @@ def run(
         words = ["hsr8", "run", str(source), "--seed", str(loaded.seed)]
         words += ["--set", *as_words(settings)] if settings else []
         call = _call({"planner": planner, "gaze": gaze, "walker": walker})
-        command = call or tuple(map(shlex.quote, words))
+        command = call or (shell_line(words),)
         made = run_scenario(loaded, path, command, planner=planner, gaze=gaze, walker=walker)
         if log:
             from hsr8.rerun_log.run_log import write_log  # noqa: PLC0415  takes 0.2 s

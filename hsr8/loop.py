@@ -157,6 +157,7 @@ class Simulation:
         self._interrupted = True
 
     def __enter__(self) -> Self:
+        self._threads = cv2.getNumThreads()
         cv2.setNumThreads(1)  # threads slow down work on small images
         try:
             self._camera.open()
@@ -173,6 +174,7 @@ class Simulation:
             stopped = kind is None or issubclass(kind, KeyboardInterrupt)
             self.exit_reason = "interrupted" if stopped else "error"
         self._camera.close()
+        cv2.setNumThreads(self._threads)
 
     def run(self) -> RunOutcome:
         """Run to the end."""

@@ -13,8 +13,8 @@ from pathlib import Path
 from typing import Any
 
 from hsr8.errors import ModelError, UsageError
-from hsr8.robots.loaded import LoadedRobot
 from hsr8.robots.file.locate import MENAGERIE_WHEEL
+from hsr8.robots.loaded import LoadedRobot
 from hsr8.scenario.sensors import SensorNoise
 from hsr8.world.body.body import FALLEN_RATIO, FALLEN_TILT
 from hsr8.world.body.pushes import Pusher, ScheduledPush

@@ -1,6 +1,5 @@
 """``hsr8 bench``: the families of a suite with fixed seeds, one table and one JSON file."""
 
-import shlex
 from dataclasses import replace
 from pathlib import Path
 
@@ -22,6 +21,7 @@ from hsr8.evaluation.sweep.runs import Execution, run_sweeps
 from hsr8.evaluation.sweep.seeds import parse_seeds
 from hsr8.evaluation.sweep.summary import summarize
 from hsr8.files import atomic
+from hsr8.files.shell import shell_line
 
 DEFAULT = "default"  # name of an entry without settings
 
@@ -32,7 +32,7 @@ def main(options: Bench) -> int:
     suite = read_suite(file)
     seeds = "quick" if options.quick else "full"
     execution = Execution(
-        command=shlex.join(command_words(options)),
+        command=shell_line(command_words(options)),
         seeds=parse_seeds(suite.quick if options.quick else suite.full),
         workers=options.workers,
         timeout=options.timeout,
@@ -102,7 +102,7 @@ def _names(options: Bench, words: tuple[str, ...]) -> tuple[str, ...]:
 def _command(options: Bench) -> str:
     """Return the command line that repeats the entry anywhere."""
     here = replace(options, out=None, workers=None, timeout=None, keep=Bench.keep)
-    return shlex.join(command_words(here))
+    return shell_line(command_words(here))
 
 
 def _write(options: Bench, out: Path, entry: Entry) -> None:

@@ -1,6 +1,5 @@
 """``hsr8 check``: settings and world of a scenario, without running it."""
 
-import shlex
 from math import degrees
 from typing import Any
 
@@ -11,6 +10,7 @@ from hsr8.cli.command_line import command_words, option_tables, run_options, set
 from hsr8.cli.options import Check
 from hsr8.cli.output_file import require_file_name, writing
 from hsr8.files import atomic
+from hsr8.files.shell import shell_line
 from hsr8.plugin_file import inspect_plugins
 from hsr8.render.image import write_png
 from hsr8.render.plan_view import PlanView
@@ -48,7 +48,7 @@ def main(options: Check) -> int:
         console.print(tables.facts(summary))
         if obstacles:
             console.print(tables.rows(obstacles, "obstacles"))
-        print(f"run it      {shlex.join(command_words(run_options(options, scenario.seed)))}")
+        print(f"run it      {shell_line(command_words(run_options(options, scenario.seed)))}")
     return 0
 
 

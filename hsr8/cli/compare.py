@@ -1,12 +1,12 @@
 """``hsr8 compare`` and ``hsr8 bench compare``: two sides on their common seeds."""
 
-import shlex
-
 from hsr8.cli.options import BenchCompare, Compare
+from hsr8.errors import escaped_lines
 from hsr8.evaluation.bench.comparison import compare_entries
 from hsr8.evaluation.bench.entry import read_entry
 from hsr8.evaluation.comparison import compare, open_side, page, to_json
 from hsr8.files import atomic
+from hsr8.files.shell import shell_line
 
 
 def main(options: Compare | BenchCompare) -> int:
@@ -22,5 +22,5 @@ def main(options: Compare | BenchCompare) -> int:
     if options.json:
         print(atomic.dumps(to_json(comparison)))
     else:
-        print(page(comparison, shlex.join(words)), end="")
+        print(escaped_lines(page(comparison, shell_line(words))), end="")
     return 0

@@ -8,6 +8,7 @@ from rich.markup import escape
 from rich.table import Table
 
 from hsr8.cli.options import Diff
+from hsr8.errors import escaped
 from hsr8.evaluation import run_difference
 from hsr8.evaluation.run_difference import RunDifference
 from hsr8.files import atomic
@@ -27,7 +28,7 @@ def main(options: Diff) -> int:
         0 where every bit of the recorded motion is equal, else 1.
     """
     a, b = open_run(options.a), open_run(options.b)
-    motion = run_difference.motion(a, b)
+    motion = run_difference.first_differences(a, b)
     about = [*run_difference.settings(a, b), *run_difference.results(a, b)]
     if options.json:
         comparison = {
@@ -45,11 +46,12 @@ def main(options: Diff) -> int:
 
 def _show(a: Run, b: Run, motion: list[RunDifference], about: list[RunDifference]) -> None:
     console = Console(highlight=False, soft_wrap=True)
-    console.print(f"A           {a.folder}\nB           {b.folder}", markup=False)
+    for name, run in (("A", a), ("B", b)):
+        console.print(f"{name}           {escaped(str(run.folder))}", markup=False)
     if motion:
         d = motion[0]
         values = f"{_text(d.a)} and {_text(d.b)}"
-        where = f"at tick {d.tick} ({d.time:.3f} s), {d.channel}: {values}"
+        where = f"at tick {d.tick} ({d.time:.3f} s), {escaped(d.channel)}: {values}"
         console.print(f"differ      {where}", markup=False)
     else:
         console.print(f"equal       bit for bit ({', '.join(TABLES)})")
@@ -61,7 +63,7 @@ def _show(a: Run, b: Run, motion: list[RunDifference], about: list[RunDifference
     table.add_column("B")
     for d in (*motion, *about)[: len(motion) + MAX_ROWS]:
         time = "" if d.time is None else f"{d.time:.3f}"
-        table.add_row(d.record, time, escape(d.channel), _text(d.a), _text(d.b))
+        table.add_row(d.record, time, *map(escape, (escaped(d.channel), _text(d.a), _text(d.b))))
     console.print(table, soft_wrap=False)
     if len(about) > MAX_ROWS:
         console.print(f"and {len(about) - MAX_ROWS} more settings and results, see --json")
@@ -70,5 +72,5 @@ def _show(a: Run, b: Run, motion: list[RunDifference], about: list[RunDifference
 def _text(value: Any) -> str:
     if value is None:
         return "none"
-    text = repr(value) if isinstance(value, float) else str(value)
+    text = repr(value) if isinstance(value, float) else escaped(str(value))
     return text if len(text) <= MAX_VALUE_LENGTH else text[: MAX_VALUE_LENGTH - 1] + "…"

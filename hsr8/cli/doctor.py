@@ -58,6 +58,7 @@ def examine() -> list[Finding]:
     libraries = versions().items()
     return [
         Finding("hsr8", "ok", f"{VERSION}, {sys.prefix}"),
+        *copied_checkout(Path(__file__).parents[2], Path.cwd()),
         Finding("Python", "ok", f"{platform.python_version()}, {platform.platform()}"),
         *(Finding(name, "missing" if v == "missing" else "ok", v) for name, v in libraries),
         *opengl({backend: probe(backend) for backend in BACKENDS}),
@@ -67,6 +68,22 @@ def examine() -> list[Finding]:
         _disk(),
         _viewer(),
     ]
+
+
+def copied_checkout(installed: Path, folder: Path) -> list[Finding]:
+    """Return a finding where a folder is in a checkout, of which another copy is installed.
+
+    Args:
+        installed: parent of the package that runs.
+        folder: current folder.
+    """
+    for parent in (folder, *folder.parents):
+        if (parent / "hsr8" / "cli" / "doctor.py").is_file():
+            if parent.samefile(installed):
+                return []
+            text = f"runs from {installed}, changes in {parent} do nothing: pip install -e ."
+            return [Finding("checkout", "note", text)]
+    return []
 
 
 def probe(backend: str) -> str | None:
@@ -97,7 +114,7 @@ def opengl(renderers: dict[str, str | None]) -> list[Finding]:
         if renderer is None:
             state, text = "note", "does not draw here"
         elif is_software(renderer):
-            text += ": draws on the processor, enough for the head camera; videos take minutes"
+            text += ": draws on the processor; a video takes one to two times its length"
         findings.append(Finding(f"OpenGL {backend}", state, text))
     if not any(renderers.values()):
         remedy = f"nothing draws; as root: {APT_LINE}   (or run with --camera analytic)"

@@ -1,6 +1,6 @@
 """``hsr8 export``: runs and robots in the formats of other tools."""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from contextlib import ExitStack
 from pathlib import Path
 
@@ -13,6 +13,7 @@ from hsr8.export.lerobot import write_lerobot
 from hsr8.export.urdf import urdf_of
 from hsr8.files import atomic
 from hsr8.files.atomic import draft
+from hsr8.recorder.run.run import Run
 from hsr8.recorder.run.run_reader import open_run
 from hsr8.robots.loaded import load_robot
 
@@ -45,7 +46,7 @@ def main(options: Export) -> int:
             drafts.enter_context(writing(option, path))
             new = drafts.enter_context(draft(path))
             if option == "--urdf":
-                _write_urdf(path, new, options.robot or DEFAULT_ROBOT, drafts)
+                _write_urdf(path, new, options.robot or _robot_of(runs), drafts)
             elif option == "--bag":
                 write_bag(runs[0], new)
             elif option == "--csv":
@@ -58,6 +59,18 @@ def main(options: Export) -> int:
         for option, path in targets.items():
             print(f"{option.removeprefix('--'):<12}{path}")
     return 0
+
+
+def _robot_of(runs: Sequence[Run]) -> str:
+    """Return the robot of the runs, the default without runs.
+
+    Raises:
+        UsageError: the runs have several robots.
+    """
+    robots = sorted({run.scenario().robot.model for run in runs} or {DEFAULT_ROBOT})
+    if len(robots) > 1:
+        raise UsageError(f"--urdf: several robots, got runs of {', '.join(robots)}; expected one")
+    return robots[0]
 
 
 def _require_new(targets: Mapping[str, Path]) -> None:

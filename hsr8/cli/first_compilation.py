@@ -30,6 +30,7 @@ NOT_KEPT = (
     "NUMBA_CACHE_DIR=DIR keeps them"
 )
 CODE = "from hsr8.cli.first_compilation import see_and_decide; see_and_decide({source!r})"
+SCENARIOS = ("course", "paper")  # that call everything; beacons are obstacles in the second
 SECONDS = 3.0  # simulated time in which obstacles hide each other and are looked at [s]
 
 
@@ -85,7 +86,8 @@ def compile_all(*, quiet: bool) -> int:
         source = "analytic"
     with two_processes(source, quiet=quiet) as watch:
         settings = (f"camera.source={source}", f"duration={SECONDS}")
-        Simulation(load_scenario("course", settings), 0).run()
+        for scenario in SCENARIOS:
+            Simulation(load_scenario(scenario, settings), 0).run()
     return watch.count
 
 

@@ -6,7 +6,7 @@ from rich.console import Console
 
 from hsr8.cli import report, tables
 from hsr8.cli.options import Info
-from hsr8.errors import UsageError
+from hsr8.errors import UsageError, escaped
 from hsr8.files import atomic
 from hsr8.recorder.run.manifest import RUNNING, other_versions
 from hsr8.recorder.run.run import Run
@@ -45,21 +45,21 @@ def main(options: Info) -> int:
     console.print(tables.facts(made | others, str(run.folder)))
     if events:
         title = f"the last {MAX_EVENTS} of {len(events)} events"
-        lines = [
+        rows = [
             {"time_s": event["time"], "kind": event["kind"], "event": event["text"]}
             for event in events[-MAX_EVENTS:]
         ]
-        console.print(tables.rows(lines, title if len(events) > MAX_EVENTS else "events"))
-    sizes = ", ".join(f"{name} {size / 1e3:.1f} kB" for name, size in files.items())
-    console.print(f"files       {sizes}", soft_wrap=True, markup=False)
-    report.show(
-        "results",
-        results=results,
-        criteria=criteria,
-        path=run.folder,
-        command=str(manifest.get("command", "")),
-        console=console,
-    )
+        console.print(tables.rows(rows, title if len(events) > MAX_EVENTS else "events"))
+    sizes = ", ".join(f"{escaped(name)} {size / 1e3:.1f} kB" for name, size in files.items())
+    lines = [f"files       {sizes}"]
+    command = str(manifest.get("command", ""))
+    if command.isprintable():
+        lines.append(f"again       {command}")
+    if results:
+        report.show(run, criteria, console, everything=options.all)
+        lines += report.lines(run, criteria, run.folder)
+    for line in lines:
+        console.print(line, soft_wrap=True, markup=False)
     return 0
 
 

@@ -47,6 +47,13 @@ def _words(kind: type[object], separator: str) -> str:
 
 COMMANDS: dict[str, type[Command]] = {_words(kind, "-"): kind for kind in get_args(Command)}
 
+GROUPS: dict[str, tuple[str, ...]] = {
+    "Run": ("run", "sweep", "list", "check"),
+    "Inspect": ("info", "replay", "render", "plot", "export", "verify", "diff"),
+    "Compare": ("compare", "bench"),
+    "Robots": ("robot",),
+    "Setup": ("doctor", "schema", "color-table"),
+}
 ACTIONS = {
     "robot": [kind.__name__.removeprefix("Robot").lower() for kind in get_args(RobotAction)],
     "bench": ["compare"],
@@ -127,13 +134,23 @@ def parse(words: Sequence[str]) -> Command | BenchCompare | None:
         help_wanted = not {"-h", "--help"}.isdisjoint(rest)
         return _parse(COMMANDS[name], f"hsr8 {name}", [*action, "--help"] if help_wanted else rest)
     if name in ("-h", "--help"):
-        return _parse(Command, "hsr8", ["--help"], description=DESCRIPTION)
+        print(overview())
+        return None
     if name == "--tyro-print-completion":
         if tuple(rest) not in [(shell,) for shell in SHELLS]:
             raise UsageError(f"{name}: got {' '.join(rest)!r}; expected {', '.join(SHELLS)}")
         return _parse(Command, "hsr8", words)
     hint = suggestion(name, list(COMMANDS))
     raise UsageError(f"{name}: unknown command{hint} (commands: {', '.join(COMMANDS)})")
+
+
+def overview() -> str:
+    """Return the description of the program and its commands by group."""
+    lines = ["usage: hsr8 COMMAND ...", "", DESCRIPTION]
+    for group, names in GROUPS.items():
+        docs = [(name, str(COMMANDS[name].__doc__).partition("\n")[0]) for name in names]
+        lines += ["", group, *(f"  {name:<12}{doc}" for name, doc in docs)]
+    return "\n".join([*lines, "", "`hsr8 COMMAND --help` lists the options of a command."])
 
 
 def _action(name: str, words: Sequence[str]) -> list[str]:

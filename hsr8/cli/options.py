@@ -57,7 +57,7 @@ class Run(RunOptions):
 
     seed: Integer = None
     """Seed of world and noise; default: that of the scenario."""
-    out: Path = Path("runs")
+    out: Annotated[Path, arg(metavar="DIR")] = Path("runs")
     """Parent folder of run folders."""
     log: Flag = False
     """Also write the Rerun log at the end; `hsr8 replay` makes it otherwise."""
@@ -82,7 +82,7 @@ class Sweep(RunOptions):
 
     seeds: Annotated[str, arg(metavar="SEEDS")]
     """A:B for A to B-1, or a list: 1000:1200, 1,5,9, or 0:10,42."""
-    out: File = None
+    out: Annotated[File, arg(metavar="DIR")] = None
     """Folder of the sweep; default: sweeps/ and the scenario's name."""
     workers: Integer = None
     """Parallel runs; default: number of CPUs."""
@@ -133,7 +133,7 @@ class Bench:
     """Camera in place of the standard, analytic."""
     suite: File = None
     """Suite, a TOML file; default: the one shipped."""
-    out: File = None
+    out: Annotated[File, arg(metavar="DIR")] = None
     """Folder of the entry; default: bench/, the name of a custom suite, and that of the entry."""
     workers: Integer = None
     """Parallel runs; default: number of CPUs."""
@@ -189,6 +189,8 @@ class Info:
     """Show a run folder: results, events, versions, files."""
 
     run: RunPath
+    all: Flag = False
+    """All results; default: the first eight."""
     json: Json = False
 
 
@@ -215,10 +217,10 @@ class Render:
     fine: Flag = False
     """Smooth edges and sharper shadows, at twice the cost."""
     out: File = None
-    """Video (.mp4, .webp) or image (.png, at --start); default: run folder, video.mp4."""
-    start: float = 0.0
+    """Video (.mp4, .webp) or image (.png, at --from); default: run folder, video.mp4."""
+    start: Annotated[float, arg(name="from", metavar="S")] = 0.0
     """Simulated time at which the video begins [s]."""
-    stop: Seconds = None
+    stop: Annotated[Seconds, arg(name="to")] = None
     """Simulated time at which the video ends [s]."""
     speed: Number = None
     """Simulated seconds per second of video; default: a video of at most a minute."""
@@ -278,7 +280,7 @@ class Export:
     urdf: File = None
     """URDF file of the robot, with its meshes in a folder next to it."""
     robot: Text = None
-    """Robot of --urdf: a shipped name or the file of a description; default: hsr8."""
+    """Robot of --urdf: a shipped name or a description file; default: that of RUN, or hsr8."""
     json: Json = False
 
 

@@ -81,5 +81,5 @@ class Progress:
         return (
             f"{record.time:6.1f} / {self._duration:.1f} s   {rate:4.1f}x real time"
             f"   via points {self._via_points:3d}   collisions {self._collisions}"
-            f"   {record.walking.phase:<8}   {self._situation}"
+            f"   gait {record.walking.phase:<8}   planner {self._situation}"
         )

@@ -3,7 +3,6 @@
 import sys
 from collections.abc import Iterator, Sequence
 from contextlib import ExitStack, contextmanager
-from pathlib import Path
 
 from rich.console import Console
 
@@ -19,11 +18,11 @@ from hsr8.evaluation.signals import like_ctrl_c
 from hsr8.export.bag import require_rosbags, write_bag
 from hsr8.files import atomic
 from hsr8.files.atomic import draft
+from hsr8.files.shell import shell_word
 from hsr8.files.writing import require_temporary
 from hsr8.gl import require_gl
 from hsr8.recorder.run.run import Run as RecordedRun
 from hsr8.recorder.run.run_folder import VIDEO, new_run_folder
-from hsr8.recorder.run.run_reader import open_run
 from hsr8.recorder.run.verdict import exit_code
 from hsr8.render.viewer import LiveView, live_view
 from hsr8.scenario.schema import Scenario
@@ -66,8 +65,8 @@ def _start(options: Run, scenario: Scenario, command: Sequence[str]) -> int:
         if run.diverged:
             print(f"hsr8: {run.diverged}", file=sys.stderr)
         if not (options.json or options.quiet):
-            _show(run)
-        failures = _write_outputs(options, path)
+            print("\n".join(report.lines(run, run.criteria, run.folder.parent)))
+        failures = _write_outputs(options, run)
         if options.json:
             verdicts = {"criteria_met": run.criteria_met, "definitions": report.VERDICTS}
             failed = {"failed_outputs": [*map(str, failures)]}
@@ -82,39 +81,45 @@ def _start(options: Run, scenario: Scenario, command: Sequence[str]) -> int:
     return max([exit_code(run.exit_reason, run.criteria), *codes])
 
 
-def _write_outputs(options: Run, path: Path) -> list[Hsr8Error]:
+def _write_outputs(options: Run, run: RecordedRun) -> list[Hsr8Error]:
     """Write log, bag and video into a run folder; return the errors of those that are missing."""
     writers = (options.log, _write_log), (options.bag, _write_bag), (options.video, _write_video)
     failures = []
     for write in [write for wanted, write in writers if wanted]:
         try:
-            with crash_report(path):
-                write(path, options)
+            with crash_report(run.folder):
+                write(run, options)
         except Hsr8Error as error:
             failures.append(error)
     return failures
 
 
-def _write_log(path: Path, _: Run) -> None:
+def _write_log(run: RecordedRun, _: Run) -> None:
     # Imported late: runs without a log start 0.2 s earlier.
     from hsr8.rerun_log.run_log import write_log  # noqa: PLC0415
 
-    write_log(open_run(path))
+    write_log(run)
 
 
-def _write_bag(path: Path, _: Run) -> None:
-    with writing("--bag", path / BAG), draft(path / BAG) as folder:
-        write_bag(open_run(path), folder)
+def _write_bag(run: RecordedRun, _: Run) -> None:
+    with writing("--bag", run.folder / BAG), draft(run.folder / BAG) as folder:
+        write_bag(run, folder)
 
 
-def _write_video(path: Path, options: Run) -> None:
+def _write_video(run: RecordedRun, options: Run) -> None:
+    """Draw the video, unless the run was interrupted or has no motion."""
+    if run.exit_reason == "interrupted" or not run.metrics["sim_time_s"]:
+        command = f"hsr8 render {shell_word(str(run.folder))}"
+        time = run.metrics["sim_time_s"]
+        print(f"no video: {run.exit_reason} at {time:g} s; {command}", file=sys.stderr)
+        return
     # Imported late: runs without a video start 0.08 s earlier.
     from hsr8.cli.render import drawing  # noqa: PLC0415
     from hsr8.render.run_video import VideoOptions, render_run  # noqa: PLC0415
 
-    file, silent = path / VIDEO, options.quiet or options.json
+    file, silent = run.folder / VIDEO, options.quiet or options.json
     with writing("--video", file), drawing(Console(stderr=True, quiet=silent)) as show:
-        render_run(open_run(path), VideoOptions(), file, show)
+        render_run(run, VideoOptions(), file, show)
     if not silent:
         print(f"video       {file}")
 
@@ -129,14 +134,3 @@ def _view(options: Run) -> Iterator[LiveView | None]:
         if view.page:
             print(f"open in a browser on this machine:  {view.page}", file=sys.stderr)
         yield view
-
-
-def _show(run: RecordedRun) -> None:
-    """Print the results."""
-    report.show(
-        f"{run.manifest['scenario']}, seed {run.seed}",
-        results=run.metrics,
-        criteria=run.criteria,
-        path=run.folder,
-        command=run.manifest["command"],
-    )

@@ -1,6 +1,5 @@
 """``hsr8 replay``: the log of a run in the Rerun viewer."""
 
-import shlex
 import sys
 from pathlib import Path
 
@@ -9,6 +8,7 @@ from hsr8.cli.output_file import parse_size, require_file_name, writing
 from hsr8.errors import UsageError
 from hsr8.evaluation.signals import like_ctrl_c
 from hsr8.files import atomic
+from hsr8.files.shell import shell_word
 from hsr8.recorder.run.manifest import versions
 from hsr8.recorder.run.run import Run
 from hsr8.recorder.run.run_reader import open_run
@@ -40,7 +40,7 @@ def main(options: Replay) -> int:
             view.wait()
         return 0
     if not viewer.has_display():
-        run_word, log_word = shlex.quote(str(run.folder)), shlex.quote(str(log))
+        run_word, log_word = shell_word(str(run.folder)), shell_word(str(log))
         version = versions()["rerun-sdk"]
         raise UsageError(
             "no display for the viewer"

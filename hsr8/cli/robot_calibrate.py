@@ -1,7 +1,6 @@
 """``hsr8 robot calibrate``: properties of a robot, measured in simulation."""
 
 import os
-import shlex
 import sys
 from dataclasses import asdict
 from datetime import UTC, datetime
@@ -14,6 +13,7 @@ from hsr8.cli.options import RobotCalibrate
 from hsr8.cli.output_file import require_file_name, require_new, writing
 from hsr8.errors import UsageError
 from hsr8.files import atomic
+from hsr8.files.shell import shell_line
 from hsr8.robots.file.description import Calibration, read_description
 from hsr8.robots.file.description_file import moved, with_calibration
 from hsr8.robots.file.locate import find_description
@@ -51,7 +51,7 @@ def main(options: RobotCalibrate) -> int:
         {
             "date": datetime.now(UTC).date().isoformat(),
             "version": VERSION,
-            "command": shlex.join(["hsr8", "robot", "calibrate", options.robot]),
+            "command": shell_line(["hsr8", "robot", "calibrate", options.robot]),
             **asdict(measured),
         }
     )

@@ -1,6 +1,5 @@
 """``hsr8 robot inspect``: guessed roles of a robot's parts, and the robot that results."""
 
-import shlex
 from dataclasses import asdict
 
 from rich.console import Console
@@ -10,6 +9,7 @@ from hsr8.cli.options import RobotInspect
 from hsr8.cli.output_file import require_file_name, require_new, writing
 from hsr8.errors import ModelError, UsageError
 from hsr8.files import atomic
+from hsr8.files.shell import shell_line
 from hsr8.render.image import write_png
 from hsr8.render.portrait import portrait
 from hsr8.robots.inspection import Inspection, description_text, facts, inspect, load_inspected
@@ -33,7 +33,7 @@ def main(options: RobotInspect) -> int:
     _show(options, inspection, robot, refusal)
     if options.write is not None and inspection.description is not None:
         words = ["hsr8", "robot", "inspect", options.file]
-        text = description_text(inspection, options.write, shlex.join(words))
+        text = description_text(inspection, options.write, shell_line(words))
         with writing("--write", options.write):
             atomic.write_text(options.write, text)
         if not options.json:
@@ -50,7 +50,7 @@ def main(options: RobotInspect) -> int:
         words = ["hsr8", "robot", "inspect", options.file, "--write", "robot.toml"]
         if inspection.stated or options.write is not None:
             words = ["hsr8", "robot", "check", str(options.write or options.file)]
-        print(f"next        {shlex.join(words)}")
+        print(f"next        {shell_line(words)}")
     return 0
 
 

@@ -1,11 +1,11 @@
 """``hsr8 run``: checks before anything heavy is imported."""
 
-import shlex
 import sys
 from dataclasses import replace
 
 from hsr8.cli.command_line import command_words, option_tables, settings
 from hsr8.cli.options import Run
+from hsr8.files.shell import shell_line
 from hsr8.plugin_file import inspect_plugins
 from hsr8.robots.file.description import read_description
 from hsr8.robots.file.locate import find_description
@@ -44,4 +44,4 @@ def main(options: Run) -> int:
     from hsr8.cli.recorded_run import start  # noqa: PLC0415  takes seconds
 
     repeated = replace(options, seed=scenario.seed, view=None)
-    return start(options, scenario, tuple(map(shlex.quote, command_words(repeated))))
+    return start(options, scenario, (shell_line(command_words(repeated)),))

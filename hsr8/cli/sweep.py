@@ -3,7 +3,6 @@
 import hashlib
 import itertools
 import re
-import shlex
 import sys
 from collections.abc import Iterable, Sequence
 from dataclasses import asdict
@@ -22,6 +21,7 @@ from hsr8.evaluation.sweep.runs import Execution, run_sweeps
 from hsr8.evaluation.sweep.seeds import parse_seeds, parse_values
 from hsr8.evaluation.sweep.summary import Summary, summarize
 from hsr8.files import atomic
+from hsr8.files.shell import shell_line
 from hsr8.scenario.loader import load_scenario
 from hsr8.scenario.schema import Scenario
 
@@ -32,7 +32,7 @@ INTERRUPTED = 130
 def main(options: Sweep) -> int:
     """Run the seeds without a result, write the results and report them."""
     execution = Execution(
-        command=shlex.join(command_words(options)),
+        command=shell_line(command_words(options)),
         seeds=parse_seeds(options.seeds),
         workers=options.workers,
         executor=options.executor,

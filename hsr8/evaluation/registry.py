@@ -147,7 +147,7 @@ SECTIONS = {
         ),
         Metric(
             "first_collision_s",
-            "time of the first collision, as a start for `--start` of `hsr8 render`",
+            "time of the first collision, as a value for `--from` of `hsr8 render`",
             RUN,
         ),
         Metric("collisions_moving", "collisions with movers", RUN | COUNT, "with moving obstacles"),
@@ -274,12 +274,16 @@ SECTIONS = {
             "mean_velocity",
             "`vx`, `vy` [m/s] and `wz` [rad/s], over whole strides after 3 s",
             RUN,
+            "mean velocity",
+            "m/s, m/s, rad/s",
         ),
         Metric(
             "velocity_error",
             "mean error of the velocity with respect to the `commanded` and to the `applied` "
             "velocity, which satisfies all limits",
             RUN,
+            "velocity error",
+            "m/s, m/s, rad/s",
         ),
         Metric("velocity_error_rms", "RMS of these errors"),
         Metric("walk_ticks", "control ticks of 5 ms on the feet, the basis of the next four"),

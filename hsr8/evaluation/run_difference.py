@@ -52,19 +52,19 @@ def results(a: Run, b: Run) -> Iterator[RunDifference]:
             yield RunDifference("results", key, x, y)
 
 
-def motion(a: Run, b: Run) -> list[RunDifference]:
+def first_differences(a: Run, b: Run) -> list[RunDifference]:
     """Return the first difference of every table, the earliest first.
 
-    Recorded images are compared only if both runs have the same log level.
+    Recorded images are compared only if both runs keep the same images.
 
     Raises:
         UsageError: a table is damaged or, in a run that ended, cut off.
     """
-    same_log = a.manifest.get("log") == b.manifest.get("log")
+    kept = [_scenario(run).get("recorder") for run in (a, b)]
     differences = [
         difference
         for name in TABLES
-        if (name != "images" or same_log)
+        if (name != "images" or kept[0] == kept[1])
         and (difference := _first(name, getattr(a, name), getattr(b, name)))
     ]
     return sorted(differences, key=lambda difference: difference.tick or 0)

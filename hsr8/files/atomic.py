@@ -113,10 +113,13 @@ def no_link(path: str, flags: int) -> int:
 def dumps(value: Any, indent: int | None = None) -> str:
     """Return standard JSON: numbers that are not finite become null.
 
-    Bytes of a file name that are not valid UTF-8 become escapes, which JSON decodes again.
+    Characters that a terminal does not print, and bytes of a file name that are not valid UTF-8,
+    become escapes, which JSON decodes again.
     """
     text = json.dumps(_finite(value), indent=indent, allow_nan=False, ensure_ascii=False)
-    return text.encode("utf-8", errors="backslashreplace").decode("utf-8")
+    if not text.isprintable():  # only in texts: the rest is ASCII
+        text = "".join(c if c.isprintable() or c == "\n" else json.dumps(c)[1:-1] for c in text)
+    return text
 
 
 def _finite(value: Any) -> Any:

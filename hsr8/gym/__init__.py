@@ -12,7 +12,7 @@ see ``docs/gym.md``.
 try:
     import gymnasium
 except ImportError as error:
-    raise ImportError(f"hsr8.gym: {error}; pip install '.[gym]' in the checkout") from error
+    raise ImportError(f"hsr8.gym: {error}; pip install -e '.[gym]' in the checkout") from error
 
 from hsr8.gym.environment import Environment
 from hsr8.gym.policy import as_gaze, as_planner

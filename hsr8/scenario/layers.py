@@ -24,6 +24,7 @@ from hsr8.suggestion import suggestion
 
 BUILT_IN = FilePath(__file__).resolve().parents[1] / "scenarios"
 MAX_EXTENDED = 16  # files that extend each other
+MAX_SHOWN = 60  # characters of a setting in a message
 ROBOT_SUFFIX = ".toml"  # of the file of a robot, which no name has
 
 Table = dict[str, Any]
@@ -218,6 +219,12 @@ def _parent(name: object, source: str, folder: FilePath, files: tuple[FilePath, 
     return parent
 
 
+def source_of(flag: str, override: str) -> str:
+    """Return an option and its value, shortened, as the place of a mistake."""
+    short = override if len(override) <= MAX_SHOWN else f"{override[:MAX_SHOWN]}..."
+    return f"{flag} {short}"
+
+
 def parsed_override(override: str, data: Table, flag: str) -> Table:
     """Return the nested table of ``a.b=value``; lists are copied with one entry changed.
 
@@ -229,7 +236,7 @@ def parsed_override(override: str, data: Table, flag: str) -> Table:
     Raises:
         ScenarioError: it is not of that form, or an index is outside its list.
     """
-    source = f"{flag} {override}"
+    source = source_of(flag, override)
     key, equals, text = override.partition("=")
     parts = key.strip().split(".")
     if not equals or not all(parts):

@@ -25,6 +25,7 @@ from hsr8.scenario.layers import (
     layered,
     parsed_override,
     read_layers,
+    source_of,
 )
 from hsr8.scenario.plugin import KINDS
 from hsr8.scenario.reference import FILE_KEYS
@@ -163,7 +164,7 @@ def _draft(name: str, layers: Sequence[Layer], words: Sequence[tuple[str, str]])
     Raises:
         ScenarioError: an override is wrong, or the robot is.
     """
-    given = [Layer(parsed_override(word, {}, flag), f"{flag} {word}") for flag, word in words]
+    given = [Layer(parsed_override(word, {}, flag), source_of(flag, word)) for flag, word in words]
     given = [*layers, *given]
     model, draft = _robot_of(given), _Draft()
     built_in = [layer for layer in layers if layer.built_in]  # they extend built-in ones only
@@ -176,7 +177,7 @@ def _draft(name: str, layers: Sequence[Layer], words: Sequence[tuple[str, str]])
     for layer in layers[len(built_in) :]:
         draft.add(layer)
     for flag, word in words:
-        draft.add(Layer(parsed_override(word, draft.data, flag), f"{flag} {word}"))
+        draft.add(Layer(parsed_override(word, draft.data, flag), source_of(flag, word)))
     if not (built_in or model == DEFAULT_ROBOT or draft.misplaced_keys() or draft.complete):
         defaults = _defaults(model, name, given)
     draft.data, draft.scale = under(draft.data, placed(defaults.table)), defaults.scale

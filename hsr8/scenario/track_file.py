@@ -193,7 +193,7 @@ def _fields(line: int, row: list[str], order: list[int], separator: str) -> tupl
     for column, number in zip(COLUMNS, numbers, strict=False):
         limit = MAX_TIME if column == "t" else MAX_COORDINATE
         try:
-            valid = abs(float(number)) <= limit
+            valid = "_" not in number and abs(float(number)) <= limit
         except ValueError:
             valid = False
         if not valid:

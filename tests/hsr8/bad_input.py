@@ -1,7 +1,6 @@
 """Random bad input: values of scenarios, and damaged files."""
 
 import random
-import re
 from typing import Any
 
 from hsr8.scenario.reference import json_schema, resolve
@@ -128,21 +127,3 @@ def written(given: Any) -> str:
     if isinstance(given, dict):
         return "{" + ", ".join(f"{key} = {written(inner)}" for key, inner in given.items()) + "}"
     return repr(given) if not isinstance(given, str) else f'"{given}"'
-
-
-def model_changed(rng: random.Random, text: str) -> str:
-    """Return an MJCF file cut, garbled, or with another line, number or name."""
-    kind = rng.randrange(5)
-    if kind == 0:
-        return text[: rng.randrange(len(text))]
-    if kind == 1:
-        return mutated(rng, text.encode()).decode("utf-8", errors="replace")
-    if kind == 2:
-        lines = text.splitlines(keepends=True)
-        k = rng.randrange(len(lines))
-        lines[k : k + 1] = rng.choice(([], [rng.choice(lines), lines[k]]))
-        return "".join(lines)
-    pattern = r'(?<=[" ])-?\d+\.?\d*(?=[" ])' if kind == 3 else r'(?<=name=")[^"]+(?=")'
-    old = rng.choice(list(re.finditer(pattern, text)))
-    other = rng.choice(("nan", "inf", "-1", "0", "1e300", "1e-300", "x")) if kind == 3 else "other"
-    return text[: old.start()] + other + text[old.end() :]

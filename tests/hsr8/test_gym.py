@@ -7,6 +7,7 @@ import gymnasium
 import numpy as np
 import pytest
 from gymnasium.utils.env_checker import check_env, data_equivalence
+from numba.core import event
 
 import hsr8
 from hsr8.errors import ScenarioError, UsageError
@@ -31,6 +32,16 @@ def make():
     yield environment
     for env in made:
         env.close()
+
+
+def test_an_environment_that_is_not_closed_leaves_no_listener_of_compilations():
+    def listeners():
+        return sum(map(len, event._registered.values()))
+
+    gymnasium.make("hsr8.gym:hsr8/Gaze-v0", scenario="quick", settings=FAST).reset(seed=4)
+    before = listeners()
+    gymnasium.make("hsr8.gym:hsr8/Gaze-v0", scenario="quick", settings=FAST).reset(seed=4)
+    assert listeners() == before
 
 
 def play(env, policy, seed=4):

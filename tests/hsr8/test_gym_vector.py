@@ -20,7 +20,7 @@ def test_without_gymnasium_the_extra_is_named(monkeypatch):
     for name in [name for name in sys.modules if name.startswith("hsr8.gym")]:
         monkeypatch.delitem(sys.modules, name)
     monkeypatch.setitem(sys.modules, "gymnasium", None)
-    with pytest.raises(ImportError, match=r"hsr8\.gym: .*gymnasium.*; pip install '\.\[gym\]'"):
+    with pytest.raises(ImportError, match=r"hsr8\.gym: .*gymnasium.*; pip install -e '\.\[gym\]'"):
         importlib.import_module("hsr8.gym")
 
 

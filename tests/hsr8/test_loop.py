@@ -1,5 +1,6 @@
 from dataclasses import replace
 
+import cv2
 import numpy as np
 import pytest
 
@@ -63,6 +64,14 @@ def test_a_run_left_early_has_an_exit_reason(monkeypatch):
     with pytest.raises(RenderingUnavailable):
         simulation.run()
     assert simulation.exit_reason == "error"
+
+
+def test_the_threads_of_opencv_are_as_before():
+    before = cv2.getNumThreads()
+    cv2.setNumThreads(3)
+    Simulation(quick(0.05), 4).run()
+    assert cv2.getNumThreads() == 3
+    cv2.setNumThreads(before)
 
 
 def test_steps_outside_a_run_are_an_error():

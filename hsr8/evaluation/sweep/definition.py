@@ -3,7 +3,6 @@
 import hashlib
 import json
 import platform
-import shlex
 import tomllib
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -11,6 +10,7 @@ from typing import Any
 
 from hsr8.errors import ScenarioError
 from hsr8.evaluation.tables import flatten
+from hsr8.files.shell import shell_line
 from hsr8.recorder.run.code_digest import code_digest
 from hsr8.recorder.run.manifest import versions_of
 from hsr8.scenario.layers import Table
@@ -65,7 +65,7 @@ class Definition:
 
     def command(self, seed: int) -> str:
         """Return the command line that repeats the run of `seed`."""
-        return shlex.join([*self.command_words, "--seed", str(seed)])
+        return shell_line([*self.command_words, "--seed", str(seed)])
 
     @classmethod
     def from_json(cls, value: Mapping[str, Any]) -> "Definition":

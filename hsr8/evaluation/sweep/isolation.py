@@ -76,7 +76,7 @@ def start_server() -> None:
     """
     forkserver.set_forkserver_preload(PRELOAD)
     with _ignored_ctrl_c(), _environment():
-        # A worker of Dask is a daemon, which may have no children because nobody would end them;
+        # A worker of Dask is a daemon, which may not have children because they could outlive it;
         # these end with their parent.
         multiprocessing.current_process()._config["daemon"] = False  # type: ignore[attr-defined]
         forkserver.ensure_running()

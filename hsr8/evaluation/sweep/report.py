@@ -8,6 +8,7 @@ from hsr8.evaluation.sweep.definition import Definition
 from hsr8.evaluation.sweep.job import REFUSED, RunResult
 from hsr8.evaluation.sweep.summary import COUNTS, QUANTITIES, Summary, summarize, worst_first
 from hsr8.evaluation.tables import table
+from hsr8.recorder.run.verdict import reason_of
 
 MAX_LISTED = 20  # runs listed with their command line
 MAX_TABLE = 200  # runs in the table of the page
@@ -100,18 +101,9 @@ def problem(result: RunResult) -> str:
     """Return the problem of a run in a few words; empty for a good one."""
     if result["outcome"] not in ("passed", "failed"):
         return f"{result['outcome']}: {_one_line(result.get('error'))}"
-    words = [
-        f"{result[key]} {noun if result[key] == 1 else noun + 's'}"
-        for key, noun in (("falls", "fall"), ("collisions", "collision"))
-        if result.get(key)
-    ]
-    if not result.get("success") and not words:
-        words.append(str(result.get("exit_reason")))
-    if result.get("via_points_missed"):
-        words.append(f"{result['via_points_missed']} via points missed")
-    if result["outcome"] == "failed" and not words:
-        words.append("criteria not met")
-    return ", ".join(words)
+    if not result.get("success"):
+        return reason_of(result)
+    return "criteria not met" if result["outcome"] == "failed" else ""
 
 
 def _seeds(results: Sequence[RunResult]) -> str:

@@ -63,3 +63,29 @@ def exit_code(exit_reason: str, criteria: Sequence[Criterion]) -> int:
 
 def _at_most(name: str, bound: int, actual: int) -> Criterion:
     return Criterion(name, f"<= {bound}", str(actual), actual <= bound)
+
+
+def reason_of(results: Mapping[str, Any]) -> str:
+    """Return the reason why a run has no success, such as ``1 collision at 12.3 s, static``."""
+    reasons = []
+    if results.get("falls"):
+        reasons.append(counted(results["falls"], "fall"))
+    if results.get("collisions"):
+        kinds = [kind for kind in ("static", "moving") if results.get(f"collisions_{kind}")]
+        first, at = results.get("first_collision_s"), ""
+        if first is not None:
+            at = f" at {first:.1f} s" if results["collisions"] == 1 else f", first at {first:.1f} s"
+        reasons.append(", ".join([counted(results["collisions"], "collision") + at, *kinds]))
+    if results.get("via_points_missed"):
+        reasons.append(f"{counted(results['via_points_missed'], 'via point')} missed")
+    reason = str(results.get("exit_reason"))
+    if reason == "goal" and results.get("goal_reached") is False:
+        reasons.append("the robot stopped away from the goal")
+    if reason not in ("goal", "completed", "fall"):
+        reasons.append(f"{reason} at {results.get('sim_time_s', 0.0):.1f} s")
+    return "; ".join(reasons) or reason
+
+
+def counted(count: int, noun: str) -> str:
+    """Return a number with its noun in the singular or plural."""
+    return f"{count} {noun}{'' if count == 1 else 's'}"

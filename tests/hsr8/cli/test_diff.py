@@ -35,6 +35,16 @@ def test_a_run_does_not_differ_from_its_copy(recorded, tmp_path, capsys):
     assert "bit for bit" in capsys.readouterr().out
 
 
+@pytest.mark.gl
+def test_runs_that_keep_other_images_are_equal(tmp_path, capsys):
+    words = ["run", "quick", "--body", "kinematic", "--duration", "0.3", "--quiet", "--out"]
+    for kept in ("none", "full"):
+        entry([*words, str(tmp_path / kept), "--set", f"recorder.images={kept}"])
+    code, result = diff(capsys, tmp_path / "none", tmp_path / "full")
+    assert (code, result["equal"]) == (0, True)
+    assert {d["record"] for d in result["differences"]} == {"settings"}
+
+
 def test_the_first_difference_is_where_the_setting_acts(recorded, capsys):
     code, result = diff(capsys, *recorded)
     assert code == 1

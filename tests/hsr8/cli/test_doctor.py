@@ -83,3 +83,11 @@ def test_the_speed_of_a_run_is_expected_from_a_physics_step(monkeypatch, capsys)
     step, expected = map(float, re.findall(r"([\d.]+) (?:us|times)", findings["speed"]["text"]))
     assert 2.0 < step < 2000.0
     assert expected == pytest.approx(yardstick.COURSE / step, rel=0.1)
+
+
+def test_a_checkout_that_is_installed_as_a_copy_is_reported(tmp_path):
+    here = Path(doctor.__file__).parents[2]
+    assert doctor.copied_checkout(here, here / "docs") == []
+    assert doctor.copied_checkout(here, tmp_path) == []
+    (finding,) = doctor.copied_checkout(tmp_path, here / "docs")
+    assert (finding.state, str(here) in finding.text) == ("note", True)

@@ -63,6 +63,7 @@ def test_a_run_compiles_nothing_afterwards(capsys):
     compile_all(quiet=True)
     with CompilationWatch() as watch:
         hsr8.run("quick", settings={"duration": 2.0})
+        hsr8.run("paper", settings={"duration": 2.0})
     assert watch.count == 0
 
 

@@ -1,17 +1,23 @@
 """Outputs of commands: complete or absent, never through a link, checked before the work."""
 
 import json
+import os
+import shutil
+import signal
 
 import psutil
 import pytest
+from hsr8.robots.locate import find_description
 
 from hsr8.api import run as api_run
 from hsr8.cli.main import entry
 from hsr8.errors import RenderingUnavailable
+from hsr8.loop import Simulation
 from hsr8.recorder.run import run_folder
 from hsr8.recorder.run.run_folder import RunFolder
 from hsr8.recorder.run.run_reader import open_run
 from hsr8.rerun_log.run_log import RunLog, write_log
+from hsr8.robots.loaded import load_robot
 
 FAST = ("--body", "kinematic", "--camera", "analytic")
 
@@ -164,8 +170,43 @@ def test_a_failed_bag_follows_the_results(tmp_path, monkeypatch, capsys):
     assert failure in printed.err
     assert entry(words) == 2
     printed = capsys.readouterr()
-    assert "exit reason" in printed.out
+    assert "timeout at 0.5 s" in printed.out
     assert "bag: cannot be written: No space left on device" in printed.err
+
+
+@pytest.mark.gl
+@pytest.mark.parametrize("interrupted", [False, True])
+def test_a_run_without_motion_or_an_end_has_no_video(tmp_path, monkeypatch, capsys, interrupted):
+    step = Simulation.step
+
+    def stopping(self):
+        if interrupted and self.tick == 40:
+            os.kill(os.getpid(), signal.SIGTERM)
+        return step(self)
+
+    monkeypatch.setattr(Simulation, "step", stopping)
+    duration = "1.0" if interrupted else "0.005"
+    words = ["run", "quick", *FAST, "--duration", duration, "--video", "--out", str(tmp_path)]
+    assert entry(words) == (130 if interrupted else 1)
+    run = open_run(tmp_path)
+    assert f"; hsr8 render {run.path}\n" in capsys.readouterr().err
+    assert not (run.path / run_folder.VIDEO).exists()
+
+
+@pytest.mark.parametrize("given", [[], ["--robot", "hsr8"]])
+def test_the_urdf_of_an_export_is_that_of_the_robot_of_the_run(tmp_path, monkeypatch, given):
+    shutil.copy(find_description("hsr8"), tmp_path / "mine.toml")
+    words = ["run", "quick", *FAST, "--duration", "0.2", "--quiet", "--out", str(tmp_path)]
+    entry([*words, "--robot", str(tmp_path / "mine.toml")])
+    loaded = []
+
+    def load(name):
+        loaded.append(name)
+        return load_robot(name)
+
+    monkeypatch.setattr("hsr8.cli.export.load_robot", load)
+    assert entry(["export", str(tmp_path), "--urdf", str(tmp_path / "a.urdf"), *given]) == 0
+    assert loaded == ["hsr8" if given else str(tmp_path / "mine.toml")]
 
 
 @pytest.mark.gl

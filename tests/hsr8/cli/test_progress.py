@@ -38,7 +38,7 @@ def test_a_lost_robot_is_called_lost(fake):
     progress = Progress(30.0, io.StringIO())
     record = fake.record(2.0, frame=fake.frame(2.0, lost=True))
     progress.show(tick(record))
-    assert progress.line(record).endswith("lost")
+    assert progress.line(record).endswith("planner lost")
 
 
 def test_a_terminal_gets_a_live_line_that_is_erased(fake, monkeypatch):

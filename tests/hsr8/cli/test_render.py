@@ -40,7 +40,7 @@ def test_a_run_with_a_video_draws_what_render_draws(tmp_path, capsys):
 
 def test_a_start_after_the_end_of_the_run_is_refused(run, capsys, monkeypatch):
     monkeypatch.setattr("hsr8.cli.render.require_gl", lambda: "llvmpipe")
-    assert entry(["render", str(run), "--start", "7", "--quiet"]) == 2
+    assert entry(["render", str(run), "--from", "7", "--quiet"]) == 2
     assert "ended at 0.5 s" in capsys.readouterr().err
 
 

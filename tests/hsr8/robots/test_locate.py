@@ -167,7 +167,7 @@ def test_a_missing_model_is_refused_with_every_remedy(tmp_path):
         "MENAGERIE: not set",
         "pip install envpool-assets",
         "pip install icub-models",
-        "pip install '.[robots]'",
+        "pip install -e '.[robots]'",
     ):
         assert part in message
 

@@ -76,6 +76,7 @@ def test_other_columns_their_order_and_line_ends_do_not_matter():
         (ROWS + "0.8,1.0\n", "line 4: a column is missing, got 2 values"),
         (ROWS + "0.8,nan,0.0,a\n", "line 4: x is not valid, got 'nan'; expected metres"),
         (ROWS + "0.8,0.0,inf,a\n", "line 4: y is not valid, got 'inf'"),
+        (ROWS + "0.8,0.0,3_0,a\n", "line 4: y is not valid, got '3_0'"),
         (ROWS + "later,0.0,0.0,a\n", "line 4: t is not valid, got 'later'; expected seconds"),
         (ROWS + "0.8,0.0,0.0,\n", "line 4: id is not valid, got ''; expected 1 to 32 letters"),
         (ROWS + "0.8,0.0,0.0,a'''b\n", "line 4: id is not valid"),

@@ -40,8 +40,8 @@ def test_an_empty_sweep_has_a_page(definition):
 
 def test_problems_in_words(result):
     assert problem(result(1)) == ""
-    assert problem(result(1, collisions=2, falls=1, success=False)) == "1 fall, 2 collisions"
-    assert problem(result(1, success=False, exit_reason="timeout")) == "timeout"
+    assert problem(result(1, collisions=2, falls=1, success=False)) == "1 fall; 2 collisions"
+    assert problem(result(1, success=False, exit_reason="timeout")) == "timeout at 0.0 s"
     assert problem(result(1, outcome="failed")) == "criteria not met"
     assert problem({"outcome": "crashed", "error": "killed by SIGKILL: \nmore"}).startswith(
         "crashed: killed by SIGKILL"

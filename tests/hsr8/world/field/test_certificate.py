@@ -126,6 +126,14 @@ def test_a_robot_that_turns_slower_needs_longer():
     assert slow.time - usual.time > 0.5 * (0.5 * pi) * (1.0 / 0.2 - 1.0 / 0.8)
 
 
+@pytest.mark.parametrize("first", [(0.0, 0.0), (0.03, 0.02), (0.0, -0.05)])
+def test_a_point_at_the_start_is_reached_at_once(first):
+    start = layout().start
+    near = (start[0] + first[0], start[1] + first[1])
+    assert certify(layout(waypoints=(near,)), ROBOT).solvable
+    assert certify(layout(waypoints=(near, (start[0] + 0.5, start[1]))), ROBOT).solvable
+
+
 DIVIDED = [  # a wall divides the field: points on the far side cannot be reached
     "world.wall=[{start=[0.0, -1.85], end=[0.0, 1.85]}]",
     "world.n_moving=0",
