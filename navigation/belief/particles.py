@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from compilation import compiled
-from navigation.belief.imm import SIZE
+from navigation.belief.mode_filter import SIZE
 from navigation.belief.tracks import TURN_RATE, VX, VY, WEIGHT, X, Y
 from navigation.parameters.belief import TrackingParameters
 

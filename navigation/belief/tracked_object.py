@@ -7,6 +7,7 @@ from compilation import compiled
 from compilation.record import record_type
 from navigation.belief import imm, particles
 from navigation.belief.detections import given_radius, variance_inflation
+from navigation.belief.mode_filter import SIZE
 from navigation.belief.tracks import MOVING, STATIC, TRACK, UNKNOWN, deviation, measure
 
 Array = NDArray[np.float64]
@@ -16,8 +17,8 @@ OBJECT = record_type(
     id=int,
     label=int,  # index in the labels of the tracker
     weights=(float, 3),
-    states=(float, 3, imm.SIZE),
-    covariances=(float, 3, imm.SIZE, imm.SIZE),
+    states=(float, 3, SIZE),
+    covariances=(float, 3, SIZE, SIZE),
     best=(float, 2, 2),
     radius=float,
     radius_sigma=float,

@@ -7,7 +7,7 @@ import signal
 
 import psutil
 import pytest
-from hsr8.robots.locate import find_description
+from hsr8.robots.file.locate import find_description
 
 from hsr8.api import run as api_run
 from hsr8.cli.main import entry
