@@ -1,0 +1,416 @@
+"""Draw the pictures of the manual from a run of `crowd`.
+
+    python scripts/manual_pictures.py             # all, into docs/images
+    python scripts/manual_pictures.py gaze belief
+
+The body is kinematic and the camera rendered, so a picture shows images, detections and belief as
+the robot has them. `footsteps` is a walk in full physics.
+"""
+
+import argparse
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from dataclasses import dataclass
+from functools import cache
+from math import degrees
+from pathlib import Path
+from unittest.mock import patch
+
+from hsr8.decisions import FrameRecord
+from hsr8.loop import Simulation
+from hsr8.record import TickRecord
+from hsr8.recorder.palette import of_label
+from hsr8.render.walk_panels import BLUE, GREEN, INK, ORANGE, PURPLE
+from hsr8.robots.loaded import load_robot
+from hsr8.scenario.loader import load_scenario
+from hsr8.world.field.layout import Layout
+from navigation.motion import rollout
+from navigation.motion.safety_filter import RolloutStart, SafetyFilter
+from vision.detection import Detection
+
+import numpy as np
+from figure_style import (
+    GOAL,
+    MOVER,
+    ROBOT,
+    STILL,
+    VIEW,
+    covariance,
+    disc,
+    figure,
+    placed,
+    robot,
+    square,
+    styled,
+)
+from matplotlib import colormaps
+from matplotlib.axes import Axes
+from matplotlib.collections import LineCollection
+from matplotlib.figure import Figure
+from matplotlib.patches import Polygon, Rectangle
+from numpy.typing import NDArray
+
+Array = NDArray[np.float64]
+
+IMAGES = Path(__file__).parents[1] / "docs/images"
+SEED, DURATION = 3, 40.0
+WALK = ("command.vx=0.2", "command.wz=0.3", "duration=5.0", "recorder.period_ms=5")
+AROUND = 1.3  # half side of a map [m]
+
+
+@dataclass(frozen=True)
+class Veto:
+    """A decision of the safety filter.
+
+    Attributes:
+        start: start of the rollout.
+        desired: desired velocity in W (2,) [m/s].
+        discs: collision hypotheses.
+        paths: positions of every candidate after each footstep (n, steps + 1, 2) [m].
+        loss: loss of every candidate (n,) [s].
+    """
+
+    start: RolloutStart
+    desired: Array
+    discs: NDArray[np.record]
+    paths: Array
+    loss: Array
+
+
+@dataclass(frozen=True)
+class Seen:
+    """A run as the pictures need it.
+
+    Attributes:
+        layout: world.
+        records: records with a camera frame.
+        vetoes: decisions of the safety filter by the time of their frame.
+        fov: horizontal and vertical field of view of the camera [rad].
+    """
+
+    layout: Layout
+    records: list[TickRecord]
+    vetoes: dict[float, Veto]
+    fov: tuple[float, float]
+
+
+@cache
+def seen() -> Seen:
+    """Run `crowd` and return its frames."""
+    scenario = load_scenario("crowd", ["robot.body=kinematic", f"duration={DURATION}"])
+    records: list[TickRecord] = []
+    vetoes: dict[float, Veto] = {}
+    with watched() as latest, Simulation(scenario, SEED) as simulation:
+        for tick in simulation:
+            if tick.record is None or tick.record.frame is None:
+                continue
+            records.append(tick.record)
+            if latest:
+                vetoes[tick.record.frame.time] = latest.pop()
+        camera = scenario.camera.pinhole
+        layout = simulation.layout
+    return Seen(layout, records, vetoes, (camera.horizontal_fov, camera.vertical_fov))
+
+
+@contextmanager
+def watched() -> Iterator[list[Veto]]:
+    """Collect the vetoes of the safety filter."""
+    vetoes: list[Veto] = []
+    choose = SafetyFilter.choose
+
+    def watch(
+        self: SafetyFilter, start: RolloutStart, desired: Array, discs: NDArray[np.record]
+    ) -> tuple[Array, float]:
+        chosen = choose(self, start, desired, discs)
+        if chosen[0] is not desired:
+            fan = self.candidates(desired, start.course)
+            loss = self.risk(start, fan, discs) + self.delay(start, fan)
+            step = self._limits.footstep
+            heading = float(start.pose[2])
+            velocity, _ = rollout.walked(self.rollout(start, fan), heading, step)
+            moved = np.cumsum(step * velocity, axis=1)
+            paths = start.pose[:2] + np.concatenate([np.zeros((len(fan), 1, 2)), moved], axis=1)
+            vetoes[:] = [Veto(start, desired, discs, paths, loss)]
+        return chosen
+
+    with patch.object(SafetyFilter, "choose", watch):
+        yield vetoes
+
+
+# Parts of maps
+
+
+def ground(axes: Axes, ran: Seen, record: TickRecord, centre: Array) -> None:
+    """Draw beacons, obstacles in outlines and the true robot around a point."""
+    here = np.reshape(record.truth.obstacle_positions, (-1, 2))
+    for obstacle, position in zip(ran.layout.obstacles, here, strict=True):
+        disc(axes, position, obstacle.radius, facecolor="none", edgecolor=INK, linewidth=1.0)
+    for beacon in ran.layout.beacons:
+        disc(axes, beacon.position, 0.05, facecolor=VIEW, edgecolor=INK, linewidth=0.8)
+    robot(axes, record.truth.robot)
+    x, y = centre.tolist()
+    square(axes, (x - AROUND, x + AROUND), (y - AROUND, y + AROUND))
+
+
+def view(axes: Axes, record: TickRecord, fov: float) -> None:
+    """Draw the field of view of a frame."""
+    frame = frame_of(record)
+    angles = frame.context.view.pan + 0.5 * fov * np.linspace(-1.0, 1.0, 20)
+    rim = 2.0 * np.stack([np.cos(angles), np.sin(angles)], axis=1)
+    points = placed(np.vstack([np.zeros((1, 2)), rim]), frame.belief.pose.tolist())
+    axes.add_patch(Polygon(points, closed=True, facecolor=VIEW, alpha=0.25, zorder=0))
+
+
+def frame_of(record: TickRecord) -> FrameRecord:
+    """Return the camera frame of a record that has one."""
+    assert record.frame is not None
+    return record.frame
+
+
+def color(label: str) -> tuple[float, ...]:
+    """Return the colour of a class for Matplotlib."""
+    return tuple(channel / 255 for channel in of_label(label))
+
+
+def note(axes: Axes, text: str, at: Array, offset: tuple[float, float]) -> None:
+    """Explain a mark by a text at an offset [points]."""
+    axes.annotate(
+        text,
+        (float(at[0]), float(at[1])),
+        xytext=offset,
+        textcoords="offset points",
+        fontsize=7.5,
+        color=INK,
+        ha="center",
+        arrowprops={"arrowstyle": "-", "color": INK, "linewidth": 0.6},
+        bbox={"facecolor": "white", "edgecolor": "none", "alpha": 0.75, "pad": 1.0},
+        zorder=9,
+    )
+
+
+# Pictures
+
+
+def vision() -> Figure:
+    """Draw the image with the boxes of detections, and the fitted cylinders from above."""
+    ran = seen()
+    record = max(ran.records, key=lambda r: len(frame_of(r).detections))
+    frame = frame_of(record)
+    made = figure(9.2, 3.9, "From pixels to cylinders")
+    left, right = made.subplots(1, 2, width_ratios=(1.5, 1.0))
+    assert frame.image is not None
+    left.imshow(frame.image)
+    left.set_axis_off()
+    left.set_title("head camera: blobs and their distance")
+    for detection in frame.detections:
+        _box(left, detection)
+    right.set_title("fitted cylinders, ellipses of 10 sigma")
+    robot(right, (0.0, 0.0, 0.0), 0.8)
+    for detection in frame.detections:
+        at = detection.distance * np.array([np.cos(detection.bearing), np.sin(detection.bearing)])
+        shade = color(detection.label)
+        disc(right, at, max(detection.radius, 0.05), facecolor=shade, alpha=0.45)
+        c, s = np.cos(detection.bearing), np.sin(detection.bearing)
+        J = np.array([[c, -detection.distance * s], [s, detection.distance * c]])
+        covariance(right, at, J @ detection.covariance @ J.T, 10.0, color=shade, linewidth=1.2)
+    far = max(detection.distance for detection in frame.detections) + 0.3
+    square(right, (-0.3, far), (-0.6 * far, 0.6 * far), "R")
+    return made
+
+
+def _box(axes: Axes, detection: Detection) -> None:
+    left, top, right, bottom = detection.box
+    axes.add_patch(
+        Rectangle(
+            (left, top),
+            right - left,
+            bottom - top,
+            facecolor="none",
+            edgecolor="white",
+            linewidth=1.4,
+        )
+    )
+    axes.text(
+        left, top - 3, f"{detection.distance:.2f} m", color="white", fontsize=7, weight="bold"
+    )
+
+
+def belief() -> Figure:
+    """Draw tracks and particles of movers that the camera no longer shows."""
+    ran = seen()
+
+    def lost(record: TickRecord) -> float:
+        tracks = frame_of(record).belief.tracks
+        near = [
+            t.particles is not None and np.hypot(*(t.position - record.truth.robot[:2])) < AROUND
+            for t in tracks
+        ]
+        return float(sum(near))
+
+    record = max(ran.records, key=lost)
+    frame = frame_of(record)
+    made = figure(6.4, 5.2, "Tracks, and particles of movers out of view")
+    axes = made.subplots()
+    view(axes, record, ran.fov[0])
+    ground(axes, ran, record, frame.belief.pose[:2])
+    for track in frame.belief.tracks:
+        shade = color(track.label)
+        if track.particles is None:
+            disc(axes, track.position, track.radius, facecolor=shade, alpha=0.5)
+            covariance(axes, track.position, track.covariance[:2, :2], 2.0, color=shade)
+        else:
+            axes.plot(*track.particles.positions.T, "o", color=shade, markersize=2.2, zorder=7)
+            tips = track.particles.positions + track.particles.velocities
+            ends = np.stack([track.particles.positions, tips], axis=1)
+            axes.add_collection(LineCollection(list(ends), colors=[shade], linewidths=0.6))
+        if np.hypot(*track.velocity) > 0.02:
+            tip = track.position + 2.0 * track.velocity
+            axes.annotate("", tip, track.position, arrowprops={"arrowstyle": "->", "color": shade})
+    clouds = [t for t in frame.belief.tracks if t.particles is not None]
+    nearest = min(clouds, key=lambda t: np.hypot(*(t.position - frame.belief.pose[:2])))
+    note(axes, "16 particles of a lost mover", nearest.position, (0.0, 42.0))
+    axes.set_title("filled: believed, outline: true, arrow: motion in 2 s, yellow: field of view")
+    return made
+
+
+def gaze() -> Figure:
+    """Draw the value of all views, and the chosen one on the map."""
+    ran = seen()
+    pairs = zip(ran.records, ran.records[1:], strict=False)
+    _, record = max(pairs, key=lambda pair: _saccade(*map(frame_of, pair)))
+    frame = frame_of(record)
+    decision = frame.gaze
+    made = figure(9.2, 3.9, "The gaze takes the view of the highest value per time")
+    left, right = made.subplots(1, 2, width_ratios=(1.25, 1.0))
+    values = decision.gaze_map
+    limits = load_scenario("crowd").navigation.gaze
+    across = limits.max_pan / (values.shape[1] - 1)  # half a cell
+    up = 0.5 * (limits.max_tilt - limits.min_tilt) / (values.shape[0] - 1)
+    pan, lowest, highest = limits.max_pan + across, limits.min_tilt - up, limits.max_tilt + up
+    shown = left.imshow(
+        values[::-1, ::-1],  # tilts upwards, pans to the left
+        extent=[degrees(angle) for angle in (pan, -pan, lowest, highest)],
+        aspect="auto",
+        cmap="inferno",
+        interpolation="nearest",
+    )
+    made.colorbar(shown, ax=left, label="value [1/s]", shrink=0.9)
+    pan, tilt = degrees(decision.pan), degrees(decision.tilt)
+    now = frame.context.view
+    left.plot(degrees(now.pan), degrees(now.tilt), "o", color="white", markersize=5)
+    left.plot(pan, tilt, "o", color=BLUE, markersize=11, fillstyle="none", markeredgewidth=2)
+    left.grid(visible=False)
+    left.set_xlabel("pan, left positive [deg]")
+    left.set_ylabel("tilt [deg]")
+    left.set_title("white: present direction, ring: chosen view")
+    view(right, record, ran.fov[0])
+    ground(right, ran, record, frame.belief.pose[:2])
+    for track in frame.belief.tracks:
+        disc(right, track.position, track.radius, facecolor=color(track.label), alpha=0.5)
+        if track.particles is not None:
+            right.plot(*track.particles.positions.T, "o", color=color(track.label), markersize=1.6)
+    angle = float(frame.belief.pose[2]) + decision.pan
+    start = frame.belief.pose[:2]
+    tip = start + 1.1 * np.array([np.cos(angle), np.sin(angle)])
+    right.annotate("", tip, start, arrowprops={"arrowstyle": "->", "color": BLUE, "lw": 2})
+    psi = (decision.psi_lm, decision.psi_sf, decision.psi_ob, decision.psi_way)
+    names = ("ground", "pose", "obstacle", "path")
+    right.set_title(", ".join(f"{n} {v:.2f}" for n, v in zip(names, psi, strict=True)))
+    return made
+
+
+def _saccade(before: FrameRecord, frame: FrameRecord) -> float:
+    """Return the angle of a new saccade, if the belief has particles [rad]."""
+    clouds = sum(track.particles is not None for track in frame.belief.tracks)
+    return abs(frame.gaze.pan - before.gaze.pan) if clouds else 0.0
+
+
+def veto() -> Figure:
+    """Draw the candidates of the safety filter at a veto."""
+    ran = seen()
+    time, taken = max(ran.vetoes.items(), key=lambda item: np.ptp(item[1].loss.clip(0.0, 60.0)))
+    record = next(r for r in ran.records if frame_of(r).time == time)
+    made = figure(6.8, 5.2, "A veto of the safety filter")
+    axes = made.subplots()
+    ground(axes, ran, record, taken.start.pose[:2])
+    for hypothesis in taken.discs:
+        at, strength = hypothesis["position"], min(1.0, 0.1 + float(hypothesis["weight"]))
+        disc(axes, at, hypothesis["radius"], facecolor=MOVER, alpha=0.12 * strength)
+        path = np.stack([at, at + 2.0 * hypothesis["velocity"]])
+        axes.plot(*path.T, color=MOVER, alpha=strength, linewidth=0.8)
+    shade = colormaps["viridis_r"]
+    worst = float(np.quantile(taken.loss, 0.9))
+    colors = [shade(min(1.0, float(value) / worst)) for value in taken.loss]
+    axes.add_collection(LineCollection(list(taken.paths), colors=colors, linewidths=1.0))
+    best = int(np.argmin(taken.loss))
+    for index, look, text in ((0, ORANGE, "desired"), (best, GREEN, "chosen")):
+        axes.plot(*taken.paths[index].T, color=look, linewidth=2.6, zorder=8)
+        label = f"{text}, loss {taken.loss[index]:.1f} s"
+        note(axes, label, taken.paths[index, -1], (30.0 if index else -30.0, 28.0))
+    axes.plot(*frame_of(record).task.target, "*", color=GOAL, markersize=11)
+    x, y = taken.start.pose[:2].tolist()
+    square(axes, (x - 0.95, x + 0.95), (y - 0.75, y + 0.75))
+    axes.set_title("candidates by their loss; red: where movers may be, and their path in 2 s")
+    return made
+
+
+def footsteps() -> Figure:
+    """Draw footsteps, ZMP, DCM and centre of mass of a walk in a curve."""
+    scenario = load_scenario("walk", [*WALK])
+    zmp, dcm, com, feet = [], [], [], {}
+    with Simulation(scenario, SEED) as simulation:
+        for tick in simulation:
+            if tick.record is None:
+                continue
+            state = tick.record.walking
+            zmp.append(state.zmp)
+            dcm.append(state.dcm)
+            com.append(state.balance.com)
+            feet[state.step_count] = state.footsteps[0]
+    sole = load_robot("hsr8").model.sole
+    made = figure(6.4, 4.4, "Footsteps, ZMP, DCM and centre of mass from above")
+    axes = made.subplots()
+    for foot in feet.values():
+        half = np.array([(1, 1), (-1, 1), (-1, -1), (1, -1)]) * (sole.half_length, sole.half_width)
+        corners = placed(half + np.array([sole.centre, 0.0]), (foot.x, foot.y, foot.yaw))
+        axes.add_patch(
+            Polygon(corners, facecolor=ROBOT if foot.left else ORANGE, alpha=0.22, edgecolor=STILL)
+        )
+    for points, look, text in (
+        (zmp, MOVER, "ZMP"),
+        (dcm, PURPLE, "DCM"),
+        (com, INK, "centre of mass"),
+    ):
+        axes.plot(*np.array(points).T, color=look, linewidth=1.3, label=text)
+    axes.legend(frameon=False, loc="upper left", fontsize=8)
+    low, high = np.min(zmp, axis=0) - 0.12, np.max(zmp, axis=0) + 0.12
+    square(axes, (low[0], high[0]), (low[1], high[1]))
+    axes.set_title("blue: left foot, orange: right foot")
+    return made
+
+
+PICTURES: dict[str, Callable[[], Figure]] = {
+    "vision": vision,
+    "belief": belief,
+    "gaze": gaze,
+    "veto": veto,
+    "footsteps": footsteps,
+}
+
+
+def main() -> None:
+    """Draw the named pictures, or all."""
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("names", nargs="*", choices=[*PICTURES, []], metavar="NAME")
+    parser.add_argument("--out", type=Path, default=IMAGES, metavar="DIR")
+    options = parser.parse_args()
+    for name in options.names or PICTURES:
+        with styled():
+            made = PICTURES[name]()
+            file = options.out / f"{name}.webp"
+            made.savefig(file, dpi=120, pil_kwargs={"quality": 88})
+        print(f"{file.name}  {file.stat().st_size / 1000:.0f} kB", flush=True)
+
+
+if __name__ == "__main__":
+    main()
