@@ -4,25 +4,31 @@
     python scripts/manual_pictures.py gaze belief
 
 The body is kinematic and the camera rendered, so a picture shows images, detections and belief as
-the robot has them. `footsteps` is a walk in full physics.
+the robot has them. `footsteps` and `capture` are walks in full physics.
 """
 
 import argparse
+import re
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass
 from functools import cache
 from math import degrees
 from pathlib import Path
+from tempfile import TemporaryDirectory
 from unittest.mock import patch
 
+import hsr8
 from hsr8.decisions import FrameRecord
 from hsr8.loop import Simulation
 from hsr8.record import TickRecord
 from hsr8.recorder.palette import of_label
+from hsr8.render.plan_view import PlanView
+from hsr8.render.run_images import RunImages
 from hsr8.render.walk_panels import BLUE, GREEN, INK, ORANGE, PURPLE
 from hsr8.robots.loaded import load_robot
 from hsr8.scenario.loader import load_scenario
+from hsr8.world.field.generator import draw_world
 from hsr8.world.field.layout import Layout
 from navigation.motion import rollout
 from navigation.motion.safety_filter import RolloutStart, SafetyFilter
@@ -55,6 +61,7 @@ Array = NDArray[np.float64]
 IMAGES = Path(__file__).parents[1] / "docs/images"
 SEED, DURATION = 3, 40.0
 WALK = ("command.vx=0.2", "command.wz=0.3", "duration=5.0", "recorder.period_ms=5")
+STRIP = (-0.10, 0.10, 0.30, 0.50, 0.70, 1.10)  # of a capture step, after the push [s]
 AROUND = 1.3  # half side of a map [m]
 
 
@@ -389,12 +396,54 @@ def footsteps() -> Figure:
     return made
 
 
+def capture() -> Figure:
+    """Draw a push and the capture step as a strip of images."""
+    settings = ["disturbance.random.impulse=[1.2,1.4]", "duration=12.0"]
+    pushed = hsr8.run(load_scenario("push", settings), seed=SEED)
+    moved = np.hypot(*pushed.records["capture"].T)
+    pushes = pushed.records["pushes"]
+    begins = np.unique(pushes["begin"])
+    time = pushed.records["time"]
+    reach = [moved[(time >= begin) & (time < begin + 0.8)].max() for begin in begins]
+    begin = float(begins[int(np.argmax(reach))])
+    instants = begin + np.array(STRIP)
+    with RunImages(pushed, instants, (400, 540), fps=25, speed=1.0, fine=True) as images:
+        draw = images.camera("follow")
+        shots = [draw(k).copy() for k in range(len(instants))]
+    made = figure(9.2, 1.9, f"A push, and a capture step of {100.0 * max(reach):.0f} cm")
+    for axes, shot, after in zip(made.subplots(1, len(shots)), shots, STRIP, strict=True):
+        axes.imshow(shot[140:380])
+        axes.set_axis_off()
+        axes.set_title(f"{after:+.2f} s")
+    return made
+
+
+def yard() -> Figure:
+    """Draw the world of the tutorial, as ``hsr8 check --image`` does."""
+    page = (IMAGES.parent / "tutorial.md").read_text()
+    text = re.search(r"```toml\n(.*?)```", page, re.DOTALL)
+    assert text is not None
+    with TemporaryDirectory() as folder:
+        file = Path(folder, "yard.toml")
+        file.write_text(text[1])
+        scenario = load_scenario(str(file))
+    world = draw_world(scenario, scenario.seed)
+    made = figure(4.6, 4.6, "")
+    axes = made.subplots()
+    plan = PlanView(world.layout, scenario.robot.radius, certificate=world.certificate)
+    axes.imshow(plan.draw())
+    axes.set_axis_off()
+    return made
+
+
 PICTURES: dict[str, Callable[[], Figure]] = {
     "vision": vision,
     "belief": belief,
     "gaze": gaze,
     "veto": veto,
     "footsteps": footsteps,
+    "capture": capture,
+    "yard": yard,
 }
 
 
