@@ -9,14 +9,10 @@ the robot has them. `footsteps` and `capture` are walks in full physics.
 
 import argparse
 import re
-from collections.abc import Callable, Iterator
-from contextlib import contextmanager
-from dataclasses import dataclass
-from functools import cache
+from collections.abc import Callable
 from math import degrees
 from pathlib import Path
 from tempfile import TemporaryDirectory
-from unittest.mock import patch
 
 import hsr8
 from hsr8.decisions import FrameRecord
@@ -29,12 +25,10 @@ from hsr8.render.walk_panels import BLUE, GREEN, INK, ORANGE, PURPLE
 from hsr8.robots.loaded import load_robot
 from hsr8.scenario.loader import load_scenario
 from hsr8.world.field.generator import draw_world
-from hsr8.world.field.layout import Layout
-from navigation.motion import rollout
-from navigation.motion.safety_filter import RolloutStart, SafetyFilter
 from vision.detection import Detection
 
 import numpy as np
+from crowd_run import SEED, Seen, seen
 from figure_style import (
     GOAL,
     MOVER,
@@ -59,89 +53,9 @@ from numpy.typing import NDArray
 Array = NDArray[np.float64]
 
 IMAGES = Path(__file__).parents[1] / "docs/images"
-SEED, DURATION = 3, 40.0
 WALK = ("command.vx=0.2", "command.wz=0.3", "duration=5.0", "recorder.period_ms=5")
 STRIP = (-0.10, 0.10, 0.30, 0.50, 0.70, 1.10)  # of a capture step, after the push [s]
 AROUND = 1.3  # half side of a map [m]
-
-
-@dataclass(frozen=True)
-class Veto:
-    """A decision of the safety filter.
-
-    Attributes:
-        start: start of the rollout.
-        desired: desired velocity in W (2,) [m/s].
-        discs: collision hypotheses.
-        paths: positions of every candidate after each footstep (n, steps + 1, 2) [m].
-        loss: loss of every candidate (n,) [s].
-    """
-
-    start: RolloutStart
-    desired: Array
-    discs: NDArray[np.record]
-    paths: Array
-    loss: Array
-
-
-@dataclass(frozen=True)
-class Seen:
-    """A run as the pictures need it.
-
-    Attributes:
-        layout: world.
-        records: records with a camera frame.
-        vetoes: decisions of the safety filter by the time of their frame.
-        fov: horizontal and vertical field of view of the camera [rad].
-    """
-
-    layout: Layout
-    records: list[TickRecord]
-    vetoes: dict[float, Veto]
-    fov: tuple[float, float]
-
-
-@cache
-def seen() -> Seen:
-    """Run `crowd` and return its frames."""
-    scenario = load_scenario("crowd", ["robot.body=kinematic", f"duration={DURATION}"])
-    records: list[TickRecord] = []
-    vetoes: dict[float, Veto] = {}
-    with watched() as latest, Simulation(scenario, SEED) as simulation:
-        for tick in simulation:
-            if tick.record is None or tick.record.frame is None:
-                continue
-            records.append(tick.record)
-            if latest:
-                vetoes[tick.record.frame.time] = latest.pop()
-        camera = scenario.camera.pinhole
-        layout = simulation.layout
-    return Seen(layout, records, vetoes, (camera.horizontal_fov, camera.vertical_fov))
-
-
-@contextmanager
-def watched() -> Iterator[list[Veto]]:
-    """Collect the vetoes of the safety filter."""
-    vetoes: list[Veto] = []
-    choose = SafetyFilter.choose
-
-    def watch(
-        self: SafetyFilter, start: RolloutStart, desired: Array, discs: NDArray[np.record]
-    ) -> tuple[Array, float]:
-        chosen = choose(self, start, desired, discs)
-        if chosen[0] is not desired:
-            fan = self.candidates(desired, start.course)
-            loss = self.risk(start, fan, discs) + self.delay(start, fan)
-            step = self._limits.footstep
-            heading = float(start.pose[2])
-            velocity, _ = rollout.walked(self.rollout(start, fan), heading, step)
-            moved = np.cumsum(step * velocity, axis=1)
-            paths = start.pose[:2] + np.concatenate([np.zeros((len(fan), 1, 2)), moved], axis=1)
-            vetoes[:] = [Veto(start, desired, discs, paths, loss)]
-        return chosen
-
-    with patch.object(SafetyFilter, "choose", watch):
-        yield vetoes
 
 
 # Parts of maps
