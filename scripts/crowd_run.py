@@ -1,4 +1,4 @@
-"""A run of `crowd` with its camera frames and the vetoes of its safety filter, for pictures."""
+"""A run of `crowd` with its camera frames and the vetoes of its safety filter, for images."""
 
 from collections.abc import Iterator
 from contextlib import contextmanager
@@ -41,8 +41,8 @@ class Veto:
 
 
 @dataclass(frozen=True)
-class Seen:
-    """A run as the pictures need it.
+class CrowdRun:
+    """A run as the images need it.
 
     Attributes:
         layout: world.
@@ -58,7 +58,7 @@ class Seen:
 
 
 @cache
-def seen() -> Seen:
+def crowd() -> CrowdRun:
     """Run `crowd` and return its frames."""
     scenario = load_scenario("crowd", ["robot.body=kinematic", f"duration={DURATION}"])
     records: list[TickRecord] = []
@@ -72,7 +72,7 @@ def seen() -> Seen:
                 vetoes[tick.record.frame.time] = latest.pop()
         camera = scenario.camera.pinhole
         layout = simulation.layout
-    return Seen(layout, records, vetoes, (camera.horizontal_fov, camera.vertical_fov))
+    return CrowdRun(layout, records, vetoes, (camera.horizontal_fov, camera.vertical_fov))
 
 
 @contextmanager

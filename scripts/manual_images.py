@@ -1,9 +1,9 @@
-"""Draw the pictures of the manual from a run of `crowd`.
+"""Draw the images of the manual from a run of `crowd`.
 
-    python scripts/manual_pictures.py             # all, into docs/images
-    python scripts/manual_pictures.py gaze belief
+    python scripts/manual_images.py             # all, into docs/images
+    python scripts/manual_images.py gaze belief
 
-The body is kinematic and the camera rendered, so a picture shows images, detections and belief as
+The body is kinematic and the camera rendered, so a drawing shows images, detections and belief as
 the robot has them. `footsteps` and `capture` are walks in full physics.
 """
 
@@ -28,7 +28,7 @@ from hsr8.world.field.generator import draw_world
 from vision.detection import Detection
 
 import numpy as np
-from crowd_run import SEED, Seen, seen
+from crowd_run import SEED, CrowdRun, crowd
 from figure_style import (
     GOAL,
     MOVER,
@@ -61,7 +61,7 @@ AROUND = 1.3  # half side of a map [m]
 # Parts of maps
 
 
-def ground(axes: Axes, ran: Seen, record: TickRecord, centre: Array) -> None:
+def ground(axes: Axes, ran: CrowdRun, record: TickRecord, centre: Array) -> None:
     """Draw beacons, obstacles in outlines and the true robot around a point."""
     here = np.reshape(record.truth.obstacle_positions, (-1, 2))
     for obstacle, position in zip(ran.layout.obstacles, here, strict=True):
@@ -109,12 +109,12 @@ def note(axes: Axes, text: str, at: Array, offset: tuple[float, float]) -> None:
     )
 
 
-# Pictures
+# Drawings
 
 
 def vision() -> Figure:
     """Draw the image with the boxes of detections, and the fitted cylinders from above."""
-    ran = seen()
+    ran = crowd()
     record = max(ran.records, key=lambda r: len(frame_of(r).detections))
     frame = frame_of(record)
     made = figure(9.2, 3.9, "From pixels to cylinders")
@@ -158,7 +158,7 @@ def _box(axes: Axes, detection: Detection) -> None:
 
 def belief() -> Figure:
     """Draw tracks and particles of movers that the camera no longer shows."""
-    ran = seen()
+    ran = crowd()
 
     def lost(record: TickRecord) -> float:
         tracks = frame_of(record).belief.tracks
@@ -196,7 +196,7 @@ def belief() -> Figure:
 
 def gaze() -> Figure:
     """Draw the value of all views, and the chosen one on the map."""
-    ran = seen()
+    ran = crowd()
     pairs = zip(ran.records, ran.records[1:], strict=False)
     _, record = max(pairs, key=lambda pair: _saccade(*map(frame_of, pair)))
     frame = frame_of(record)
@@ -248,7 +248,7 @@ def _saccade(before: FrameRecord, frame: FrameRecord) -> float:
 
 def veto() -> Figure:
     """Draw the candidates of the safety filter at a veto."""
-    ran = seen()
+    ran = crowd()
     time, taken = max(ran.vetoes.items(), key=lambda item: np.ptp(item[1].loss.clip(0.0, 60.0)))
     record = next(r for r in ran.records if frame_of(r).time == time)
     made = figure(6.8, 5.2, "A veto of the safety filter")
@@ -350,7 +350,7 @@ def yard() -> Figure:
     return made
 
 
-PICTURES: dict[str, Callable[[], Figure]] = {
+DRAWINGS: dict[str, Callable[[], Figure]] = {
     "vision": vision,
     "belief": belief,
     "gaze": gaze,
@@ -362,14 +362,14 @@ PICTURES: dict[str, Callable[[], Figure]] = {
 
 
 def main() -> None:
-    """Draw the named pictures, or all."""
+    """Draw the named images, or all."""
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("names", nargs="*", choices=[*PICTURES, []], metavar="NAME")
+    parser.add_argument("names", nargs="*", choices=[*DRAWINGS, []], metavar="NAME")
     parser.add_argument("--out", type=Path, default=IMAGES, metavar="DIR")
     options = parser.parse_args()
-    for name in options.names or PICTURES:
+    for name in options.names or DRAWINGS:
         with styled():
-            made = PICTURES[name]()
+            made = DRAWINGS[name]()
             file = options.out / f"{name}.webp"
             made.savefig(file, dpi=120, pil_kwargs={"quality": 88})
         print(f"{file.name}  {file.stat().st_size / 1000:.0f} kB", flush=True)
