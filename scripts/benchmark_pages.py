@@ -201,14 +201,15 @@ def index(definition: Definition, pages: Sequence[Page]) -> str:
 
 
 def headline(definition: Definition, pages: Sequence[Page]) -> list[str]:
-    """Return the table of the README, with the rows whose pages have data; empty without any."""
+    """Return the table of the README and its version: rows whose pages have data; empty without."""
     by_name = {page.name: page for page in pages}
-    rows = []
+    rows, made = [], []
     for label, text, name in definition.headline:
         if stored := by_name[name].read():
             link = f"[{name}](docs/results/{name}.md)"
             rows.append(f"| {label} | {by_name[name].filled(text, stored[0])} | {link} |")
-    return [*_header(["measured", "result", "page"]), *rows] if rows else []
+            made.append(_made(stored[1]))
+    return [*_header(["measured", "result", "page"]), *rows, "", made[0]] if rows else []
 
 
 def with_included(text: str, name: str, table: Sequence[str]) -> str:
