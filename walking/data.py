@@ -170,12 +170,11 @@ class Plan:
     """Plan of the walk, see `walking.plan.reference`."""
 
     gait: Gait
-    landing: FootholdRecord  # of the swing foot
-    following: Strides  # after this landing
+    following: Strides  # after the next landing
     moving: bool  # whether the walk goes on
     ramps: Annotated[Records[Ramp], 2 * STEPS + 2]  # ZMP reference
     ramp_count: int
-    steps: Annotated[Records[FootholdRecord], STEPS]  # footholds, the landing first
+    steps: Annotated[Records[FootholdRecord], STEPS]  # footholds, the next landing first
     step_count: int
 
 
@@ -217,7 +216,6 @@ class Admission:
     functions: ZmpFunctions  # of a plan that is tried
     wanted: Plan
     trial: Plan  # a plan that is tried
-    best: Plan  # the best that was admitted
 
 
 @record_class

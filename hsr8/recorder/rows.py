@@ -155,7 +155,7 @@ RECORD = Row(
     ),
     Column(
         "walking.odometry.covariance",
-        "covariance of its error, see `walking.odometry`",
+        "covariance of its error, see `walking.estimate.odometry`",
         POSE_COVARIANCE,
         (3, 3),
         name="odometry_covariance",

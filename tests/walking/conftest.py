@@ -161,7 +161,7 @@ def make_walk(model):
         for timing in (gait.clock.timing, walk.steering.timing):
             put_timing(timing, cadence(STILL, model.robot))
         stand(gait, model.robot)
-        walk.admission.clock, walk.plan.landing = gait.clock, gait.landing
+        walk.admission.clock, walk.plan.steps[0] = gait.clock, gait.landing
         walk.admission.fraction = 1.0
         return walk
 

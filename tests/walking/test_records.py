@@ -39,13 +39,13 @@ def test_every_field_begins_at_a_whole_word(kind):
 
 def test_an_assigned_record_is_a_copy_and_a_read_one_is_shared():
     plans = np.zeros(2, Plan)
-    plans[0].landing.x = 1.0
+    plans[0].steps[0].x = 1.0
     plans[1] = plans[0]
-    plans[0].landing.x = 2.0
-    assert plans[1].landing.x == 1.0
-    landing = plans[0].landing
+    plans[0].steps[0].x = 2.0
+    assert plans[1].steps[0].x == 1.0
+    landing = plans[0].steps[0]
     landing.y = 3.0
-    assert plans[0].landing.y == 3.0
+    assert plans[0].steps[0].y == 3.0
     assert np.zeros(1, Data)[0].limbs.feet.dtype.names[:2] == ("x", "y")
     assert FootholdRecord.names == ("left", "x", "y", "yaw")
 

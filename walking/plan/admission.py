@@ -17,7 +17,7 @@ from walking.plan.footsteps import foothold, landing_of, towards, towards_stride
 from walking.plan.gait import aimed, is_adjustable, retime, support_foot
 from walking.plan.mwpg import admits_target, reaches_target
 from walking.plan.pendulum import plan_pendulum
-from walking.plan.reference import copy_plan, plan_walk, reference_of
+from walking.plan.reference import plan_walk, reference_of
 from walking.plan.steering import moves
 from walking.plan.support import Region
 
@@ -46,8 +46,8 @@ def admit_modified(walk: Data, region: Region, robot: Model) -> None:
     admission.completed = gait.completed
     # A capture step leaves the plan.
     if not continues or (gait.landed_early and not walk.off_plan):
-        live.landing = gait.landing
-    last = foothold(live.landing)
+        live.steps[0] = gait.landing
+    last = foothold(live.steps[0])
     goal = last
     if is_adjustable(gait, robot):
         goal = aimed(gait, last, landing_of(support_foot(gait), walk.steering.wanted), robot)
@@ -78,7 +78,7 @@ def _compromise(walk: Data, region: Region, robot: Model) -> None:
     if not wanted.moving and _end(walk, region, robot):
         return
     live.gait.clock = walk.admission.clock
-    plan_walk(live, foothold(live.landing), live.following, live.moving, robot)
+    plan_walk(live, foothold(live.steps[0]), live.following, live.moving, robot)
     if reaches_target(walk.functions):
         _bisect(walk, region, robot)
     else:
@@ -88,55 +88,70 @@ def _compromise(walk: Data, region: Region, robot: Model) -> None:
 @compiled
 def _end(walk: Data, region: Region, robot: Model) -> bool:
     """Take a walk that ends after the next footstep, if one is feasible."""
-    wanted, trial, best = walk.admission.wanted, walk.admission.trial, walk.admission.best
-    last, goal, low, high = foothold(walk.plan.landing), foothold(wanted.landing), 0.0, 1.0
-    for attempt in range(BISECTIONS + 1):
-        fraction = 0.5 * (low + high) if attempt > 0 else 0.0
-        trial.gait = wanted.gait
-        plan_walk(trial, towards(last, goal, fraction), wanted.following, False, robot)
+    trial, low, high = walk.admission.trial, 0.0, 1.0
+    _plan_end(walk, 0.0, robot)
+    if not _is_feasible(walk, trial, region, robot):
+        return False
+    for _ in range(BISECTIONS):
+        fraction = 0.5 * (low + high)
+        _plan_end(walk, fraction, robot)
         if _is_feasible(walk, trial, region, robot):
             low = fraction
-            copy_plan(best, trial)
-        elif attempt == 0:
-            return False
         else:
             high = fraction
-    _take(walk, best, low)
+    _plan_end(walk, low, robot)
+    _take(walk, trial, low)
     return True
+
+
+@compiled
+def _plan_end(walk: Data, fraction: float, robot: Model) -> None:
+    """Try a walk that ends, with a landing between the last and the wanted one."""
+    wanted, trial = walk.admission.wanted, walk.admission.trial
+    last, goal = foothold(walk.plan.steps[0]), foothold(wanted.steps[0])
+    trial.gait = wanted.gait
+    plan_walk(trial, towards(last, goal, fraction), wanted.following, False, robot)
 
 
 @compiled
 def _bisect(walk: Data, region: Region, robot: Model) -> None:
     """Take the plan with the maximum admitted fraction of the change, or keep the last plan."""
-    live, wanted, trial = walk.plan, walk.admission.wanted, walk.admission.trial
-    best = walk.admission.best
-    before, after = live.gait.clock.timing, wanted.gait.clock.timing
-    last, goal, between = foothold(live.landing), foothold(wanted.landing), walk.admission.between
-    low, high, admitted = 0.0, 1.0, False
+    trial, low, high = walk.admission.trial, 0.0, 1.0
     for _ in range(BISECTIONS):
         fraction = 0.5 * (low + high)
-        between.double = before.double + round(fraction * (after.double - before.double))
-        between.single = before.single + round(fraction * (after.single - before.single))
-        change = after.swing_height - before.swing_height
-        between.swing_height = before.swing_height + fraction * change
-        trial.gait = live.gait
-        retime(trial.gait, between, robot)
-        towards_strides(trial.following, live.following, wanted.following, fraction)
-        landing = towards(last, goal, fraction)
-        plan_walk(trial, landing, trial.following, live.moving, robot)
+        _plan_between(walk, fraction, robot)
         if _is_feasible(walk, trial, region, robot):
-            low, admitted = fraction, True
-            copy_plan(best, trial)
+            low = fraction
         else:
             high = fraction
-    if admitted:
-        _take(walk, best, low)
-    else:
-        walk.admission.fraction = 0.0
+    walk.admission.fraction = low
+    if low > 0.0:
+        _plan_between(walk, low, robot)
+        _take(walk, trial, low)
+
+
+@compiled
+def _plan_between(walk: Data, fraction: float, robot: Model) -> None:
+    """Try a plan that makes a fraction of the wanted change [1]."""
+    last, wanted, trial = walk.plan, walk.admission.wanted, walk.admission.trial
+    before, after, between = (
+        last.gait.clock.timing,
+        wanted.gait.clock.timing,
+        walk.admission.between,
+    )
+    between.double = before.double + round(fraction * (after.double - before.double))
+    between.single = before.single + round(fraction * (after.single - before.single))
+    change = after.swing_height - before.swing_height
+    between.swing_height = before.swing_height + fraction * change
+    trial.gait = last.gait
+    retime(trial.gait, between, robot)
+    towards_strides(trial.following, last.following, wanted.following, fraction)
+    landing = towards(foothold(last.steps[0]), foothold(wanted.steps[0]), fraction)
+    plan_walk(trial, landing, trial.following, last.moving, robot)
 
 
 @compiled
 def _take(walk: Data, plan: Plan, fraction: float) -> None:
     """Put a plan in force that makes a fraction of the wanted change [1]."""
-    copy_plan(walk.plan, plan)
+    walk.plan = plan
     walk.admission.fraction = fraction

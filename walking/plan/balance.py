@@ -89,7 +89,7 @@ def exceeds_support(walk: Data, ratio: float, robot: Model) -> bool:
 
 @compiled
 def ankle_room(foot: Foothold, zmp: Point, error: Point, robot: Model) -> Point:
-    """Return by how much the ankles can shift the ZMP of a foot against an error [m].
+    """Return the range of the ankles to shift the ZMP of a foot against an error [m].
 
     Args:
         foot: support foot.
@@ -268,7 +268,7 @@ def _differs(walk: Data, robot: Model) -> bool:
         return True
     nominal = landing_of(support_foot(live.gait), walk.steering.wanted)
     adjustable = is_adjustable(live.gait, robot)
-    return adjustable and not is_same(nominal, foothold(live.landing), robot)
+    return adjustable and not is_same(nominal, foothold(live.steps[0]), robot)
 
 
 @compiled

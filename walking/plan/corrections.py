@@ -41,8 +41,7 @@ def speed_ratio(corrections: Corrections, error: float, robot: Model) -> float:
         return 1.0
     error_range = p.slowdown_full_error - p.slowdown_start_error
     excess = (corrections.max_error - p.slowdown_start_error) / error_range
-    ratio: float = 1.0 - (1.0 - p.min_speed_ratio) * within(excess, 0.0, 1.0)
-    return ratio
+    return 1.0 - (1.0 - p.min_speed_ratio) * within(excess, 0.0, 1.0)
 
 
 @compiled
@@ -63,8 +62,7 @@ def heading_rate(corrections: Corrections, ahead: float, renew: bool, robot: Mod
         p = robot.stabilizer
         corrections.turn = clamp(p.heading_gain * (ahead - corrections.held), p.max_heading_rate)
     corrections.held += corrections.turn * CONTROL_PERIOD
-    rate: float = corrections.turn
-    return rate
+    return corrections.turn
 
 
 @compiled
@@ -180,5 +178,4 @@ def detects_touchdown(corrections: Corrections, phase: float, force: float, robo
     p = robot.estimator
     contact = phase >= p.contact_phase and force > p.contact_force
     corrections.contact = corrections.contact + 1 if contact else 0
-    down: bool = corrections.contact >= p.contact_ticks
-    return down
+    return corrections.contact >= p.contact_ticks

@@ -24,8 +24,8 @@ from walking.plan.steering import (
     moves,
     put_command,
     set_wanted_strides,
+    twist_of,
     use_next_timing,
-    wanted_velocity,
 )
 from walking.plane import norm, rotate_back
 
@@ -94,7 +94,7 @@ def start_walk(walk: Data, robot: Model) -> int:
     pushed = exceeds_support(walk, robot.stabilizer.step_error_ratio, robot)
     if not (moving or pushed):
         return 0
-    sideways = tendency(wanted_velocity(walk.steering), robot)
+    sideways = tendency(twist_of(walk.steering.velocity), robot)
     opening_left = sideways > 0.0
     if pushed:
         # Only the foot on the side of the fall can make the capture step.

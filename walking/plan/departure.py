@@ -27,7 +27,7 @@ def advance_modified(walk: Data, region: Region, robot: Model) -> None:
         robot: constants.
     """
     body, plan, gait = walk.pendulum, walk.plan, walk.plan.gait
-    landing, planned = foothold(gait.landing), foothold(plan.landing)
+    landing, planned = foothold(gait.landing), foothold(plan.steps[0])
     phase = phase_of(gait)
     if not (phase.double or walk.off_plan or equal(landing, planned)):
         walk.planned, walk.off_plan = body, True

@@ -148,8 +148,7 @@ def clear_of(y: float, yaw: float, side: float, gap: float, sole: Sole) -> float
     s = side * sin(yaw)
     inner = min(s * heel, s * toe) - sole.half_width * cos(yaw)
     min_distance = sole.half_width + gap - inner
-    clear: float = side * max(side * y, min_distance)
-    return clear
+    return side * max(side * y, min_distance)
 
 
 @compiled
@@ -166,25 +165,29 @@ def within_reach(x: float, y: float, side: float, robot: Model) -> Point:
 
 
 @compiled
-def velocity_strides(strides: Strides, velocity: Vector, time: float, robot: Model) -> bool:
-    """Set the strides of a velocity.
+def velocity_strides(strides: Strides, velocity: Vector, time: float, robot: Model) -> int:
+    """Set the strides of a velocity; return the limits that bind.
 
     Args:
         strides: set.
         velocity: velocity of the middle of the stance (vx, vy, wz) [m/s, m/s, rad/s].
         time: duration of a footstep [s].
         robot: constants.
-
-    Returns:
-        whether one is shifted to clear the other foot.
     """
-    shifted = False
+    (vx, vy, wz), limits, bound = velocity, robot.limits, 0
+    if abs(vx) * time > limits.step_forward:
+        bound |= STEP_LENGTH
+    if 2.0 * abs(vy) * time > limits.step_side:
+        bound |= STEP_SIDE
+    if 2.0 * abs(wz) * time > limits.step_turn:
+        bound |= STEP_TURN
     for side in (RIGHT, LEFT):
         x, y, yaw = _opened(velocity, time, side, robot)
         clear = clear_of(y, yaw, side, robot.gait.foot_clearance, robot.sole)
         _put_stride(strides, side, x, clear, yaw)
-        shifted = shifted or clear != y
-    return shifted
+        if clear != y:
+            bound |= CLEARANCE
+    return bound
 
 
 @compiled
@@ -245,28 +248,6 @@ def command_of(strides: Strides, timing: Timing) -> StepValues:
 
 
 @compiled
-def stride_limits(strides: Strides, velocity: Vector, time: float, robot: Model) -> int:
-    """Return the limits that bind on footsteps of a velocity.
-
-    Args:
-        strides: scratch, set to the strides.
-        velocity: velocity (vx, vy, wz) [m/s, m/s, rad/s].
-        time: duration of a footstep [s].
-        robot: constants.
-    """
-    (vx, vy, wz), limits, bound = velocity, robot.limits, 0
-    if abs(vx) * time > limits.step_forward:
-        bound |= STEP_LENGTH
-    if 2.0 * abs(vy) * time > limits.step_side:
-        bound |= STEP_SIDE
-    if 2.0 * abs(wz) * time > limits.step_turn:
-        bound |= STEP_TURN
-    if velocity_strides(strides, velocity, time, robot):
-        bound |= CLEARANCE
-    return bound
-
-
-@compiled
 def mean_velocity(strides: Strides, time: float, robot: Model) -> Vector:
     """Return the mean velocity of strides of duration `time` [s], inverse of `velocity_strides`."""
     vx = vy = wz = 0.0
@@ -313,5 +294,4 @@ def reachable(support: Foothold, landing: Foothold, dx: float, dy: float, robot:
 def tendency(velocity: Vector, robot: Model) -> float:
     """Return the motion across the stance: positive if the left foot opens it, zero for none."""
     _, vy, wz = velocity
-    sideways: float = vy / robot.limits.vy + wz / robot.limits.wz
-    return sideways
+    return vy / robot.limits.vy + wz / robot.limits.wz

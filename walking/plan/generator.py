@@ -24,8 +24,7 @@ from walking.plane import Point
 @compiled
 def keeps_plan(gait: Gait, robot: Model) -> bool:
     """Whether the plan goes on unchanged when a capture step leaves it."""
-    keeps: bool = robot.modifiable and not gait.shortened
-    return keeps
+    return robot.modifiable and not gait.shortened
 
 
 @compiled
@@ -49,7 +48,7 @@ def admit(walk: Data, region: Region, robot: Model) -> Foothold:
         if is_adjustable(gait, robot):
             landing = landing_of(support_foot(gait), steering.wanted)
         plan_walk(plan, landing, steering.wanted, moves(steering), robot)
-    return foothold(plan.landing)
+    return foothold(plan.steps[0])
 
 
 @compiled

@@ -145,8 +145,7 @@ def admits_target(
 @compiled
 def reaches_target(live: ZmpFunctions) -> bool:
     """Whether the functions lead to the DCM of their target."""
-    reached: bool = live.missed_x == 0.0 and live.missed_y == 0.0
-    return reached
+    return live.missed_x == 0.0 and live.missed_y == 0.0
 
 
 @compiled
@@ -196,8 +195,7 @@ def _is_near(plan: ZmpFunctions, target: WalkingTarget) -> bool:
     if not target.free:
         x, y = target.zeta
         gap = max(gap, abs(x - plan.zeta.x), abs(y - plan.zeta.y))
-    near: bool = gap < SAME_TARGET
-    return near
+    return gap < SAME_TARGET
 
 
 @compiled

@@ -31,7 +31,7 @@ def plan_walk(
         robot: constants.
     """
     gait, ramps = plan.gait, plan.ramps
-    put(plan.landing, landing)
+    put(plan.steps[0], landing)
     plan.following, plan.moving = following, moving
     if gait.stepping:
         ends = _chain_footholds(plan, robot)
@@ -48,7 +48,7 @@ def plan_walk(
 @compiled
 def _chain_footholds(plan: Plan, robot: Model) -> bool:
     """Set the footholds, that of the swing foot first; return whether the walk ends with them."""
-    steps, before, last = plan.steps, support_foot(plan.gait), foothold(plan.landing)
+    steps, before, last = plan.steps, support_foot(plan.gait), foothold(plan.steps[0])
     for k in range(len(steps)):
         put(steps[k], last)
         plan.step_count = k + 1
@@ -87,17 +87,6 @@ def _set_ramps(plan: Plan, ends: bool, robot: Model) -> None:
 
 
 @compiled
-def copy_plan(copy: Plan, plan: Plan) -> None:
-    """Copy a plan."""
-    copy.gait, copy.landing, copy.following = plan.gait, plan.landing, plan.following
-    copy.moving, copy.ramp_count, copy.step_count = plan.moving, plan.ramp_count, plan.step_count
-    for k in range(plan.ramp_count):
-        copy.ramps[k] = plan.ramps[k]
-    for k in range(plan.step_count):
-        copy.steps[k] = plan.steps[k]
-
-
-@compiled
 def reference_of(plan: Plan) -> Records[Ramp]:
     """Return the ramps of a plan from now on, see `Ramp` (n,)."""
     return plan.ramps[: plan.ramp_count]
@@ -118,5 +107,4 @@ def set_ramp(
 @compiled
 def is_single(ramp: Ramp) -> bool:
     """Whether a ramp is a single support."""
-    left: bool = ramp.unloading.left == ramp.loading.left
-    return left
+    return ramp.unloading.left == ramp.loading.left

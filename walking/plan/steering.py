@@ -15,7 +15,6 @@ from walking.plan.footsteps import (
     StepValues,
     command_of,
     command_strides,
-    stride_limits,
     velocity_strides,
 )
 from walking.plan.timing import cadence, command_timing, duration, put_timing
@@ -61,53 +60,30 @@ def step_values(record: StepCommand) -> StepValues:
 
 
 @compiled
-def wanted_velocity(steering: Steering) -> Vector:
-    """Return the wanted velocity (vx, vy, wz) [m/s, m/s, rad/s]."""
-    return twist_of(steering.velocity)
-
-
-@compiled
 def moves(steering: Steering) -> bool:
     """Whether a motion is wanted."""
     return steering.state.explicit or twist_of(steering.velocity) != STILL
 
 
 @compiled
-def limited(velocity: Vector, robot: Model) -> Vector:
+def limited(velocity: Vector, robot: Model) -> tuple[Vector, int]:
     """Clip a velocity to the limits of each component and to the ellipsoid of all.
 
     Returns:
         (vx, vy, wz) [m/s, m/s, rad/s]; the direction of the command is kept when the ellipsoid
-        binds.
+        binds; limits that bind.
     """
-    limits = robot.limits
-    vx, vy, wz = _within(velocity, robot)
+    limits, (vx, vy, wz) = robot.limits, velocity
+    vx = within(vx, -limits.vx_backward, limits.vx)
+    vy, wz = clamp(vy, limits.vy), clamp(wz, limits.wz)
+    bound = SPEED if (vx, vy, wz) != velocity else 0
     max_vx = limits.vx if vx >= 0.0 else limits.vx_backward
     x, y, turn = vx / max_vx, vy / limits.vy, wz / limits.wz
     size = sqrt(x * x + y * y + turn * turn)
     if size > limits.combined:
         scale = limits.combined / size
-        return vx * scale, vy * scale, wz * scale
-    return vx, vy, wz
-
-
-@compiled
-def speed_limits(velocity: Vector, robot: Model) -> int:
-    """Return the speed limits that bind on a velocity command."""
-    bound, each = 0, _within(velocity, robot)
-    if each != velocity:
-        bound |= SPEED
-    if limited(velocity, robot) != each:
-        bound |= COMBINED_SPEED
-    return bound
-
-
-@compiled
-def _within(velocity: Vector, robot: Model) -> Vector:
-    """Clip every component to its limit."""
-    limits, (vx, vy, wz) = robot.limits, velocity
-    vx = within(vx, -limits.vx_backward, limits.vx)
-    return vx, clamp(vy, limits.vy), clamp(wz, limits.wz)
+        return (vx * scale, vy * scale, wz * scale), bound | COMBINED_SPEED
+    return (vx, vy, wz), bound
 
 
 @compiled
@@ -167,7 +143,7 @@ def set_wanted_strides(steering: Steering, correction: Vector, robot: Model) -> 
     if steering.state.explicit:
         command_strides(steering.wanted, steering.state.step, turn * time, robot)
     else:
-        vx, vy, wz = wanted_velocity(steering)
+        vx, vy, wz = twist_of(steering.velocity)
         velocity_strides(steering.wanted, (vx + dx, vy + dy, wz + turn), time, robot)
 
 
@@ -181,19 +157,19 @@ def _hold(steering: Steering, robot: Model) -> int:
         _, late = command_timing(command.step, robot)
         return command_strides(steering.scratch, command.step, 0.0, robot) | late
     velocity = twist_of(command.velocity)
-    bound = speed_limits(velocity, robot)
-    if state.explicit or _differs(steering, limited(velocity, robot)):
+    limit, bound = limited(velocity, robot)
+    if state.explicit or _differs(steering, limit):
         bound |= BALANCE
     if not state.explicit:
-        time, wanted = duration(steering.timing), wanted_velocity(steering)
-        bound |= stride_limits(steering.scratch, wanted, time, robot)
+        time, wanted = duration(steering.timing), twist_of(steering.velocity)
+        bound |= velocity_strides(steering.scratch, wanted, time, robot)
     return bound
 
 
 @compiled
 def _differs(steering: Steering, wanted: Vector) -> bool:
     """Whether a velocity differs from the wanted one; at rest any does."""
-    (vx, vy, wz), (x, y, turn) = wanted_velocity(steering), wanted
+    (vx, vy, wz), (x, y, turn) = twist_of(steering.velocity), wanted
     if wanted == STILL:
         return vx != 0.0 or vy != 0.0 or wz != 0.0
     return abs(vx - x) > SAME_SPEED or abs(vy - y) > SAME_SPEED or abs(wz - turn) > SAME_SPEED
@@ -202,20 +178,20 @@ def _differs(steering: Steering, wanted: Vector) -> bool:
 @compiled
 def _follow_velocity(steering: Steering, velocity: Vector, speed_ratio: float, robot: Model) -> int:
     steering.state.explicit = False
-    wanted, bound = velocity, speed_limits(velocity, robot)
+    (vx, vy, wz), bound = limited(velocity, robot)
+    wanted = velocity
     if speed_ratio < 1.0 and velocity != STILL:
-        vx, vy, wz = limited(velocity, robot)
         wanted = (speed_ratio * vx, speed_ratio * vy, speed_ratio * wz)
         bound |= BALANCE
     if robot.modifiable and velocity == STILL:
         # This generator limits the change itself.
         put_twist(steering.velocity, STILL)
     limit = _approach(steering, wanted, robot)
-    now = wanted_velocity(steering)
+    now = twist_of(steering.velocity)
     put_timing(steering.timing, cadence(now, robot))
     if _differs(steering, limit):
         bound |= ACCELERATION
-    return bound | stride_limits(steering.scratch, now, duration(steering.timing), robot)
+    return bound | velocity_strides(steering.scratch, now, duration(steering.timing), robot)
 
 
 @compiled
@@ -235,7 +211,7 @@ def _follow_state(steering: Steering, robot: Model) -> int:
 @compiled
 def _approach(steering: Steering, velocity: Vector, robot: Model) -> Vector:
     """Approach a velocity by one tick; return it within the speed limits."""
-    limits, wanted = robot.limits, limited(velocity, robot)
+    limits, (wanted, _) = robot.limits, limited(velocity, robot)
     braking = CONTROL_PERIOD / limits.braking_time
     now, peak, (vx, vy, wz) = steering.velocity, steering.peak, wanted
     forward = limits.forward_acceleration * CONTROL_PERIOD

@@ -21,8 +21,7 @@ StepTiming = tuple[int, int, float]
 @compiled
 def duration(timing: Timing) -> float:
     """Return the duration of a footstep [s]."""
-    time: float = (timing.double + timing.single) * CONTROL_PERIOD
-    return time
+    return (timing.double + timing.single) * CONTROL_PERIOD
 
 
 @compiled
@@ -83,8 +82,7 @@ def swing_phase(single: SingleSupport, elapsed: int) -> float:
     """Return the phase of the swing, 0 before and 1 after it [1]."""
     fraction = (elapsed - single.first) / (single.last - single.first)
     phase = single.origin + (1.0 - single.origin) * fraction
-    clipped: float = 0.0 if phase < 0.0 else 1.0 if phase > 1.0 else phase
-    return clipped
+    return within(phase, 0.0, 1.0)
 
 
 @compiled
@@ -105,8 +103,7 @@ def retime_single_support(single: SingleSupport, elapsed: int, ticks: int, robot
 @compiled
 def shift_fraction(shift: WeightShift, tick: int) -> float:
     """Return the progress of a weight shift at a tick [1]."""
-    fraction: float = min(1.0, (tick - shift.begin) / (shift.end - shift.begin))
-    return fraction
+    return min(1.0, (tick - shift.begin) / (shift.end - shift.begin))
 
 
 @compiled
@@ -118,21 +115,12 @@ def put_shift(shift: WeightShift, begin: int, end: int, zmp: Point, right_weight
 
 @compiled
 def equal_clocks(one: Clock, other: Clock) -> bool:
-    """Whether two clocks are the same number by number."""
-    a, b, s, t = one.timing, other.timing, one.shift, other.shift
-    u, v = one.single, other.single
-    equal: bool = (
+    """Whether this footstep and the next ones have the same times."""
+    a, b = one.timing, other.timing
+    return (
         a.double == b.double
         and a.single == b.single
         and a.swing_height == b.swing_height
-        and s.begin == t.begin
-        and s.end == t.end
-        and s.zmp_x == t.zmp_x
-        and s.zmp_y == t.zmp_y
-        and s.right_weight == t.right_weight
-        and u.ticks == v.ticks
-        and u.first == v.first
-        and u.last == v.last
-        and u.origin == v.origin
+        and one.shift.end == other.shift.end
+        and one.single.ticks == other.single.ticks
     )
-    return equal

@@ -81,13 +81,13 @@ def test_a_change_that_is_too_late_is_made_in_part_and_stays_feasible(
     slow, fast = strides_of((0.1, 0.0, 0.0)), strides_of(FAST)
     admission.on_reference(slow)
     admission.admit(slow)
-    before, right = foothold(admission.live.landing), float(slow.right.y)
+    before, right = foothold(admission.live.steps[0]), float(slow.right.y)
     fraction = admission.admit(fast)
     assert 0.0 <= fraction < 1.0
     moved = right + fraction * (float(fast.right.y) - right)
     assert admission.live.following.right.y == pytest.approx(moved)
     if fraction == 0.0:
-        assert foothold(admission.live.landing) == before
+        assert foothold(admission.live.steps[0]) == before
     else:
         assert admission.feasible()
 

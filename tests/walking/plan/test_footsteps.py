@@ -22,9 +22,9 @@ from walking.plan.footsteps import (
     landing_of,
     mean_velocity,
     reachable,
-    stride_limits,
     tendency,
     towards_strides,
+    velocity_strides,
 )
 from walking.plan.timing import cadence, command_timing, put_timing
 
@@ -50,7 +50,7 @@ def time_of(timing):
 
 def limits_of(model, velocity, time):
     scratch = np.zeros(1, Strides)[0]
-    return stride_limits(scratch, velocity, time, model.robot)
+    return velocity_strides(scratch, velocity, time, model.robot)
 
 
 @given(velocities, st.floats(-pi, pi))
