@@ -24,7 +24,7 @@ from hsr8.robots.loaded import LoadedRobot, RawRobot, build_robot, read_robot
 from hsr8.robots.model.posed_shapes import SelfCollision
 from hsr8.robots.model.prepare import prepare
 from hsr8.robots.parts.guess import Finding, Guess, guess
-from hsr8.robots.parts.places import Prepared
+from hsr8.robots.parts.prepared import Prepared
 from hsr8.robots.parts.roles import find_roles
 from hsr8.robots.parts.skeleton import HINGE, Posed, Skeleton, root_of, skeleton_of
 from hsr8.robots.parts.soles import flat_feet

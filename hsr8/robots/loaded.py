@@ -22,8 +22,8 @@ from hsr8.robots.model.posed_shapes import arm_spheres, exclude_neighbours, robo
 from hsr8.robots.model.prepare import LIMITED, TO_JOINT, prepare
 from hsr8.robots.model.servos import choose_servos
 from hsr8.robots.model.tree import tree_of
-from hsr8.robots.parts.places import Prepared
 from hsr8.robots.parts.posture import check_joint_names, completed_posture, stated_posture
+from hsr8.robots.parts.prepared import Prepared, moving_body
 from hsr8.robots.parts.roles import Roles, base_note, find_roles, present
 from hsr8.robots.parts.skeleton import HINGE, LEG_JOINTS, Posed
 from hsr8.robots.parts.soles import soles_of
@@ -190,7 +190,8 @@ def _read(description: RobotDescription, folder: Path, model_file: Path) -> RawR
     _set_efforts(spec, description.effort)
     fresh = spec.copy()  # a compiled specification is slow to change
     if description.camera is not None:
-        drop_drawn_meshes(spec, [prepared.where(foot).body for foot in description.feet])
+        feet = [moving_body(spec.body(foot), prepared.root) for foot in description.feet]
+        drop_drawn_meshes(spec, feet)
     model, notes = compile_spec(source, spec)
     if notes:  # meshes were left out
         fresh = spec.copy()
@@ -233,13 +234,13 @@ def _built(description: RobotDescription, file: Path, raw: RawRobot) -> LoadedRo
     completed, notes = completed_posture(
         model, description, {**raw.posture, **description.posture}, roles
     )
-    notes = [*raw.notes, *base_note(roles, prepared), *notes]
+    notes = [*raw.notes, *base_note(model, roles, prepared), *notes]
     description = description.model_copy(update={"posture": completed})
-    ranges, mirror_notes = check_roles(model, roles, description, prepared, source)
+    ranges, mirror_notes = check_roles(model, roles, description, source)
     _set_ranges(spec, ranges)
     straight = present(model, description.zero)
     zero = Posed.at(model, straight, base=roles.frame)
-    soles, sole_notes = soles_of(zero, roles, description, prepared)
+    soles, sole_notes = soles_of(zero, roles, description)
     posture = {**completed, **straight}
     servo_notes = choose_servos(
         spec,
@@ -251,7 +252,7 @@ def _built(description: RobotDescription, file: Path, raw: RawRobot) -> LoadedRo
         sole_height=soles[0].height,
     )
     with reading_models(source):
-        normal = normalise(spec, zero, roles, soles, description=description, prepared=prepared)
+        normal = normalise(spec, zero, roles, soles, description=description)
         light = normal.spec.copy()
         drop_drawn_meshes(light, roles.feet)
         compiled = light.compile()

@@ -20,7 +20,7 @@ from hsr8.robots.file.key_mistake import KeyMistake
 from hsr8.robots.model.prepare import hold
 from hsr8.robots.model.servos import max_torque_of
 from hsr8.robots.parts.limbs import bent
-from hsr8.robots.parts.places import Prepared
+from hsr8.robots.parts.prepared import Prepared
 from hsr8.robots.parts.roles import find_roles, present
 from hsr8.robots.parts.skeleton import FREE, Posed, skeleton_of
 

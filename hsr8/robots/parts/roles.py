@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from hsr8.robots.file.description import CameraMount, RobotDescription
 from hsr8.robots.file.key_mistake import KeyMistake, require_name
-from hsr8.robots.parts.places import Prepared
+from hsr8.robots.parts.prepared import Prepared
 from hsr8.robots.parts.skeleton import HINGE, LEG_JOINTS, SAME, BaseFrame, Posed, path_up
 
 Array = NDArray[np.float64]
@@ -56,8 +56,8 @@ def find_roles(model: mujoco.MjModel, description: RobotDescription, prepared: P
         KeyMistake: a name is unknown, a leg lacks six hinge joints, or the robot does not stand on
             its feet.
     """
-    _require_camera(model, description, prepared)
-    left, right = (prepared.where(foot).body for foot in description.feet)
+    _require_camera(model, description)
+    left, right = (_moving(model, foot) for foot in description.feet)
     legs = _leg(model, prepared, description.feet[0]), _leg(model, prepared, description.feet[1])
     if common := [name for name in legs[0] if name in legs[1]]:
         left_own, right_own = (tuple(n for n in leg if n not in common) for leg in legs)
@@ -86,12 +86,16 @@ def find_roles(model: mujoco.MjModel, description: RobotDescription, prepared: P
     )
 
 
-def pose_of(posed: Posed, prepared: Prepared, link: str) -> tuple[Array, Array]:
-    """Return rotation (3, 3) and position (3,) [m] of a link of the file."""
-    part = prepared.where(link)
-    body = posed.model.body(part.body).id
-    rotation, position = posed.data.xmat[body].reshape(3, 3), posed.data.xpos[body]
-    return rotation @ part.pose[:3, :3], position + rotation @ part.pose[:3, 3]
+def pose_of(posed: Posed, body: str) -> tuple[Array, Array]:
+    """Return rotation (3, 3) and position (3,) [m] of a body."""
+    at = posed.model.body(body).id
+    return posed.data.xmat[at].reshape(3, 3), posed.data.xpos[at]
+
+
+def _moving(model: mujoco.MjModel, body: str) -> str:
+    """Return the body with joints that carries a body, or the body itself."""
+    name: str = model.body(int(model.body_weldid[model.body(body).id])).name
+    return name
 
 
 def _base_frame(
@@ -109,7 +113,7 @@ def _base_frame(
         KeyMistake: the robot does not stand with its feet side by side below the hips.
     """
     posed = Posed.at(model, present(model, description.zero))
-    link, origin = pose_of(posed, prepared, prepared.base)
+    link, origin = pose_of(posed, prepared.base)
     hips, ankles = (
         [link.T @ posed.data.xanchor[model.joint(leg[end]).id] for leg in legs] for end in (0, -1)
     )
@@ -133,12 +137,11 @@ def _base_frame(
     return BaseFrame(turn @ link.T, origin)
 
 
-def base_note(roles: Roles, prepared: Prepared) -> list[str]:
+def base_note(model: mujoco.MjModel, roles: Roles, prepared: Prepared) -> list[str]:
     """Return a note on the directions of the base, where they are not those of its link."""
     if roles.frame.is_body:
         return []
-    part = prepared.where(prepared.base)
-    link = np.eye(3) if prepared.base == prepared.root else part.pose[:3, :3]
+    link, _ = pose_of(Posed.at(model, {}), prepared.base)
     turn = roles.frame.rotation @ link
     if np.allclose(turn, np.eye(3)):
         return []
@@ -174,13 +177,10 @@ def _axis_name(axis: Array) -> str:
     return f"{'-' if axis[k] < 0.0 else ''}{'xyz'[k]}"
 
 
-def _require_camera(
-    model: mujoco.MjModel, description: RobotDescription, prepared: Prepared
-) -> None:
+def _require_camera(model: mujoco.MjModel, description: RobotDescription) -> None:
     """Refuse the name of a camera, or of its body, that the model lacks."""
     if isinstance(description.camera, CameraMount):
-        bodies = [model.body(b).name for b in range(1, model.nbody)]
-        names = [*bodies, *prepared.places]
+        names = [model.body(b).name for b in range(1, model.nbody)]
         require_name("camera.body", "body", description.camera.body, names)
     elif description.camera is not None:
         cameras = [model.camera(i).name for i in range(model.ncam)]
@@ -190,7 +190,7 @@ def _require_camera(
 def _leg(model: mujoco.MjModel, prepared: Prepared, foot: str) -> Leg:
     """Return the last six hinge joints above a foot."""
     names = list[str]()
-    for above in path_up(model, model.body(prepared.where(foot).body).id):
+    for above in path_up(model, model.body(foot).id):
         if model.body(above).name == prepared.root or len(names) >= LEG_JOINTS:
             break
         first = int(model.body_jntadr[above])
