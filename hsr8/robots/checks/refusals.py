@@ -86,7 +86,7 @@ class _Checks:
 
     def _posed(self, more: dict[str, float]) -> Skeleton:
         base = self._model.body(self._roles.base).id
-        return skeleton_of(self._model, base, {**self._zero, **more}).within(self._roles.frame)
+        return skeleton_of(self._model, base, {**self._zero, **more})
 
     def _range_error(self, joint: str, reason: str) -> ModelError:
         return joint_error(joint, "range", self._description, self._source, reason)

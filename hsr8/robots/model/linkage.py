@@ -71,9 +71,9 @@ def drive_serially(
     model.opt.jacobian = mujoco.mjtJacobian.mjJAC_DENSE
     roles = find_roles(model, description, prepared)
     zero = present(model, description.zero)
-    skeleton = skeleton_of(model, model.body(roles.base).id, zero).within(roles.frame)
+    skeleton = skeleton_of(model, model.body(roles.base).id, zero)
     legs = [[skeleton.joints.index(name) for name in leg] for leg in roles.legs]
-    posed = Posed.at(model, {**zero, **bent(skeleton, legs, zero)}, base=roles.frame)
+    posed = Posed.at(model, {**zero, **bent(skeleton, legs, zero)})
     joints = [name for leg in roles.legs for name in leg]
     closure = close_loops(posed, joints)
     drives = [_Drive.of(model, closure, k, joints[k], speed) for k in range(len(joints))]

@@ -18,7 +18,7 @@ from hsr8.robots.model.ignored import dropped_options
 from hsr8.robots.model.servos import physics_step
 from hsr8.robots.model.tree import Parts
 from hsr8.robots.parts.roles import Roles, pose_of
-from hsr8.robots.parts.skeleton import BaseFrame, Posed, quaternion_of
+from hsr8.robots.parts.skeleton import Posed, quaternion_of
 from hsr8.robots.parts.soles import Rectangle
 from hsr8.robots.scale import DEFAULT_FOV_DEG
 from walking.body.tree import Sole
@@ -102,9 +102,7 @@ def normalise(
         notes.append(f"contact shapes of the feet replaced by a box each: {replaced} shapes")
     for side in range(2):
         sole = _add_sole(spec, zero, roles, side, soles[side])
-    spec.body(roles.base).add_site(
-        name=IMU, pos=roles.frame.origin, quat=quaternion_of(roles.frame.rotation.T)
-    )
+    spec.body(roles.base).add_site(name=IMU)
     kinds = mujoco.mjtSensor, mujoco.mjtObj
     spec.add_sensor(
         name=ACCELEROMETER,
@@ -116,8 +114,6 @@ def normalise(
     for link in reversed(spec.bodies[1:]):
         if not (link.joints or link.mass or link.name == roles.base):
             link.to_frame()  # a frame of the file, which costs time in every physics step
-    if not roles.frame.is_body:
-        rebase(spec, roles.base, roles.frame)
     return NormalForm(spec, Parts(FEET, sole, CAMERA_SITE), tuple(notes))
 
 
@@ -248,28 +244,6 @@ def _absorb_shapes(body: mujoco.MjsBody) -> tuple[int, int]:
             # Only the box meets the floor and the other foot.
             geom.contype = geom.conaffinity = 0
     return contype, conaffinity
-
-
-def rebase(spec: mujoco.MjSpec, root: str, base: BaseFrame) -> None:
-    """Move the frame of the body with the free joint to that of the base.
-
-    Args:
-        spec: specification, changed in place; its inertias are explicit.
-        root: body with the free joint.
-        base: frame of the base.
-    """
-    body = spec.body(root)
-    turn = quaternion_of(base.rotation)
-    parts = [*body.bodies, *body.geoms, *body.sites, *body.cameras, *body.lights, *body.frames]
-    frame = body.add_frame(pos=-base.rotation @ base.origin, quat=turn)
-    for part in parts:
-        if part.frame is None:
-            part.set_frame(frame)
-    turned = np.empty(4)
-    mujoco.mju_mulQuat(turned, turn, np.asarray(body.iquat, float))
-    body.ipos = base.rotation @ (np.asarray(body.ipos, float) - base.origin)
-    body.iquat, body.ialt.type = turned, mujoco.mjtOrientation.mjORIENTATION_QUAT
-    body.quat, body.alt.type = (1.0, 0.0, 0.0, 0.0), mujoco.mjtOrientation.mjORIENTATION_QUAT
 
 
 def _camera_pose(

@@ -17,7 +17,7 @@ from hsr8.robots.file.read import ModelFile
 from hsr8.robots.model.ignored import drop_ignored
 from hsr8.robots.model.inertia import complete_inertias
 from hsr8.robots.parts.prepared import Prepared, moving_body
-from hsr8.robots.parts.skeleton import LEG_JOINTS, clip_to_range
+from hsr8.robots.parts.skeleton import LEG_JOINTS, BaseFrame, clip_to_range, quaternion_of
 
 Array = NDArray[np.float64]
 
@@ -117,11 +117,34 @@ def _forget_zero_efforts(spec: mujoco.MjSpec) -> None:
             joint.actfrclimited = UNLIMITED
 
 
+def turn_base(spec: mujoco.MjSpec, root: str, base: BaseFrame) -> None:
+    """Move the frame of the body with the free joint to that of the base.
+
+    Args:
+        spec: specification, changed in place.
+        root: body with the free joint.
+        base: frame of the base.
+    """
+    body = spec.body(root)
+    turn = quaternion_of(base.rotation)
+    parts = [*body.bodies, *body.geoms, *body.sites, *body.cameras, *body.lights, *body.frames]
+    frame = body.add_frame(pos=-base.rotation @ base.origin, quat=turn)
+    for part in parts:
+        if part.frame is None:
+            part.set_frame(frame)
+    if body.explicitinertial:
+        turned = np.empty(4)
+        mujoco.mju_mulQuat(turned, turn, orientation(spec, body.iquat, body.ialt))
+        body.ipos = base.rotation @ (np.asarray(body.ipos, float) - base.origin)
+        body.iquat, body.ialt.type = turned, mujoco.mjtOrientation.mjORIENTATION_QUAT
+    body.quat, body.alt.type = (1.0, 0.0, 0.0, 0.0), mujoco.mjtOrientation.mjORIENTATION_QUAT
+
+
 def hold(spec: mujoco.MjSpec, name: str, angle: float) -> None:
     """Remove a joint and its actuators; its body keeps the place of an angle [rad or m]."""
     joint = spec.joint(name)
     body, degree = joint.parent, bool(spec.compiler.degree)
-    quat = orientation(spec, body)
+    quat = orientation(spec, body.quat, body.alt)
     axis, anchor = np.asarray(joint.axis, float), np.asarray(joint.pos, float)
     axis = axis / np.linalg.norm(axis)
     turn, shift = np.array([1.0, 0.0, 0.0, 0.0]), np.zeros(3)
@@ -146,17 +169,23 @@ def hold(spec: mujoco.MjSpec, name: str, angle: float) -> None:
         spec.delete(part)
 
 
-def orientation(spec: mujoco.MjSpec, body: mujoco.MjsBody) -> Array:
-    """Return the stated orientation of a body in its parent, a quaternion (4,)."""
-    if body.alt.type == mujoco.mjtOrientation.mjORIENTATION_QUAT:
-        quat = np.array(body.quat, float)
+def orientation(spec: mujoco.MjSpec, quaternion: Array, other: Any) -> Array:
+    """Return a stated orientation as a unit quaternion (4,).
+
+    Args:
+        spec: specification, whose compiler has the unit of angles.
+        quaternion: orientation, unless another form is stated (4,).
+        other: orientation in another form.
+    """
+    if other.type == mujoco.mjtOrientation.mjORIENTATION_QUAT:
+        quat = np.array(quaternion, float)
         normalised: Array = quat / np.linalg.norm(quat)
         return normalised
     return np.array(
         mujoco.MjSpec.resolve_orientation(
             degree=bool(spec.compiler.degree),
             sequence=spec.compiler.eulerseq,
-            orientation=body.alt,
+            orientation=other,
         )
     )
 

@@ -27,7 +27,6 @@ class Roles:
 
     Attributes:
         base: body with the free joint.
-        frame: frame of the base, in that body.
         feet: bodies of the left and the right foot.
         legs: six hinge joints of the left and the right leg, hip first.
         head: pan and tilt joint, if the robot has a movable head.
@@ -36,7 +35,6 @@ class Roles:
     """
 
     base: str
-    frame: BaseFrame
     feet: tuple[str, str]
     legs: tuple[Leg, Leg]
     head: tuple[str, str] | None
@@ -73,11 +71,11 @@ def find_roles(model: mujoco.MjModel, description: RobotDescription, prepared: P
                     f"{key}: joint {name!r} cannot move: {prepared.held[name]}; expected a driven "
                     "joint: leave the key out"
                 )
+    base_frame(model, description, prepared)  # the robot stands
     head, shoulders = description.head, description.shoulders
     carried = shoulders or head
     return Roles(
         base=prepared.root,
-        frame=_base_frame(model, description, prepared, (left, right), legs),
         feet=(left, right),
         legs=legs,
         head=head,
@@ -98,20 +96,24 @@ def _moving(model: mujoco.MjModel, body: str) -> str:
     return name
 
 
-def _base_frame(
-    model: mujoco.MjModel,
-    description: RobotDescription,
-    prepared: Prepared,
-    feet: tuple[str, str],
-    legs: tuple[Leg, Leg],
+def base_frame(
+    model: mujoco.MjModel, description: RobotDescription, prepared: Prepared
 ) -> BaseFrame:
     """Return the frame of the base, whose axes are those of its link nearest to the robot's.
 
     Left is from the right to the left foot, up from the feet to the hips, at the angles `zero`.
 
+    Args:
+        model: model compiled from `prepared`.
+        description: description of the robot.
+        prepared: prepared model.
+
     Raises:
-        KeyMistake: the robot does not stand with its feet side by side below the hips.
+        KeyMistake: a leg lacks six hinge joints, or the robot does not stand with its feet side by
+            side below the hips.
     """
+    legs = [_leg(model, prepared, foot) for foot in description.feet]
+    feet = [_moving(model, foot) for foot in description.feet]
     posed = Posed.at(model, present(model, description.zero))
     link, origin = pose_of(posed, prepared.base)
     hips, ankles = (
@@ -134,19 +136,22 @@ def _base_frame(
     turn = np.array([forward, left, up])
     if (turn == np.eye(3)).all() and prepared.base == prepared.root:
         return SAME
-    return BaseFrame(turn @ link.T, origin)
+    return BaseFrame(turn @ link.T, origin.copy())
 
 
-def base_note(model: mujoco.MjModel, roles: Roles, prepared: Prepared) -> list[str]:
-    """Return a note on the directions of the base, where they are not those of its link."""
-    if roles.frame.is_body:
-        return []
-    link, _ = pose_of(Posed.at(model, {}), prepared.base)
-    turn = roles.frame.rotation @ link
+def base_note(model: mujoco.MjModel, frame: BaseFrame, base: str) -> list[str]:
+    """Return a note on the directions of the base, where they are not those of its link.
+
+    Args:
+        model: model before the turn.
+        frame: frame of the base.
+        base: link of the base.
+    """
+    turn = frame.rotation @ pose_of(Posed.at(model, {}), base)[0]
     if np.allclose(turn, np.eye(3)):
         return []
     names = (_axis_name(turn[row]) for row in (0, 2))
-    return [f"base turned: forward is {next(names)} of {prepared.base!r}, up its {next(names)}"]
+    return [f"base turned: forward is {next(names)} of {base!r}, up its {next(names)}"]
 
 
 def present(model: mujoco.MjModel, angles: dict[str, float]) -> dict[str, float]:
