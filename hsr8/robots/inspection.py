@@ -24,8 +24,8 @@ from hsr8.robots.loaded import LoadedRobot, RawRobot, build_robot, read_robot
 from hsr8.robots.model.posed_shapes import SelfCollision
 from hsr8.robots.model.prepare import prepare
 from hsr8.robots.parts.guess import Finding, Guess, guess
-from hsr8.robots.parts.places import Prepared
-from hsr8.robots.parts.roles import find_roles
+from hsr8.robots.parts.prepared import Prepared
+from hsr8.robots.parts.roles import base_frame, find_roles
 from hsr8.robots.parts.skeleton import HINGE, Posed, Skeleton, root_of, skeleton_of
 from hsr8.robots.parts.soles import flat_feet
 from hsr8.robots.walk.rehearsal import postures
@@ -135,7 +135,8 @@ def _flat_feet(
         roles = find_roles(model, description, prepared)
     except KeyMistake:  # loading the robot reports it
         return {}
-    return flat_feet(model, roles.feet, guessed.legs, roles.frame)
+    frame = base_frame(model, description, prepared)
+    return flat_feet(model, roles.feet, guessed.legs, frame)
 
 
 def description_text(inspection: Inspection, file: Path, command: str) -> str:
@@ -290,8 +291,7 @@ def _spread_postures(raw: RawRobot, description: RobotDescription) -> Iterator[d
     """Yield postures with the arms off the trunk, or bent at the elbows [rad]."""
     if description.shoulders is None:
         return
-    frame = find_roles(raw.model, description, raw.prepared).frame
-    skeleton = skeleton_of(raw.model, root_of(raw.model)).within(frame)
+    skeleton = skeleton_of(raw.model, root_of(raw.model))
     left, right = description.shoulders
     rolls = [_shoulder_roll(skeleton, left, right), _shoulder_roll(skeleton, right, left)]
     elbows = [_elbow(skeleton, left), _elbow(skeleton, right)]

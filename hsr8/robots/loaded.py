@@ -15,17 +15,18 @@ from hsr8.robots.file.description import MAX_FOV, MIN_FOV, TRUNK, RobotDescripti
 from hsr8.robots.file.files import package_folders, reading_models, stamp_of
 from hsr8.robots.file.key_mistake import KeyMistake, at_least, joint_error, reading_keys
 from hsr8.robots.file.locate import find_description, find_model, model_files
-from hsr8.robots.file.read import compile_spec, drop_drawn_meshes, read_spec
+from hsr8.robots.file.read import ModelFile, compile_spec, drop_drawn_meshes, read_spec
+from hsr8.robots.file.urdf import drop_invalid_meshes
 from hsr8.robots.model.linkage import drive_serially
 from hsr8.robots.model.normal_form import normalise
 from hsr8.robots.model.posed_shapes import arm_spheres, exclude_neighbours, robot_radius
-from hsr8.robots.model.prepare import LIMITED, TO_JOINT, prepare
+from hsr8.robots.model.prepare import LIMITED, TO_JOINT, prepare, turn_base
 from hsr8.robots.model.servos import choose_servos
 from hsr8.robots.model.tree import tree_of
-from hsr8.robots.parts.places import Prepared
 from hsr8.robots.parts.posture import check_joint_names, completed_posture, stated_posture
-from hsr8.robots.parts.roles import Roles, base_note, find_roles, present
-from hsr8.robots.parts.skeleton import HINGE, LEG_JOINTS, Posed
+from hsr8.robots.parts.prepared import Prepared, moving_body
+from hsr8.robots.parts.roles import Roles, base_frame, base_note, find_roles, present
+from hsr8.robots.parts.skeleton import HINGE, LEG_JOINTS, SAME, BaseFrame, Posed
 from hsr8.robots.parts.soles import soles_of
 from hsr8.robots.walk.rehearsal import within_joints
 from hsr8.robots.walk.rules import fit, one_leg_load
@@ -183,25 +184,49 @@ def _read(description: RobotDescription, folder: Path, model_file: Path) -> RawR
         posture={**posture, **description.zero},
         repair_inertia=description.repair_inertia,
     )
-    speed, linkage_notes = {**source.speed, **description.speed}, list[str]()
+    _set_efforts(spec, description.effort)
+    feet = [moving_body(spec.body(foot), prepared.root) for foot in description.feet]
+    light = [] if description.camera is None else feet
+    model, mesh_notes = _compiled(source, light)
+    notes = [*source.notes, *prepared.notes, *mesh_notes]
+    frame = _frame(model, description, prepared)
+    if not frame.is_body:
+        notes += base_note(model, frame, prepared.base)
+        turn_base(spec, prepared.root, frame)
+        before, (model, _) = Posed.at(model, {}, base=frame), _compiled(source, light)
+        _compare(before, Posed.at(model, {}), str(model_file))
+    speed = {**source.speed, **description.speed}
     if description.linkage is not None:
         carried, linkage_notes = drive_serially(prepared, description, speed)
         speed = {**carried, **speed}
-    _set_efforts(spec, description.effort)
-    fresh = spec.copy()  # a compiled specification is slow to change
-    if description.camera is not None:
-        drop_drawn_meshes(spec, [prepared.where(foot).body for foot in description.feet])
-    model, notes = compile_spec(source, spec)
-    if notes:  # meshes were left out
-        fresh = spec.copy()
-    return RawRobot(
-        source=model_file,
-        prepared=replace(prepared, spec=fresh),
-        model=model,
-        posture=posture,
-        speed=speed,
-        notes=(*source.notes, *prepared.notes, *linkage_notes, *notes),
-    )
+        notes += linkage_notes
+        _set_efforts(spec, description.effort)
+        model, _ = _compiled(source, light)
+    return RawRobot(model_file, prepared, model, posture, speed, tuple(notes))
+
+
+def _compiled(source: ModelFile, feet: list[str]) -> tuple[mujoco.MjModel, list[str]]:
+    """Compile a model; return notes on the meshes that are left out, also of its specification.
+
+    Args:
+        source: model.
+        feet: bodies whose drawn meshes are needed; all of the robot are if there are none.
+    """
+    light = source.spec.copy()  # a compiled specification is slow to change
+    if feet:
+        drop_drawn_meshes(light, feet)
+    model, notes = compile_spec(source, light)
+    if notes:
+        drop_invalid_meshes(source.spec)
+    return model, notes
+
+
+def _frame(model: mujoco.MjModel, description: RobotDescription, prepared: Prepared) -> BaseFrame:
+    """Return the frame of the base; that of its body where the roles are to be refused."""
+    try:
+        return base_frame(model, description, prepared)
+    except KeyMistake:
+        return SAME
 
 
 def _set_ranges(spec: mujoco.MjSpec, ranges: Mapping[str, tuple[float, float]]) -> None:
@@ -233,13 +258,13 @@ def _built(description: RobotDescription, file: Path, raw: RawRobot) -> LoadedRo
     completed, notes = completed_posture(
         model, description, {**raw.posture, **description.posture}, roles
     )
-    notes = [*raw.notes, *base_note(roles, prepared), *notes]
+    notes = [*raw.notes, *notes]
     description = description.model_copy(update={"posture": completed})
-    ranges, mirror_notes = check_roles(model, roles, description, prepared, source)
+    ranges, mirror_notes = check_roles(model, roles, description, source)
     _set_ranges(spec, ranges)
     straight = present(model, description.zero)
-    zero = Posed.at(model, straight, base=roles.frame)
-    soles, sole_notes = soles_of(zero, roles, description, prepared)
+    zero = Posed.at(model, straight)
+    soles, sole_notes = soles_of(zero, roles, description)
     posture = {**completed, **straight}
     servo_notes = choose_servos(
         spec,
@@ -251,7 +276,7 @@ def _built(description: RobotDescription, file: Path, raw: RawRobot) -> LoadedRo
         sole_height=soles[0].height,
     )
     with reading_models(source):
-        normal = normalise(spec, zero, roles, soles, description=description, prepared=prepared)
+        normal = normalise(spec, zero, roles, soles, description=description)
         light = normal.spec.copy()
         drop_drawn_meshes(light, roles.feet)
         compiled = light.compile()

@@ -15,7 +15,6 @@ from hsr8.robots.checks.mechanism import check_mechanism
 from hsr8.robots.file.description import RobotDescription
 from hsr8.robots.file.key_mistake import KeyMistake, at_most, joint_error
 from hsr8.robots.parts.limbs import BENT, bent, foot_joint, side_vote, toe_vote
-from hsr8.robots.parts.places import Prepared
 from hsr8.robots.parts.roles import Roles, present
 from hsr8.robots.parts.skeleton import MirroredPair, Skeleton, mirrored_pairs, skeleton_of
 
@@ -35,7 +34,6 @@ def check_roles(
     model: mujoco.MjModel,
     roles: Roles,
     description: RobotDescription,
-    prepared: Prepared,
     source: str,
 ) -> tuple[dict[str, tuple[float, float]], list[str]]:
     """Refuse a robot that cannot walk.
@@ -44,7 +42,6 @@ def check_roles(
         model: compiled model.
         roles: roles of its parts.
         description: description of the robot.
-        prepared: prepared model of the robot.
         source: model file, which begins the messages about its elements.
 
     Returns:
@@ -55,7 +52,7 @@ def check_roles(
         ModelError: an element of the model is wrong.
     """
     check_mechanism(model, roles, description, source)
-    check = _Checks(model, roles, description, prepared, source)
+    check = _Checks(model, roles, description, source)
     check.ranges()
     check.toes()
     check.pitching()
@@ -75,11 +72,10 @@ class _Checks:
         model: mujoco.MjModel,
         roles: Roles,
         description: RobotDescription,
-        prepared: Prepared,
         source: str,
     ) -> None:
         self._model, self._roles = model, roles
-        self._description, self._prepared, self._source = description, prepared, source
+        self._description, self._source = description, source
         self._zero = present(model, description.zero)
         self._skeleton = self._posed({})
         left, right = roles.legs
@@ -90,7 +86,7 @@ class _Checks:
 
     def _posed(self, more: dict[str, float]) -> Skeleton:
         base = self._model.body(self._roles.base).id
-        return skeleton_of(self._model, base, {**self._zero, **more}).within(self._roles.frame)
+        return skeleton_of(self._model, base, {**self._zero, **more})
 
     def _range_error(self, joint: str, reason: str) -> ModelError:
         return joint_error(joint, "range", self._description, self._source, reason)
@@ -308,7 +304,7 @@ class _Checks:
         if isinstance(camera, str):
             body = model.body(int(model.cam_bodyid[model.camera(camera).id])).name
         else:
-            body = self._prepared.where(camera.body).body
+            body = camera.body
             leg = float(np.linalg.norm(self._hips_above_feet[0]))
             distance = float(np.linalg.norm(camera.position))
             if distance > MAX_CAMERA * leg:

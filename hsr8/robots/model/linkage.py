@@ -20,7 +20,7 @@ from hsr8.robots.file.key_mistake import KeyMistake
 from hsr8.robots.model.prepare import hold
 from hsr8.robots.model.servos import max_torque_of
 from hsr8.robots.parts.limbs import bent
-from hsr8.robots.parts.places import Prepared
+from hsr8.robots.parts.prepared import Prepared
 from hsr8.robots.parts.roles import find_roles, present
 from hsr8.robots.parts.skeleton import FREE, Posed, skeleton_of
 
@@ -71,9 +71,9 @@ def drive_serially(
     model.opt.jacobian = mujoco.mjtJacobian.mjJAC_DENSE
     roles = find_roles(model, description, prepared)
     zero = present(model, description.zero)
-    skeleton = skeleton_of(model, model.body(roles.base).id, zero).within(roles.frame)
+    skeleton = skeleton_of(model, model.body(roles.base).id, zero)
     legs = [[skeleton.joints.index(name) for name in leg] for leg in roles.legs]
-    posed = Posed.at(model, {**zero, **bent(skeleton, legs, zero)}, base=roles.frame)
+    posed = Posed.at(model, {**zero, **bent(skeleton, legs, zero)})
     joints = [name for leg in roles.legs for name in leg]
     closure = close_loops(posed, joints)
     drives = [_Drive.of(model, closure, k, joints[k], speed) for k in range(len(joints))]

@@ -5,6 +5,7 @@ the soles, an IMU, a camera with its site, and one box per sole; servos are adde
 description asks for it. Lights, keyframes, sensors and the floor of the file are removed.
 """
 
+from collections.abc import Iterator
 from dataclasses import dataclass
 from math import radians
 
@@ -16,9 +17,8 @@ from hsr8.robots.file.description import CameraMount, RobotDescription
 from hsr8.robots.model.ignored import dropped_options
 from hsr8.robots.model.servos import physics_step
 from hsr8.robots.model.tree import Parts
-from hsr8.robots.parts.places import Prepared
 from hsr8.robots.parts.roles import Roles, pose_of
-from hsr8.robots.parts.skeleton import BaseFrame, Posed, quaternion_of
+from hsr8.robots.parts.skeleton import Posed, quaternion_of
 from hsr8.robots.parts.soles import Rectangle
 from hsr8.robots.scale import DEFAULT_FOV_DEG
 from walking.model import Sole
@@ -73,7 +73,6 @@ def normalise(
     soles: tuple[Rectangle, Rectangle],
     *,
     description: RobotDescription,
-    prepared: Prepared,
 ) -> NormalForm:
     """Bring a robot into normal form.
 
@@ -83,14 +82,13 @@ def normalise(
         roles: roles of the robot's parts.
         soles: soles of both feet.
         description: description of the robot.
-        prepared: prepared model of the robot.
     """
     notes = list(dropped_options(spec))
     before = float(spec.option.timestep)
     spec.option.timestep = physics_step(before)
     if abs(spec.option.timestep - before) > 1e-9:
         notes.append(f"physics step {1e3 * before:g} ms -> {1e3 * spec.option.timestep:g} ms")
-    camera, note = _camera_pose(zero, roles, description, prepared)
+    camera, note = _camera_pose(zero, roles, description)
     notes.append(note)
     _fix_masses(spec, zero.model)
     _strip(spec, zero.model, roles)
@@ -104,9 +102,7 @@ def normalise(
         notes.append(f"contact shapes of the feet replaced by a box each: {replaced} shapes")
     for side in range(2):
         sole = _add_sole(spec, zero, roles, side, soles[side])
-    spec.body(roles.base).add_site(
-        name=IMU, pos=roles.frame.origin, quat=quaternion_of(roles.frame.rotation.T)
-    )
+    spec.body(roles.base).add_site(name=IMU)
     kinds = mujoco.mjtSensor, mujoco.mjtObj
     spec.add_sensor(
         name=ACCELEROMETER,
@@ -115,15 +111,24 @@ def normalise(
         objname=IMU,
     )
     _add_camera(spec, zero, camera)
-    if not roles.frame.is_body:
-        rebase(spec, roles.base, roles.frame)
+    for link in reversed(spec.bodies[1:]):
+        if not (link.joints or link.mass or link.name == roles.base):
+            link.to_frame()  # a frame of the file, which costs time in every physics step
     return NormalForm(spec, Parts(FEET, sole, CAMERA_SITE), tuple(notes))
 
 
 def _contact_shapes(spec: mujoco.MjSpec, roles: Roles) -> int:
     """Return the number of colliding shapes of the feet."""
-    geoms = [geom for foot in roles.feet for geom in spec.body(foot).geoms]
+    geoms = [geom for foot in roles.feet for geom in _shapes(spec.body(foot))]
     return sum(bool(geom.contype or geom.conaffinity) for geom in geoms)
+
+
+def _shapes(body: mujoco.MjsBody) -> Iterator[mujoco.MjsGeom]:
+    """Yield the shapes of a body and of those fixed to it."""
+    yield from body.geoms
+    for child in body.bodies:
+        if not child.joints:
+            yield from _shapes(child)
 
 
 def _fix_masses(spec: mujoco.MjSpec, model: mujoco.MjModel) -> None:
@@ -232,7 +237,7 @@ def _add_sole(spec: mujoco.MjSpec, zero: Posed, roles: Roles, side: int, edges: 
 def _absorb_shapes(body: mujoco.MjsBody) -> tuple[int, int]:
     """Return the self-collision bits of a foot's shapes, which its sole box takes over."""
     contype = conaffinity = 0
-    for geom in body.geoms:
+    for geom in _shapes(body):
         if geom.contype or geom.conaffinity:
             contype |= geom.contype
             conaffinity |= geom.conaffinity & ~BODY_BIT
@@ -241,30 +246,8 @@ def _absorb_shapes(body: mujoco.MjsBody) -> tuple[int, int]:
     return contype, conaffinity
 
 
-def rebase(spec: mujoco.MjSpec, root: str, base: BaseFrame) -> None:
-    """Move the frame of the body with the free joint to that of the base.
-
-    Args:
-        spec: specification, changed in place; its inertias are explicit.
-        root: body with the free joint.
-        base: frame of the base.
-    """
-    body = spec.body(root)
-    turn = quaternion_of(base.rotation)
-    parts = [*body.bodies, *body.geoms, *body.sites, *body.cameras, *body.lights, *body.frames]
-    frame = body.add_frame(pos=-base.rotation @ base.origin, quat=turn)
-    for part in parts:
-        if part.frame is None:
-            part.set_frame(frame)
-    turned = np.empty(4)
-    mujoco.mju_mulQuat(turned, turn, np.asarray(body.iquat, float))
-    body.ipos = base.rotation @ (np.asarray(body.ipos, float) - base.origin)
-    body.iquat, body.ialt.type = turned, mujoco.mjtOrientation.mjORIENTATION_QUAT
-    body.quat, body.alt.type = (1.0, 0.0, 0.0, 0.0), mujoco.mjtOrientation.mjORIENTATION_QUAT
-
-
 def _camera_pose(
-    zero: Posed, roles: Roles, description: RobotDescription, prepared: Prepared
+    zero: Posed, roles: Roles, description: RobotDescription
 ) -> tuple[tuple[str, Array, Array], str]:
     """Return body, position and rotation (right, down, forward) of the camera, and a note."""
     model, data = zero.model, zero.data
@@ -282,9 +265,9 @@ def _camera_pose(
     forward = np.array([np.cos(tilt), 0.0, np.sin(tilt)])
     right = np.array([0.0, -1.0, 0.0])
     rotation = np.column_stack([right, np.cross(forward, right), forward])
-    position = pose_of(zero, prepared, mount.body)[1] + mount.position
+    position = pose_of(zero, mount.body)[1] + mount.position
     note = f"camera on {mount.body!r}, {position[2]:.2f} m above the base, tilt {tilt_deg:g} deg"
-    return (prepared.where(mount.body).body, position, rotation), note
+    return (mount.body, position, rotation), note
 
 
 def _default_mount(zero: Posed, roles: Roles) -> CameraMount:
@@ -312,11 +295,11 @@ def fixed_tilt(vertical_fov_deg: float | None) -> float:
 
 
 def _extent(zero: Posed, body: int) -> tuple[Array, Array]:
-    """Return the lower and the upper corner of a body's shapes (3,) [m]."""
+    """Return the lower and the upper corner of the shapes that move with a body (3,) [m]."""
     model, data = zero.model, zero.data
     low, high = data.xpos[body].copy(), data.xpos[body].copy()
-    first = int(model.body_geomadr[body])
-    for geom in range(first, first + int(model.body_geomnum[body])):
+    group = model.body_weldid[model.geom_bodyid] == model.body_weldid[body]
+    for geom in np.flatnonzero(group).tolist():
         centre, rotation, sides = zero.box(geom)
         half = np.abs(rotation) @ sides
         low, high = np.minimum(low, centre - half), np.maximum(high, centre + half)

@@ -1,8 +1,7 @@
 """Preparation of a model file: one robot that is free to move, of bodies with possible inertias.
 
 The same for MJCF and URDF: joints that no servo can move are held, a missing free joint is added,
-links without mass or with impossible inertia are completed or reported. Links of a URDF file that
-do not move apart become one body.
+links without mass or with impossible inertia are completed or reported.
 """
 
 from collections.abc import Iterator, Mapping
@@ -17,8 +16,8 @@ from hsr8.robots.file.key_mistake import KeyMistake, require_name
 from hsr8.robots.file.read import ModelFile
 from hsr8.robots.model.ignored import drop_ignored
 from hsr8.robots.model.inertia import complete_inertias
-from hsr8.robots.parts.places import Prepared, orientation, places_of
-from hsr8.robots.parts.skeleton import LEG_JOINTS, clip_to_range
+from hsr8.robots.parts.prepared import Prepared, moving_body
+from hsr8.robots.parts.skeleton import LEG_JOINTS, BaseFrame, clip_to_range, quaternion_of
 
 Array = NDArray[np.float64]
 
@@ -86,27 +85,20 @@ def prepare(
         hold(spec, name, angle)
     _forget_zero_efforts(spec)
     notes += _held_notes(held)
-    places = places_of(spec, root)
     base = base or _common_link(spec, root, feet)
-    if base != root and (base not in places or places[base].body != root):
+    if moving_body(spec.body(base), root) != root:
         raise KeyMistake(
             f"base: not fixed to the body with the free joint, got {base!r}; expected {root!r} or "
             "one fixed to it: leave the key out"
         )
     if base != root:
         notes.append(f"base: {base!r}, fixed to {root!r}")
-    notes += complete_inertias(spec, places, source, repair=repair_inertia)
-    if source.is_urdf:
-        for body in reversed(spec.bodies[1:]):
-            if body.name in places:
-                body.to_frame()
-    else:
-        places = {}
+    notes += complete_inertias(spec, root, str(source.file), repair=repair_inertia)
     above = {
         foot: tuple(name for name in path if name in held)
         for foot, path in zip(feet or (), paths, strict=True)
     }
-    return Prepared(spec, root, base, places, held, above, tuple(notes))
+    return Prepared(spec, root, base, held, above, tuple(notes))
 
 
 def _require_links(spec: mujoco.MjSpec, feet: tuple[str, str] | None, base: str | None) -> None:
@@ -125,11 +117,34 @@ def _forget_zero_efforts(spec: mujoco.MjSpec) -> None:
             joint.actfrclimited = UNLIMITED
 
 
+def turn_base(spec: mujoco.MjSpec, root: str, base: BaseFrame) -> None:
+    """Move the frame of the body with the free joint to that of the base.
+
+    Args:
+        spec: specification, changed in place.
+        root: body with the free joint.
+        base: frame of the base.
+    """
+    body = spec.body(root)
+    turn = quaternion_of(base.rotation)
+    parts = [*body.bodies, *body.geoms, *body.sites, *body.cameras, *body.lights, *body.frames]
+    frame = body.add_frame(pos=-base.rotation @ base.origin, quat=turn)
+    for part in parts:
+        if part.frame is None:
+            part.set_frame(frame)
+    if body.explicitinertial:
+        turned = np.empty(4)
+        mujoco.mju_mulQuat(turned, turn, orientation(spec, body.iquat, body.ialt))
+        body.ipos = base.rotation @ (np.asarray(body.ipos, float) - base.origin)
+        body.iquat, body.ialt.type = turned, mujoco.mjtOrientation.mjORIENTATION_QUAT
+    body.quat, body.alt.type = (1.0, 0.0, 0.0, 0.0), mujoco.mjtOrientation.mjORIENTATION_QUAT
+
+
 def hold(spec: mujoco.MjSpec, name: str, angle: float) -> None:
     """Remove a joint and its actuators; its body keeps the place of an angle [rad or m]."""
     joint = spec.joint(name)
     body, degree = joint.parent, bool(spec.compiler.degree)
-    quat = orientation(spec, body)
+    quat = orientation(spec, body.quat, body.alt)
     axis, anchor = np.asarray(joint.axis, float), np.asarray(joint.pos, float)
     axis = axis / np.linalg.norm(axis)
     turn, shift = np.array([1.0, 0.0, 0.0, 0.0]), np.zeros(3)
@@ -152,6 +167,27 @@ def hold(spec: mujoco.MjSpec, name: str, angle: float) -> None:
     body.quat, body.alt.type = product, mujoco.mjtOrientation.mjORIENTATION_QUAT
     for part in (*_referring(spec, name), joint):
         spec.delete(part)
+
+
+def orientation(spec: mujoco.MjSpec, quaternion: Array, other: Any) -> Array:
+    """Return a stated orientation as a unit quaternion (4,).
+
+    Args:
+        spec: specification, whose compiler has the unit of angles.
+        quaternion: orientation, unless another form is stated (4,).
+        other: orientation in another form.
+    """
+    if other.type == mujoco.mjtOrientation.mjORIENTATION_QUAT:
+        quat = np.array(quaternion, float)
+        normalised: Array = quat / np.linalg.norm(quat)
+        return normalised
+    return np.array(
+        mujoco.MjSpec.resolve_orientation(
+            degree=bool(spec.compiler.degree),
+            sequence=spec.compiler.eulerseq,
+            orientation=other,
+        )
+    )
 
 
 def _referring(spec: mujoco.MjSpec, joint: str) -> list[Any]:

@@ -134,7 +134,7 @@ def choose_servos(
         return [OWN_SERVOS, *_silent_limits("effort", effort, driven)]
     notes = _add_servos(
         spec,
-        Posed.at(model, posture, base=roles.frame),
+        Posed.at(model, posture),
         roles,
         sole_height=sole_height,
         rule=stated if isinstance(stated, ServoRule) else ServoRule(),

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from hsr8.robots.file.description import CameraMount, RobotDescription
 from hsr8.robots.file.key_mistake import KeyMistake, require_name
-from hsr8.robots.parts.places import Prepared
+from hsr8.robots.parts.prepared import Prepared
 from hsr8.robots.parts.skeleton import HINGE, LEG_JOINTS, SAME, BaseFrame, Posed, path_up
 
 Array = NDArray[np.float64]
@@ -27,7 +27,6 @@ class Roles:
 
     Attributes:
         base: body with the free joint.
-        frame: frame of the base, in that body.
         feet: bodies of the left and the right foot.
         legs: six hinge joints of the left and the right leg, hip first.
         head: pan and tilt joint, if the robot has a movable head.
@@ -36,7 +35,6 @@ class Roles:
     """
 
     base: str
-    frame: BaseFrame
     feet: tuple[str, str]
     legs: tuple[Leg, Leg]
     head: tuple[str, str] | None
@@ -56,8 +54,8 @@ def find_roles(model: mujoco.MjModel, description: RobotDescription, prepared: P
         KeyMistake: a name is unknown, a leg lacks six hinge joints, or the robot does not stand on
             its feet.
     """
-    _require_camera(model, description, prepared)
-    left, right = (prepared.where(foot).body for foot in description.feet)
+    _require_camera(model, description)
+    left, right = (_moving(model, foot) for foot in description.feet)
     legs = _leg(model, prepared, description.feet[0]), _leg(model, prepared, description.feet[1])
     if common := [name for name in legs[0] if name in legs[1]]:
         left_own, right_own = (tuple(n for n in leg if n not in common) for leg in legs)
@@ -73,11 +71,11 @@ def find_roles(model: mujoco.MjModel, description: RobotDescription, prepared: P
                     f"{key}: joint {name!r} cannot move: {prepared.held[name]}; expected a driven "
                     "joint: leave the key out"
                 )
+    base_frame(model, description, prepared)  # the robot stands
     head, shoulders = description.head, description.shoulders
     carried = shoulders or head
     return Roles(
         base=prepared.root,
-        frame=_base_frame(model, description, prepared, (left, right), legs),
         feet=(left, right),
         legs=legs,
         head=head,
@@ -86,30 +84,38 @@ def find_roles(model: mujoco.MjModel, description: RobotDescription, prepared: P
     )
 
 
-def pose_of(posed: Posed, prepared: Prepared, link: str) -> tuple[Array, Array]:
-    """Return rotation (3, 3) and position (3,) [m] of a link of the file."""
-    part = prepared.where(link)
-    body = posed.model.body(part.body).id
-    rotation, position = posed.data.xmat[body].reshape(3, 3), posed.data.xpos[body]
-    return rotation @ part.pose[:3, :3], position + rotation @ part.pose[:3, 3]
+def pose_of(posed: Posed, body: str) -> tuple[Array, Array]:
+    """Return rotation (3, 3) and position (3,) [m] of a body."""
+    at = posed.model.body(body).id
+    return posed.data.xmat[at].reshape(3, 3), posed.data.xpos[at]
 
 
-def _base_frame(
-    model: mujoco.MjModel,
-    description: RobotDescription,
-    prepared: Prepared,
-    feet: tuple[str, str],
-    legs: tuple[Leg, Leg],
+def _moving(model: mujoco.MjModel, body: str) -> str:
+    """Return the body with joints that carries a body, or the body itself."""
+    name: str = model.body(int(model.body_weldid[model.body(body).id])).name
+    return name
+
+
+def base_frame(
+    model: mujoco.MjModel, description: RobotDescription, prepared: Prepared
 ) -> BaseFrame:
     """Return the frame of the base, whose axes are those of its link nearest to the robot's.
 
     Left is from the right to the left foot, up from the feet to the hips, at the angles `zero`.
 
+    Args:
+        model: model compiled from `prepared`.
+        description: description of the robot.
+        prepared: prepared model.
+
     Raises:
-        KeyMistake: the robot does not stand with its feet side by side below the hips.
+        KeyMistake: a leg lacks six hinge joints, or the robot does not stand with its feet side by
+            side below the hips.
     """
+    legs = [_leg(model, prepared, foot) for foot in description.feet]
+    feet = [_moving(model, foot) for foot in description.feet]
     posed = Posed.at(model, present(model, description.zero))
-    link, origin = pose_of(posed, prepared, prepared.base)
+    link, origin = pose_of(posed, prepared.base)
     hips, ankles = (
         [link.T @ posed.data.xanchor[model.joint(leg[end]).id] for leg in legs] for end in (0, -1)
     )
@@ -130,20 +136,22 @@ def _base_frame(
     turn = np.array([forward, left, up])
     if (turn == np.eye(3)).all() and prepared.base == prepared.root:
         return SAME
-    return BaseFrame(turn @ link.T, origin)
+    return BaseFrame(turn @ link.T, origin.copy())
 
 
-def base_note(roles: Roles, prepared: Prepared) -> list[str]:
-    """Return a note on the directions of the base, where they are not those of its link."""
-    if roles.frame.is_body:
-        return []
-    part = prepared.where(prepared.base)
-    link = np.eye(3) if prepared.base == prepared.root else part.pose[:3, :3]
-    turn = roles.frame.rotation @ link
+def base_note(model: mujoco.MjModel, frame: BaseFrame, base: str) -> list[str]:
+    """Return a note on the directions of the base, where they are not those of its link.
+
+    Args:
+        model: model before the turn.
+        frame: frame of the base.
+        base: link of the base.
+    """
+    turn = frame.rotation @ pose_of(Posed.at(model, {}), base)[0]
     if np.allclose(turn, np.eye(3)):
         return []
     names = (_axis_name(turn[row]) for row in (0, 2))
-    return [f"base turned: forward is {next(names)} of {prepared.base!r}, up its {next(names)}"]
+    return [f"base turned: forward is {next(names)} of {base!r}, up its {next(names)}"]
 
 
 def present(model: mujoco.MjModel, angles: dict[str, float]) -> dict[str, float]:
@@ -174,13 +182,10 @@ def _axis_name(axis: Array) -> str:
     return f"{'-' if axis[k] < 0.0 else ''}{'xyz'[k]}"
 
 
-def _require_camera(
-    model: mujoco.MjModel, description: RobotDescription, prepared: Prepared
-) -> None:
+def _require_camera(model: mujoco.MjModel, description: RobotDescription) -> None:
     """Refuse the name of a camera, or of its body, that the model lacks."""
     if isinstance(description.camera, CameraMount):
-        bodies = [model.body(b).name for b in range(1, model.nbody)]
-        names = [*bodies, *prepared.places]
+        names = [model.body(b).name for b in range(1, model.nbody)]
         require_name("camera.body", "body", description.camera.body, names)
     elif description.camera is not None:
         cameras = [model.camera(i).name for i in range(model.ncam)]
@@ -190,7 +195,7 @@ def _require_camera(
 def _leg(model: mujoco.MjModel, prepared: Prepared, foot: str) -> Leg:
     """Return the last six hinge joints above a foot."""
     names = list[str]()
-    for above in path_up(model, model.body(prepared.where(foot).body).id):
+    for above in path_up(model, model.body(foot).id):
         if model.body(above).name == prepared.root or len(names) >= LEG_JOINTS:
             break
         first = int(model.body_jntadr[above])

@@ -11,7 +11,6 @@ from scipy.spatial import ConvexHull, QhullError
 
 from hsr8.robots.file.description import RobotDescription, SoleRectangle
 from hsr8.robots.file.key_mistake import KeyMistake, at_least, require_name
-from hsr8.robots.parts.places import Prepared
 from hsr8.robots.parts.roles import Roles, pose_of
 from hsr8.robots.parts.skeleton import BaseFrame, Posed
 
@@ -64,7 +63,7 @@ class Rectangle:
 
 
 def soles_of(
-    zero: Posed, roles: Roles, description: RobotDescription, prepared: Prepared
+    zero: Posed, roles: Roles, description: RobotDescription
 ) -> tuple[tuple[Rectangle, Rectangle], list[str]]:
     """Return the left and the right sole, mirror images, and notes for people.
 
@@ -72,7 +71,6 @@ def soles_of(
         zero: the robot in the zero posture.
         roles: roles of the robot's parts.
         description: description of the robot.
-        prepared: prepared model of the robot.
 
     Raises:
         KeyMistake: a foot has no shape, its sole is too small or above the ankle, or the soles
@@ -83,7 +81,7 @@ def soles_of(
     least = MIN_SIDE * float(joints[0] - joints[1])
     for side, foot in enumerate(roles.feet):
         if isinstance(stated, SoleRectangle):
-            both.append(_stated(pose_of(zero, prepared, description.feet[side])[1], stated, side))
+            both.append(_stated(pose_of(zero, description.feet[side])[1], stated, side))
             continue
         sole, note = _of_shapes(zero, foot, None if stated is None else stated[side], least)
         both.append(sole)

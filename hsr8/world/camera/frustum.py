@@ -44,8 +44,9 @@ class Frustum:
         self._normals = np.array([*sides, [0.0, 0.0, -1.0]])
         # A plane has no bounding radius: it is never culled.
         self._reach = np.where(model.geom_rbound > 0.0, model.geom_rbound, np.inf)
-        # The body that carries the camera is invisible: its faces are seen from inside.
-        self._reach[model.geom_bodyid == model.cam_bodyid[self._camera]] = -np.inf
+        # The bodies that carry the camera are invisible: their faces are seen from inside.
+        carrier = model.body_weldid[model.cam_bodyid[self._camera]]
+        self._reach[model.body_weldid[model.geom_bodyid] == carrier] = -np.inf
         # Bounding spheres of the long, thin boxes of the world are too loose.
         aligned = (np.abs(model.geom_quat[:, 0]) == 1.0) & (model.geom_bodyid == 0)
         self._boxes = np.flatnonzero(aligned & (model.geom_type == mujoco.mjtGeom.mjGEOM_BOX))

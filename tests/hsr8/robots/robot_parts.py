@@ -65,7 +65,7 @@ def raw(robot: SmallHumanoid, description: RobotDescription, *changes: Change) -
 def checked_roles(read: RawRobot, description: RobotDescription) -> Roles:
     """Find and check the roles."""
     roles = find_roles(read.model, description, read.prepared)
-    check_roles(read.model, roles, description, read.prepared, SOURCE)
+    check_roles(read.model, roles, description, SOURCE)
     return roles
 
 

@@ -348,7 +348,7 @@ def test_mirrored_ranges_that_differ_are_intersected(side, flip):
     keys = described(robot)
     read = raw(robot, keys, change)
     roles = find_roles(read.model, keys, read.prepared)
-    ranges, notes = check_roles(read.model, roles, keys, read.prepared, SOURCE)
+    ranges, notes = check_roles(read.model, roles, keys, SOURCE)
     right = (-2.0, 0.0) if flip else (0.0, 2.0)
     assert ranges == {"l_knee": pytest.approx((0.0, 2.0)), "r_knee": pytest.approx(right)}
     assert notes[0].startswith("ranges of 'l_knee' and 'r_knee' differ by 0.20 rad: the common")

@@ -21,8 +21,8 @@ def soles(robot, folder, **keys):
     read = raw(robot, folder, **keys)
     description = describe(**keys)
     roles = find_roles(read.model, description, read.prepared)
-    zero = Posed.at(read.model, {}, base=roles.frame)
-    (left, right), notes = soles_of(zero, roles, description, read.prepared)
+    zero = Posed.at(read.model, {})
+    (left, right), notes = soles_of(zero, roles, description)
     assert right == left.mirrored()
     return (left.front, left.back, left.left, left.right, left.height), [*read.notes, *notes]
 
