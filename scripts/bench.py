@@ -2,7 +2,6 @@
 
     python scripts/bench.py                       # `course`, 40 s
     python scripts/bench.py --check               # against the kept ratios
-    python scripts/bench.py --against ../main     # in turn with another checkout
 
 The floor is MuJoCo stepping the same model with constant controls and rendering as many
 images. It runs in turn with the loop, second by second, so that the ratio of the two holds
@@ -24,10 +23,8 @@ from hsr8.files import atomic
 from hsr8.loop import Simulation
 from hsr8.scenario.loader import load_scenario
 
-from bench_pairs import comparison, pairs
 from loop_bench import Bench
 
-ROOT = Path(__file__).resolve().parents[1]
 BASELINE = Path(__file__).with_name("loop-ratios.json")
 PACKAGES = ("hsr8", "mujoco", "numba", "numpy", "rerun-sdk")
 CHECKED = ("course", 5, "duration=8")  # scenario, seed and length that the check runs
@@ -83,7 +80,6 @@ def main() -> None:
     parser.add_argument("--seed", type=int, default=5)
     parser.add_argument("--duration", type=float, default=40.0, help="simulated [s]")
     parser.add_argument("--turns", type=int, default=3, help="runs, of which the median is shown")
-    parser.add_argument("--against", type=Path, metavar="PATH", help="another checkout")
     parser.add_argument("--set", action="append", default=[], help="KEY=VALUE of the scenario")
     parser.add_argument("--check", action="store_true", help=f"compare with {BASELINE.name}")
     parser.add_argument("--keep", action="store_true", help=f"write {BASELINE.name}")
@@ -91,12 +87,6 @@ def main() -> None:
     gc.set_threshold(COLLECT_AFTER)
     if options.check:
         check()
-        return
-    if options.against:
-        words = ["--scenario", options.scenario, "--seed", str(options.seed)]
-        words += ["--duration", str(options.duration), *(f"--set={text}" for text in options.set)]
-        timed = pairs(ROOT, options.against.resolve(), words, options.turns)
-        print("\n".join(comparison(timed)))
         return
     warm(options.scenario, options.seed)
     if options.keep:

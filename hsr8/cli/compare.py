@@ -1,26 +1,45 @@
-"""``hsr8 compare`` and ``hsr8 bench compare``: two sides on their common seeds."""
+"""``hsr8 compare`` and ``hsr8 bench compare``: a reference and other arms on their common seeds."""
 
 from hsr8.cli.options import BenchCompare, Compare
-from hsr8.errors import escaped_lines
+from hsr8.cli.output_file import require_file_name, writing
+from hsr8.errors import UsageError, escaped_lines
 from hsr8.evaluation.bench.comparison import compare_entries
 from hsr8.evaluation.bench.entry import read_entry
-from hsr8.evaluation.comparison import compare, open_side, page, to_json
+from hsr8.evaluation.comparison import compare, open_side
+from hsr8.evaluation.comparison_page import draw, latex, page, to_json, write_csv
 from hsr8.files import atomic
 from hsr8.files.shell import shell_line
 
 
 def main(options: Compare | BenchCompare) -> int:
-    """Print the comparison."""
+    """Print the comparison, and write it as a table and a figure."""
+    if not options.b:
+        raise UsageError("B: missing; expected at least one folder to compare with A")
+    if options.csv is not None:
+        require_file_name("--csv", options.csv, (".csv",))
+    if options.figure is not None:
+        require_file_name("--figure", options.figure, (".png", ".svg", ".pdf"))
+    words = ["hsr8", "compare", options.a, *options.b]
     if isinstance(options, BenchCompare):
-        words = ["hsr8", "bench", "compare", str(options.a), str(options.b)]
-        comparison = compare_entries(read_entry(options.a), read_entry(options.b))
+        words.insert(1, "bench")
+        entries = [read_entry(path) for path in (options.a, *options.b)]
+        comparisons = [compare_entries(entries[0], entry) for entry in entries[1:]]
     else:
-        words = ["hsr8", "compare", str(options.a), str(options.b)]
         for metric in options.metric:
             words += ["--metric", metric]
-        comparison = compare(open_side(options.a), open_side(options.b), options.metric)
+        sides = [open_side(path) for path in (options.a, *options.b)]
+        comparisons = [compare(sides[0], side, options.metric) for side in sides[1:]]
+    if options.csv is not None:
+        with writing("--csv", options.csv):
+            write_csv(comparisons, options.csv)
+    if options.figure is not None:
+        with writing("--figure", options.figure):
+            draw(comparisons, options.figure)
     if options.json:
-        print(atomic.dumps(to_json(comparison)))
+        values = [to_json(comparison) for comparison in comparisons]
+        print(atomic.dumps(values[0] if len(values) == 1 else {"comparisons": values}))
+    elif options.latex:
+        print(escaped_lines(latex(comparisons)), end="")
     else:
-        print(escaped_lines(page(comparison, shell_line(words))), end="")
+        print(escaped_lines(page(comparisons, shell_line(words))), end="")
     return 0

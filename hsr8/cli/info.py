@@ -1,5 +1,6 @@
 """``hsr8 info``: contents of a run folder."""
 
+from collections.abc import Sequence
 from dataclasses import asdict
 
 from rich.console import Console
@@ -7,12 +8,17 @@ from rich.console import Console
 from hsr8.cli import report, tables
 from hsr8.cli.options import Info
 from hsr8.errors import UsageError, escaped
+from hsr8.evaluation.registry import METRICS, Shown, shown_in
 from hsr8.files import atomic
 from hsr8.recorder.run.manifest import RUNNING, other_versions
 from hsr8.recorder.run.run import Run
 from hsr8.recorder.run.run_reader import open_run
 from hsr8.recorder.run.verdict import Criterion, exit_code
 
+PLAIN = (  # first rows of the table
+    *("success", "exit_reason", "time_to_goal_s", "path_length_m", "collisions", "falls"),
+    *("via_points_passed", "min_clearance_m"),
+)
 MAX_EVENTS = 30  # in the table; --json has all of them
 
 
@@ -56,7 +62,7 @@ def main(options: Info) -> int:
     if command.isprintable():
         lines.append(f"again       {command}")
     if results:
-        report.show(run, criteria, console, everything=options.all)
+        show(run, criteria, console, everything=options.all)
         lines += report.lines(run, criteria, run.folder)
     for line in lines:
         console.print(line, soft_wrap=True, markup=False)
@@ -69,3 +75,27 @@ def _criteria(run: Run) -> tuple[Criterion, ...]:
         return run.criteria
     except (UsageError, KeyError):  # made by another version
         return ()
+
+
+def show(run: Run, criteria: Sequence[Criterion], console: Console, *, everything: bool) -> None:
+    """Print the results and criteria of a run as tables.
+
+    Args:
+        run: run with results.
+        criteria: its criteria, evaluated.
+        console: output.
+        everything: all results, not the first rows only.
+    """
+    names = [*PLAIN]
+    if everything:
+        names += [m.name for m in shown_in(Shown.RUN) if m.name not in PLAIN]
+    values = {_head(name): run.metrics.get(name) for name in names}
+    console.print(tables.facts(values, "results"))
+    if criteria:
+        console.print(tables.rows([asdict(criterion) for criterion in criteria]))
+
+
+def _head(name: str) -> str:
+    """Return the name of a metric, with the unit that it does not state itself."""
+    unit = METRICS[name].unit
+    return f"{name} [{unit}]" if "," in unit else name

@@ -98,19 +98,31 @@ class Sweep(RunOptions):
     quiet: Quiet = False
 
 
-@dataclass(frozen=True)
-class Compare:
-    """Compare two sweeps or two runs on their common seeds: paired differences with tests."""
+@dataclass(frozen=True, kw_only=True)
+class ComparisonOutput:
+    """Outputs of a comparison."""
+
+    csv: File = None
+    """Also write a line per arm and metric as CSV."""
+    latex: Flag = False
+    """Print a LaTeX table in place of Markdown."""
+    figure: File = None
+    """Also draw the differences with their intervals: .png, .svg or .pdf."""
+    json: Json = False
+
+
+@dataclass(frozen=True, kw_only=True)
+class Compare(ComparisonOutput):
+    """Compare sweeps or runs with a reference on common seeds: paired differences with tests."""
 
     a: Positional[Annotated[Path, arg(metavar="A")]]
-    """Folder of a sweep or of a run."""
-    b: Positional[Annotated[Path, arg(metavar="B")]]
-    """Folder to compare with A."""
+    """Reference: folder of a sweep or of a run."""
+    b: Positional[Annotated[tuple[Path, ...], arg(metavar="B", help_behavior_hint="")]]
+    """Folders to compare with A."""
     metric: UseAppendAction[
         Annotated[tuple[str, ...], arg(metavar="KEY", help_behavior_hint="")]
     ] = ()
     """Numeric key of metrics.json; may be repeated; default: the usual ones."""
-    json: Json = False
 
 
 @dataclass(frozen=True)
@@ -145,15 +157,14 @@ class Bench:
     quiet: Quiet = False
 
 
-@dataclass(frozen=True)
-class BenchCompare:
-    """Compare two entries of `hsr8 bench` on their common worlds: paired differences with tests."""
+@dataclass(frozen=True, kw_only=True)
+class BenchCompare(ComparisonOutput):
+    """Compare entries of `hsr8 bench` with a reference on their common worlds."""
 
     a: Positional[Annotated[Path, arg(metavar="A")]]
-    """Folder of an entry, or its bench.json."""
-    b: Positional[Annotated[Path, arg(metavar="B")]]
-    """Entry to compare with A."""
-    json: Json = False
+    """Reference: folder of an entry, or its bench.json."""
+    b: Positional[Annotated[tuple[Path, ...], arg(metavar="B", help_behavior_hint="")]]
+    """Entries to compare with A."""
 
 
 @dataclass(frozen=True)

@@ -3,29 +3,29 @@
 import sys
 from collections.abc import Iterator, Sequence
 from contextlib import ExitStack, contextmanager
+from typing import TYPE_CHECKING
 
 from rich.console import Console
 
 from hsr8.cli import report
 from hsr8.cli.first_compilation import two_processes
 from hsr8.cli.options import Run
-from hsr8.cli.output_file import writing
 from hsr8.cli.progress import Progress
 from hsr8.errors import Hsr8Error
 from hsr8.evaluation.crash import crash_report
 from hsr8.evaluation.recording import run_scenario
 from hsr8.evaluation.signals import like_ctrl_c
-from hsr8.export.bag import require_rosbags, write_bag
 from hsr8.files import atomic
-from hsr8.files.atomic import draft
 from hsr8.files.shell import shell_word
 from hsr8.files.writing import require_temporary
 from hsr8.gl import require_gl
 from hsr8.recorder.run.run import Run as RecordedRun
 from hsr8.recorder.run.run_folder import VIDEO, new_run_folder
 from hsr8.recorder.run.verdict import exit_code
-from hsr8.render.viewer import LiveView, live_view
 from hsr8.scenario.schema import Scenario
+
+if TYPE_CHECKING:
+    from hsr8.render.viewer import LiveView
 
 BAG = "bag"  # folder in that of the run
 
@@ -44,6 +44,8 @@ def start(options: Run, scenario: Scenario, command: Sequence[str]) -> int:
         RenderingUnavailable: the camera needs OpenGL and there is none.
     """
     if options.bag:
+        from hsr8.export.bag import require_rosbags  # noqa: PLC0415  with the exports
+
         require_rosbags()
     if options.video:
         require_gl()
@@ -102,7 +104,10 @@ def _write_log(run: RecordedRun, _: Run) -> None:
 
 
 def _write_bag(run: RecordedRun, _: Run) -> None:
-    with writing("--bag", run.folder / BAG), draft(run.folder / BAG) as folder:
+    from hsr8.cli.output_file import writing  # noqa: PLC0415
+    from hsr8.export.bag import write_bag  # noqa: PLC0415
+
+    with writing("--bag", run.folder / BAG), atomic.draft(run.folder / BAG) as folder:
         write_bag(run, folder)
 
 
@@ -114,6 +119,7 @@ def _write_video(run: RecordedRun, options: Run) -> None:
         print(f"no video: {run.exit_reason} at {time:g} s; {command}", file=sys.stderr)
         return
     # Imported late: runs without a video start 0.08 s earlier.
+    from hsr8.cli.output_file import writing  # noqa: PLC0415
     from hsr8.cli.render import drawing  # noqa: PLC0415
     from hsr8.render.run_video import VideoOptions, render_run  # noqa: PLC0415
 
@@ -125,11 +131,13 @@ def _write_video(run: RecordedRun, options: Run) -> None:
 
 
 @contextmanager
-def _view(options: Run) -> Iterator[LiveView | None]:
+def _view(options: Run) -> "Iterator[LiveView | None]":
     """Start the viewer, if ``--view`` is given."""
     if options.view is None:
         yield None
         return
+    from hsr8.render.viewer import live_view  # noqa: PLC0415
+
     with like_ctrl_c(), live_view(options.view) as view:
         if view.page:
             print(f"open in a browser on this machine:  {view.page}", file=sys.stderr)

@@ -5,6 +5,7 @@ in a run that ended by ``goal`` or ``completed``. The criteria of a scenario are
 separately, see `hsr8.recorder.run.verdict`.
 """
 
+from copy import copy
 from dataclasses import dataclass
 from math import degrees, hypot, inf, isfinite, sqrt
 
@@ -58,6 +59,7 @@ def measure(
     if layout is None:
         world = draw_world(scenario, run.seed)
         layout, certificate = world.layout, world.certificate
+    walking = walk_metrics(copy(run))  # whose large table of ticks is freed at once
     records, frames, exit_reason = run.records, run.frames, run.exit_reason
     truth = truth_at(frames, records)
     time = float(records["time"][-1]) if len(records) else 0.0
@@ -101,7 +103,7 @@ def measure(
         **_gaze(frames, time),
         **{m.name: m.of(run) for m in METRICS.values() if m.of is not None},
         **track_metrics(frames, truth, layout, undisturbed),
-        **walk_metrics(run),
+        **walking,
     }
 
 

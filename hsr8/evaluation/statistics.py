@@ -109,6 +109,14 @@ def compare_successes(a: Sequence[bool], b: Sequence[bool]) -> PairedDifference:
     return PairedDifference("McNemar", n, sum(a) / n, sum(b) / n, difference, low, high, p)
 
 
+def holm(p_values: Sequence[float]) -> list[float]:
+    """Return p-values of several tests, corrected by the step-down method of Holm (1979)."""
+    corrected, floor, n = [0.0] * len(p_values), 0.0, len(p_values)
+    for rank, k in enumerate(sorted(range(n), key=p_values.__getitem__)):
+        corrected[k] = floor = max(floor, min(1.0, (n - rank) * p_values[k]))
+    return corrected
+
+
 @dataclass(frozen=True, slots=True)
 class Proportion:
     """Proportion of `count` in `n` with its 95 % Wilson score interval."""

@@ -72,12 +72,12 @@ class ArrowFiles:
         return file, self._opened.enter_context(writer)
 
 
-def read_table(name: str, content: bytes | pa.Buffer | None, row: Row) -> Table:
+def read_table(name: str, content: BinaryIO | pa.Buffer | None, row: Row) -> Table:
     """Return all whole batches of a table.
 
     Args:
         name: name of the table, for messages.
-        content: its file or buffer; None for a table without rows.
+        content: its open file or its buffer; None for a table without rows.
         row: its columns.
 
     Raises:

@@ -1,7 +1,6 @@
 import gc
 
 import bench
-from bench_pairs import comparison, turn_of
 from stopwatch import Stopwatch
 
 
@@ -40,23 +39,3 @@ def test_collections_and_first_calls_are_not_part_of_a_stage():
     assert watch.first.keys() == {"outer", "inner"}
     assert watch.total("outer", "inner") < 0.2 * sum(watch.collections)
     assert watch._collect not in gc.callbacks
-
-
-def test_two_checkouts_are_compared_by_medians():
-    def turn(floors, more=""):
-        rows = [
-            "| stage | calls | mean [ms] | p99 [ms] | per simulated second [ms] | over the floor |",
-            "|---|---|---|---|---|---|",
-            f"| gaze | 16 | 1.000 | 2.000 | 20.0 | {floors:.3f} |",
-            "| floor: physics | 200 | 0.200 | 0.300 | 40.0 | 0.800 |",
-            more,
-            f"| whole loop | | | | 200.0 | {4.0 * floors:.3f} |",
-        ]
-        return turn_of("\n".join(["`course`, seed 5: ...", "", *rows]))
-
-    more = "| garbage collections | | | | 1.0 | 0.020 |"
-    lines = comparison([(turn(a, more), turn(0.5)) for a in (0.2, 9.0, 0.25)])
-    assert "| gaze | 0.250 | 0.500 | 0.50 |" in lines
-    assert "| garbage collections | 0.020 | | |" in lines
-    assert "| whole loop | 1.000 | 2.000 | 0.50 |" in lines
-    assert lines[-1].endswith("physics alone took 40 and 40 ms.")

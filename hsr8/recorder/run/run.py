@@ -2,6 +2,7 @@
 
 import json
 import os
+from contextlib import nullcontext
 from functools import cached_property
 from pathlib import Path
 from typing import Any
@@ -228,8 +229,8 @@ class Run:
             return read_table(name, self._memory.tables.get(name), TABLES[name])
         path = self.folder / f"{name}{SUFFIX}"
         try:
-            content = path.read_bytes() if os.path.lexists(path) else None
-            table = read_table(name, content, TABLES[name])
+            with path.open("rb") if os.path.lexists(path) else nullcontext() as file:
+                table = read_table(name, file, TABLES[name])
         except OSError as error:
             raise UsageError(f"cannot read {path}: {error.strerror}") from error
         except ValueError as error:

@@ -159,7 +159,7 @@ def test_a_failed_bag_follows_the_results(tmp_path, monkeypatch, capsys):
     def failing(run, folder):
         raise OSError(28, "No space left on device")
 
-    monkeypatch.setattr("hsr8.cli.recorded_run.write_bag", failing)
+    monkeypatch.setattr("hsr8.export.bag.write_bag", failing)
     words = ["run", "quick", *FAST, "--duration", "0.5", "--bag", "--out", str(tmp_path)]
     assert entry([*words, "--json"]) == 2
     printed = capsys.readouterr()

@@ -6,7 +6,7 @@ from types import SimpleNamespace
 import pytest
 from rich.console import Console
 
-from hsr8.cli import report
+from hsr8.cli import info, report
 from hsr8.recorder.run.verdict import Criterion, reason_of
 
 GOOD = {
@@ -79,7 +79,7 @@ def test_a_failure_has_its_reason(change, reason):
 def test_the_table_has_units_and_all_results_on_request(tmp_path, everything):
     stream = io.StringIO()
     console = Console(file=stream, width=200)
-    report.show(run_with(tmp_path), (GOAL, FALLS), console, everything=everything)
+    info.show(run_with(tmp_path), (GOAL, FALLS), console, everything=everything)
     text = stream.getvalue()
     for words in ("path length [m]", "min clearance [m]", "goal reached", "<= 0"):
         assert words in text

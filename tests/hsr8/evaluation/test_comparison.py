@@ -1,3 +1,4 @@
+import csv
 from dataclasses import replace
 
 import numpy as np
@@ -5,7 +6,9 @@ import pytest
 
 import hsr8
 from hsr8.errors import UsageError
-from hsr8.evaluation.comparison import Side, compare, open_side, page, to_json
+from hsr8.evaluation.comparison import Side, compare, open_side
+from hsr8.evaluation.comparison_page import draw, latex, page, to_json, write_csv
+from hsr8.evaluation.statistics import holm
 from hsr8.evaluation.sweep.definition import Definition
 from hsr8.evaluation.sweep.folder import SweepFolder
 from hsr8.evaluation.sweep.job import Job
@@ -95,7 +98,7 @@ def test_what_differs_between_the_two_is_told():
     assert comparison.settings["camera.period_ms"] == ("60", "80")
     assert set(comparison.settings) == {"camera.period_ms", "world.brightness"}
     assert comparison.versions == {"hsr8": ("1", "2"), "code": ("abc", "def")}
-    text = page(comparison, "hsr8 compare a b")
+    text = page([comparison], "hsr8 compare a b")
     assert "| `camera.period_ms` | 60 | 80 |" in text
     assert "| `hsr8` | 1 | 2 |" in text
     assert to_json(comparison)["settings"]["world.brightness"] == ["1.0", "0.5"]
@@ -137,8 +140,8 @@ def test_one_metric_alone_and_its_page():
     a = _side([_run(s, success=s > 1) for s in range(4)])
     comparison = compare(a, _side([_run(s) for s in range(5)]), ["success"])
     assert [r.metric for r in comparison.metrics] == ["success"]
-    text = page(comparison, "hsr8 compare a b --metric success")
-    assert "| `success` | 4 | 50.0 % | 100.0 % | +50.0 points |" in text
+    text = page([comparison], "hsr8 compare a b --metric success")
+    assert "| `success` | 4 | 50.0 % | 100.0 % | +50.0 points | - | - | - |" in text
     assert "`success` in B only: 0, 1" in text
     assert "(0 more in A, 1 more in B)" in text
 
@@ -160,3 +163,31 @@ def test_other_folders_are_refused_and_parts_are_named(tmp_path):
     SweepFolder.open(tmp_path / "a=1", DEFINITION)
     with pytest.raises(UsageError, match="one of its parts: a=1"):
         open_side(tmp_path)
+
+
+@pytest.fixture
+def arms():
+    """Comparisons of a reference with two arms over ten seeds."""
+    a = _side([_run(s, min_clearance_m=0.1) for s in range(10)])
+    worse = _side([_run(s, success=s > 6, min_clearance_m=0.05) for s in range(10)])
+    better = _side([_run(s, min_clearance_m=0.1 + 0.01 * s) for s in range(10)])
+    names = ["success", "min_clearance_m"]
+    return [compare(a, arm, names) for arm in (replace(worse, name="w"), replace(better, name="b"))]
+
+
+def test_every_output_has_all_arms_and_their_corrected_tests(arms, tmp_path):
+    write_csv(arms, tmp_path / "a.csv")
+    rows = list(csv.DictReader((tmp_path / "a.csv").open()))
+    assert [(row["arm"], row["metric"]) for row in rows] == [
+        (arm, metric) for arm in "wb" for metric in ("success", "min_clearance_m")
+    ]
+    raw = [float(row["p_value"]) for row in rows]
+    assert [float(row["p_holm"]) for row in rows] == holm(raw)
+    assert [float(row["difference"]) for row in rows] == [
+        metric.difference for comparison in arms for metric in comparison.metrics
+    ]
+    assert page(arms, "hsr8 compare a w b").count("| `min_clearance_m` | 10 |") == 2
+    assert latex(arms).count("\\\\\n") == 5
+    assert "min\\_clearance\\_m" in latex(arms)
+    draw(arms, tmp_path / "a.png")
+    assert (tmp_path / "a.png").read_bytes().startswith(b"\x89PNG")

@@ -7,6 +7,7 @@ from hsr8.evaluation.statistics import (
     Proportion,
     compare_successes,
     compare_values,
+    holm,
     optimal_time_ratio,
     spl,
 )
@@ -117,3 +118,15 @@ def test_detours_cost_in_proportion_and_shortcuts_count_in_the_time_ratio_only(a
     assert spl(True, shortest, longest) == pytest.approx(shortest / longest)
     assert spl(True, longest, shortest) == 1.0
     assert optimal_time_ratio(True, a, factor * a) == pytest.approx(1.0 / factor)
+
+
+@given(st.lists(st.floats(0.0, 1.0), max_size=8))
+def test_holm_rejects_as_the_step_down_procedure(p_values):
+    """At any level, the smallest p-values are rejected as long as p (n - rank) is at most it."""
+    for level in (0.01, 0.05, 0.5):
+        rejected = 0
+        for rank, p in enumerate(sorted(p_values)):
+            if min(1.0, p * (len(p_values) - rank)) > level:
+                break
+            rejected += 1
+        assert sum(p <= level for p in holm(p_values)) == rejected

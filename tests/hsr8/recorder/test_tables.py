@@ -54,7 +54,8 @@ class Thing:
 
 
 def read(file):
-    return read_table("things", file.read_bytes(), THING)
+    with file.open("rb") as content:
+        return read_table("things", content, THING)
 
 
 PART = Row(
@@ -233,7 +234,7 @@ def test_a_damaged_table_keeps_the_batches_before_the_damage(tmp_path):
 def test_a_table_of_other_columns_is_refused(tmp_path):
     file = written(tmp_path, rows(3))
     with pytest.raises(ValueError, match="column 'count'"):
-        read_table("things", file.read_bytes(), TABLES["ticks"])
+        read_table("things", pa.py_buffer(file.read_bytes()), TABLES["ticks"])
 
 
 def test_a_column_may_have_no_elements(tmp_path):

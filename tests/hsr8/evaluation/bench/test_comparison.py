@@ -6,7 +6,7 @@ from hypothesis import strategies as st
 
 from hsr8.errors import UsageError
 from hsr8.evaluation.bench.comparison import compare_entries
-from hsr8.evaluation.comparison import page, to_json
+from hsr8.evaluation.comparison_page import page, to_json
 
 OUTCOMES = st.lists(
     st.sampled_from(["success", "timeout", "collision", "crashed"]), min_size=4, max_size=4
@@ -83,7 +83,7 @@ def test_settings_and_versions_that_differ_are_listed(make_entry):
 
 def test_the_page_and_the_json_hold_the_same_numbers(make_entry):
     comparison = compare_entries(make_entry("a"), make_entry("b", course=("timeout",) * 4))
-    text = page(comparison, "hsr8 bench compare a b")
+    text = page([comparison], "hsr8 bench compare a b")
     assert "| course | 4 | 100.0 % | 0.0 % | -100.0 [" in text
     assert "| `success` | 8 | 100.0 % | 50.0 % | -50.0 points |" in text
     assert "Settings and versions are equal." in text
