@@ -13,7 +13,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from hsr8.evaluation.registry import METRICS
-from hsr8.evaluation.statistics import mean, root_mean, total
+from hsr8.evaluation.social_metrics import SPEED_WINDOW, STANDING_SPEED, social_metrics
+from hsr8.evaluation.statistics import mean, root_mean, spl, total
 from hsr8.evaluation.track_metrics import track_metrics
 from hsr8.evaluation.walk_metrics import walk_metrics
 from hsr8.recorder.derived import truth_at
@@ -36,8 +37,6 @@ TOLERANCE = 0.10  # added to the radii of via points and goal for the true posit
 HEADING_TOLERANCE = 15.0  # of the true heading at the goal [deg]
 MAX_MATCH_DISTANCE = 0.4  # from a track to its obstacle [m]
 SACCADE = 0.17  # minimum change of the commanded gaze [rad]
-STANDING_SPEED = 0.02  # maximum speed of a standing robot [m/s]
-SPEED_WINDOW = 1.0  # interval over which speed is measured, longer than a step [s]
 
 
 def measure(
@@ -73,8 +72,10 @@ def measure(
     clearance = float(np.min(records["clearance"], initial=inf))
     has_goal = _has_goal(layout)
     ended = arrival.goal_reached and exit_reason == "goal" if has_goal else exit_reason in ENDED
+    success = ended and not (falls or collisions or arrival.missed)
+    certified = _certified(certificate, layout)
     return {
-        "success": ended and not (falls or collisions or arrival.missed),
+        "success": success,
         "collisions": len(collisions),
         "falls": falls,
         "via_points_total": len(layout.waypoints) - has_goal,
@@ -83,7 +84,9 @@ def measure(
         "arrival_error_deg": _arrival_error(records, layout, arrival),
         "time_to_goal_s": arrival.time,
         "path_length_m": path,
-        **_certified(certificate, layout),
+        **certified,
+        "spl": _weighted(success, certified["certified_length_m"], path),
+        "stl": _weighted(success, certified["certified_time_s"], arrival.time),
         "min_clearance_m": clearance if isfinite(clearance) else None,
         **_localization(frames, truth, undisturbed),
         "obstacle_speed_rmse_mps": _obstacle_speed(frames, truth, layout),
@@ -102,6 +105,7 @@ def measure(
         "time_standing_s": standing,
         **_gaze(frames, time),
         **{m.name: m.of(run) for m in METRICS.values() if m.of is not None},
+        **social_metrics(records, frames, layout, scenario, collisions),
         **track_metrics(frames, truth, layout, undisturbed),
         **walking,
     }
@@ -153,7 +157,7 @@ def _arrival(frames: Table, truth: Truth, layout: Layout, mission: MissionParame
     return arrival
 
 
-def _certified(certificate: Certificate | None, layout: Layout) -> dict[str, object]:
+def _certified(certificate: Certificate | None, layout: Layout) -> dict[str, float | None]:
     """Return time and length of the certified path; None unless it leads to the goal."""
     if (
         certificate is None
@@ -162,6 +166,13 @@ def _certified(certificate: Certificate | None, layout: Layout) -> dict[str, obj
     ):
         return {"certified_time_s": None, "certified_length_m": None}
     return {"certified_time_s": certificate.time, "certified_length_m": certificate.length}
+
+
+def _weighted(success: bool, shortest: float | None, actual: float | None) -> float | None:
+    """Return success weighted by path length or time; None without a certified path."""
+    if shortest is None:
+        return None
+    return spl(success, shortest, shortest if actual is None else actual)
 
 
 def _arrival_error(records: Table, layout: Layout, arrival: _Arrival) -> float | None:

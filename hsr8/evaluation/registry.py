@@ -118,8 +118,21 @@ SECTIONS = {
             successes=True,
         ),
         Metric(
+            "spl",
+            "success weighted by path length, `certified_length_m` / max(`certified_length_m`, "
+            "`path_length_m`), 0 without success (Anderson et al. 2018)",
+            BENCH_COMPARED,
+            "SPL",
+        ),
+        Metric(
+            "stl",
+            "the same of `certified_time_s` and `time_to_goal_s` (iGibson Social Navigation 2021)",
+            label="STL",
+        ),
+        Metric(
             "time_standing_s",
-            "sum of the seconds with a displacement below 0.02 m",
+            "sum of the seconds with a displacement below 0.02 m; HuNavSim's `time_not_moving` for "
+            "a body that sways",
             SWEEP,
             "time standing",
             "s",
@@ -171,6 +184,77 @@ SECTIONS = {
             RUN | SWEEP | COMPARED | BENCH | BENCH_COMPARED,
             "min clearance",
             "m",
+        ),
+    ),
+    "People": (
+        Metric(
+            "minimum_distance_to_people_m",
+            "minimum distance of the axis of a mover from the disc of `robot.radius` around the "
+            "robot (HuNavSim; Perez-Higueras et al. 2018)",
+        ),
+        Metric(
+            "avg_distance_to_closest_person_m",
+            "mean distance of this disc from the surface of the nearest mover (HuNavSim)",
+        ),
+        Metric(
+            "intimate_space_intrusions",
+            "fraction of the records with the nearest mover, its axis from this disc, below 0.45 m "
+            "(Hall 1966; HuNavSim, in per cent); `recorder.space_scale` scales it",
+            SWEEP,
+            "intimate space",
+        ),
+        Metric(
+            "personal_space_intrusions",
+            "the same from 0.45 to 1.2 m",
+            SWEEP | COMPARED,
+            "personal space",
+        ),
+        Metric("social_space_intrusions", "the same from 1.2 to 3.6 m", SWEEP, "social space"),
+        Metric(
+            "space_compliance",
+            "the same of at least 0.5 m (personal space compliance, iGibson Social Navigation "
+            "2021)",
+            SWEEP,
+            "space compliance",
+        ),
+        Metric(
+            "min_time_to_collision_s",
+            "minimum time after which this disc and a mover would touch at their velocities, the "
+            "robot's over 1 s; 0 in contact, null if they never would (TTC, Francis et al. 2025)",
+            SWEEP | COMPARED,
+            "time to collision",
+            "s",
+        ),
+        Metric(
+            "robot_on_person_collision",
+            "collisions with movers that the motion of the robot caused, see "
+            "`collisions_at_fault` (SEAN 2.0, Tsoi et al. 2022; HuNavSim)",
+            COUNT,
+            "robot on person",
+        ),
+        Metric(
+            "person_on_robot_collision",
+            "the other collisions with movers",
+            COUNT,
+            "person on robot",
+        ),
+        Metric(
+            "path_irregularity_rad",
+            "mean angle between motion and the direction of the next point of the mission, once "
+            "per second (SocNavBench, Biswas et al. 2022)",
+            SWEEP,
+            "path irregularity",
+            "rad",
+        ),
+        Metric(
+            "cumulative_heading_changes_rad",
+            "sum of the turns of the heading, once per second (HuNavSim; Perez-Higueras et al. "
+            "2018)",
+        ),
+        Metric(
+            "avg_overacceleration_mps3",
+            "mean magnitude of the jerk, the third difference of the positions, once per second "
+            "(HuNavSim; SocNavBench)",
         ),
     ),
     "Belief": (
@@ -316,7 +400,6 @@ BENCH_METRICS = (
     Metric("collision", "whether there was a collision", BENCH_COMPARED, "collisions", "%"),
     Metric("timeout", "whether the run ended by `timeout`", BENCH_COMPARED, "timeouts", "%"),
     Metric("fall", "whether the robot fell", BENCH_COMPARED, "falls", "%"),
-    Metric("spl", "success weighted by path length", BENCH_COMPARED, "SPL"),
     Metric(
         "optimal_time_ratio", "success times certified over actual time", BENCH_COMPARED, "T*/T"
     ),

@@ -126,6 +126,13 @@ RECORD = Row(
         ("obstacles", 2),
     ),
     Column("truth.obstacle_velocities", "velocities of the axes in W", "m/s", ("obstacles", 2)),
+    Column(
+        "truth.mover_clocks",
+        "time of every mover on its lane, behind `time` where it has waited for the robot; empty "
+        "without movers that yield",
+        "s",
+        ("clocks",),
+    ),
     Column("truth.clearance", "true distance of the robot to the nearest obstacle or beacon", "m"),
     Column("truth.joint_torque", "true torque", "N m", JOINTS),
     Column(

@@ -62,6 +62,13 @@ class Recorder(Section):
         Literal["none", "standard", "full"],
         doc("Rendered images that are kept: none, one per 0.18 s, or all, in a higher quality."),
     ] = "standard"
+    space_scale: Annotated[
+        Annotated[float, Interval(gt=0.0, le=100.0)] | None,
+        doc(
+            "Factor on the intimate, personal and social space of a mover in the metrics, 0.45, "
+            "1.2 and 3.6 m; 1: literal metres; default: height of the mover over 1.7 m [1]."
+        ),
+    ] = None
 
 
 class Scenario(Section):

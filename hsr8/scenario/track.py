@@ -93,7 +93,7 @@ class Track:
 
     def positions(self, times: Array | float) -> Array:
         """Return the positions at `times` (...) [s] (..., 2) [m]."""
-        positions: Array = self._alone.positions(times)[..., 0, :]
+        positions: Array = self._alone.positions(np.asarray(times)[..., None])[..., 0, :]
         return positions
 
     def position(self, time: float) -> Point:
@@ -148,14 +148,14 @@ class TrackTable:
         self._away = np.array([(t.points[0][0] + t.away, t.points[0][1]) for t in tracks])
 
     def present(self, times: Array | float) -> NDArray[np.bool_]:
-        """Return whether the movers are in the world at `times` (...) [s], in order (..., n)."""
+        """Return whether the movers are in the world at `times` (..., n or 1) [s] (..., n)."""
         moment = self.recorded(times)
         present: NDArray[np.bool_] = (self._appears <= moment) & (moment < self._leaves)
         return present
 
     def recorded(self, times: Array | float) -> Array:
-        """Return the times of the recordings at `times` (...) [s], in order (..., n) [s]."""
-        moment: Array = np.asarray(times)[..., None] + self._begin
+        """Return the times of the recordings at `times` (..., n or 1) [s] (..., n) [s]."""
+        moment: Array = np.asarray(times) + self._begin
         repeats = np.isfinite(self._period)
         if repeats.any():
             period = np.where(repeats, self._period, 1.0)
@@ -164,7 +164,7 @@ class TrackTable:
         return moment
 
     def positions(self, times: Array | float) -> Array:
-        """Return the positions at `times` (...) [s], in order (..., n, 2) [m]."""
+        """Return the positions at `times` (..., n or 1) [s], in order (..., n, 2) [m]."""
         moment = self.recorded(times)
         cubics, u = self._pieces(np.clip(moment, self._start, self._end))
         at = cubics[..., 3] + u * (cubics[..., 2] + u * (cubics[..., 1] + u * cubics[..., 0]))
@@ -172,7 +172,7 @@ class TrackTable:
         return positions
 
     def velocities(self, times: Array | float) -> Array:
-        """Return the velocities at `times` (...) [s], in order (..., n, 2) [m/s]."""
+        """Return the velocities at `times` (..., n or 1) [s], in order (..., n, 2) [m/s]."""
         moment = self.recorded(times)
         cubics, u = self._pieces(np.clip(moment, self._start, self._end))
         slope = cubics[..., 2] + u * (2.0 * cubics[..., 1] + u * (3.0 * cubics[..., 0]))

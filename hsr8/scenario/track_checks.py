@@ -177,7 +177,7 @@ def _meetings(
     times = np.arange(0.0, _horizon(scenario, crowds), step)
     for begin in range(0, len(times), CHUNK):
         chunk = times[begin : begin + CHUNK]
-        positions = table.positions(chunk)
+        positions = table.positions(chunk[:, None])
         inside = (np.abs(positions) < half).all(axis=-1)
         for i in range(len(tracks) - 1):
             other = slice(i + 1, None)

@@ -216,6 +216,14 @@ class World(Section):
         ),
     ] = (0.8, 1.8)
     encounters: Annotated[Encounters, doc("Moving obstacles on collision courses.")] = Encounters()
+    yield_fraction: Annotated[
+        float,
+        Interval(ge=0.0, le=1.0),
+        doc(
+            "Fraction of the moving obstacles that slow down and wait while the robot is near and "
+            "ahead on their lane [1]."
+        ),
+    ] = 0.0
     beacons: Annotated[
         bool, doc("Whether the field has six beacons: two-colour landmarks at known places.")
     ] = True

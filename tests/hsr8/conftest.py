@@ -175,6 +175,7 @@ def _record(layout, time, pose=(0.0, 0.0, 0.0), *, contacts=(), fallen=False, fr
         "robot": np.asarray(pose, float),
         "obstacle_positions": np.array(positions),
         "obstacle_velocities": np.array([m.velocity(time) if m else (0.0, 0.0) for m in moving]),
+        "mover_clocks": np.zeros(0),
         "contacts": tuple(
             Contact(
                 obstacle=i,

@@ -109,6 +109,7 @@ def truth_with(time, *obstacles):
         robot=empty,
         obstacle_positions=empty,
         obstacle_velocities=empty,
+        mover_clocks=empty,
         contacts=contacts,
         clearance=1.0,
         joint_torque=empty,

@@ -8,11 +8,13 @@ from numpy.typing import NDArray
 
 from hsr8.robots.loaded import LoadedRobot
 from hsr8.world.field.layout import Layout
+from hsr8.world.field.moving_field import REACTION_TICKS, moving_field
 from hsr8.world.model.index import ModelIndex
 from hsr8.world.rotation import heading, up_component
 from hsr8.world.truth.contacts import ContactWatch
 from hsr8.world.truth.saturation import Saturation
 from hsr8.world.truth.truth import ActivePush, Truth
+from walking.parameters import CONTROL_PERIOD
 from walking.state import BodySensors, JointTargets
 
 
@@ -37,6 +39,9 @@ class Body(Protocol):
 
     def update_kinematics(self) -> None:
         """Update the poses in ``data`` from its state, for a camera."""
+
+    def movers(self) -> NDArray[np.float64]:
+        """Return the positions of the movers in ``data``, layout order (n, 2) [m]."""
 
     def truth(self) -> Truth:
         """Return the ground truth now, with the contacts since the last call."""
@@ -70,32 +75,50 @@ class Surroundings:
 
     def __init__(self, model: mujoco.MjModel, robot: LoadedRobot, layout: Layout) -> None:
         static = layout.static
-        self._movers = layout.motion()
+        self._field = moving_field(layout)
+        self._n_movers = len(layout.movers)
         self._static = np.reshape([o.position for o in static], (-1, 2))
         self._at_rest = np.zeros_like(self._static)
         height = max(robot.height, robot.parameters.pattern.pelvis_height)
         self._lowest = robot.height - FALLEN_DROP * height
-        self.index = ModelIndex.of(model, robot, len(static), len(self._movers))
+        self.index = ModelIndex.of(model, robot, len(static), self._n_movers)
         self.watch = ContactWatch(model, self.index, layout)
         self._timestep = float(model.opt.timestep)
-        self._first, self._block = -BLOCK, np.zeros((BLOCK, model.nmocap, 3))
-        self._row, self._ends, self._velocities = 0, np.full(BLOCK, np.nan), np.zeros((BLOCK, 0, 2))
+        steps = round(REACTION_TICKS * CONTROL_PERIOD / self._timestep)
+        n = self._n_block = steps if self._field.reacts else BLOCK
+        self._first, self._block = -n, np.zeros((n, model.nmocap, 3))
+        self._row, self._ends, self._velocities = 0, np.full(n, np.nan), np.zeros((n, 0, 2))
 
     def move(self, data: mujoco.MjData, time: float) -> None:
         """Move every mover to its position at `time` [s]."""
-        if len(self._movers):
-            data.mocap_pos[self.index.mover_mocap, :2] = self._movers.positions(time)
+        if self._n_movers:
+            data.mocap_pos[self.index.mover_mocap, :2] = self._field.positions(time)
+
+    def react(self, data: mujoco.MjData, time: float) -> None:
+        """Let the movers react to the robot, every `REACTION_TICKS` control ticks."""
+        x, y = data.qpos[self.index.root_qpos : self.index.root_qpos + 2].tolist()
+        self._field.react(time, (x, y))
+
+    def movers(self, data: mujoco.MjData) -> Array:
+        """Return the positions of the movers in `data`, layout order (n, 2) [m]."""
+        movers: Array = data.mocap_pos.take(self.index.mover_mocap, axis=0)[:, :2]
+        return movers
+
+    def state_bytes(self) -> bytes:
+        """Return the state of the movers that a function of time does not give."""
+        return self._field.state_bytes()
 
     def step(self, data: mujoco.MjData, number: int) -> None:
         """Move every mover to its position at the end of physics step `number`, counted from 0."""
-        if len(self._movers) == 0:
+        if self._n_movers == 0:
             return
-        if not 0 <= number - self._first < BLOCK:
+        if not 0 <= number - self._first < self._n_block:
             self._first = number
-            self._ends = np.arange(number + 1.0, number + 1.0 + BLOCK) * self._timestep
+            self.react(data, number * self._timestep)
+            self._ends = np.arange(number + 1.0, number + 1.0 + self._n_block) * self._timestep
             self._block[:] = data.mocap_pos
-            self._block[:, self.index.mover_mocap, :2] = self._movers.positions(self._ends)
-            self._velocities = self._movers.velocities(self._ends)
+            self._block[:, self.index.mover_mocap, :2] = self._field.positions(self._ends)
+            self._velocities = self._field.velocities(self._ends)
         self._row = number - self._first
         data.mocap_pos[:] = self._block[self._row]
 
@@ -123,15 +146,15 @@ class Surroundings:
         x, y, z = qpos[root : root + 3].tolist()
         attitude = qpos[root + 3 : root + 7]
         low = z < self._lowest
-        movers = data.mocap_pos.take(self.index.mover_mocap, axis=0)[:, :2]
         stepped = self._ends[self._row] == time
-        moving = self._velocities[self._row] if stepped else self._movers.velocities(time)
+        moving = self._velocities[self._row] if stepped else self._field.velocities(time)
         return Truth(
             time=time,
             qpos=qpos,
             robot=np.array([x, y, heading(attitude)]),
-            obstacle_positions=np.concatenate([self._static, movers]),
+            obstacle_positions=np.concatenate([self._static, self.movers(data)]),
             obstacle_velocities=np.concatenate([self._at_rest, moving]),
+            mover_clocks=self._field.clocks(time),
             contacts=self.watch.take(),
             clearance=self.watch.clearance(data),
             joint_torque=joint_torque,

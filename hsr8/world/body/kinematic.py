@@ -17,6 +17,7 @@ from hsr8.world.body.body import Surroundings
 from hsr8.world.body.physics import place_robot
 from hsr8.world.body.sensors import SensorSuite
 from hsr8.world.field.layout import Layout
+from hsr8.world.field.moving_field import REACTION_TICKS
 from hsr8.world.rotation import Quaternion, product, rotate
 from hsr8.world.truth.truth import Truth
 from walking.parameters import CONTROL_PERIOD, GRAVITY
@@ -35,7 +36,7 @@ BOTH = 2
 # Fractions of the weight on the left and the right foot: left, right, double support.
 LOAD_FRACTIONS = np.array([[1.0, 0.0], [0.0, 1.0], [0.5, 0.5]])
 ORIGIN = (0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0)
-CONTACT_TICKS = 4  # control ticks between checks for contacts [1]
+CONTACT_TICKS = REACTION_TICKS  # control ticks between checks for contacts [1]
 
 Ints = NDArray[np.intp]
 
@@ -84,6 +85,7 @@ class KinematicBody:
         self._anchor = self._foot_on_floor(0)
         self._other_sole = np.zeros(4)
         self._plant()
+        self._surroundings.react(self.data, 0.0)
 
     @property
     def time(self) -> float:
@@ -122,6 +124,10 @@ class KinematicBody:
             mujoco.mj_kinematics(self.model, self.data)
             mujoco.mj_collision(self.model, self.data)
             self._surroundings.watch.watch(self.data)
+            self._surroundings.react(self.data, self.time)
+
+    def movers(self) -> Array:
+        return self._surroundings.movers(self.data)
 
     def update_kinematics(self) -> None:
         self._surroundings.move(self.data, self.time)
@@ -149,7 +155,8 @@ class KinematicBody:
 
     def state_bytes(self) -> bytes:
         """Return configuration, movers and pose of the planted foot."""
-        return b"".join(a.tobytes() for a in (self.data.qpos, self.data.mocap_pos, self._anchor))
+        numbers = (self.data.qpos, self.data.mocap_pos, self._anchor)
+        return b"".join(a.tobytes() for a in numbers) + self._surroundings.state_bytes()
 
     def _foot_on_floor(self, side: int) -> Array:
         """Return x, y, yaw of a foot projected onto the floor (3,)."""

@@ -131,6 +131,9 @@ class PhysicsBody:
         mujoco.mj_comPos(self.model, self.data)
         mujoco.mj_camlight(self.model, self.data)
 
+    def movers(self) -> Array:
+        return self._surroundings.movers(self.data)
+
     def truth(self) -> Truth:
         data = self.data
         load, pressure = self._surroundings.watch.feet(data)
@@ -148,7 +151,7 @@ class PhysicsBody:
 
     def state_bytes(self) -> bytes:
         mujoco.mj_getState(self.model, self.data, self._state, mujoco.mjtState.mjSTATE_INTEGRATION)
-        return self._state.tobytes()
+        return self._state.tobytes() + self._surroundings.state_bytes()
 
     def _divergence(self) -> SimulationDiverged:
         """Return the error of a state that is no longer valid."""

@@ -82,10 +82,9 @@ class AnalyticCamera:
         self._panoramic = settings.panoramic
         self._half_fov = 0.5 * camera.horizontal_fov
         self._faults = faults
-        self._movers = layout.motion()
         self._cylinders: tuple[Obstacle | Beacon, ...] = (*layout.obstacles, *layout.beacons)
         self._positions = np.array([c.position for c in self._cylinders]).reshape(-1, 2)
-        self._moving = slice(len(layout.obstacles) - len(self._movers), len(layout.obstacles))
+        self._moving = slice(len(layout.static), len(layout.obstacles))
         self._sizes = np.array([(c.radius, c.height) for c in self._cylinders]).reshape(-1, 2)
         self._beacon = np.array([isinstance(c, Beacon) for c in self._cylinders], dtype=bool)
         self._view: Rows = np.zeros(1, VIEW)
@@ -101,31 +100,17 @@ class AnalyticCamera:
         rotation = data.cam_xmat[camera_id].reshape(3, 3) * (1.0, -1.0, -1.0)
         x, y = data.qpos[root : root + 2].tolist()
         robot = (x, y, heading(data.qpos[root + 3 : root + 7]))
-        return self.detect(body.time, robot, data.cam_xpos[camera_id], rotation)
-
-    def detect(
-        self, time: float, robot: Pose, position: Array, rotation: Array
-    ) -> tuple[Detection, ...]:
-        """Return the detections from a pose of robot and camera, by distance and label.
-
-        Args:
-            time: simulated time [s].
-            robot: x, y, heading in W [m, m, rad].
-            position: position of the camera in W (3,) [m].
-            rotation: R_WC, columns right, down, forward (3, 3).
-        """
-        self._view["position"], self._view["rotation"] = position, rotation
-        tick = ticks(time)
-        detections = self._detect(time, robot, self._faults.missed(tick))
+        self._view["position"], self._view["rotation"] = data.cam_xpos[camera_id], rotation
+        self._positions[self._moving] = body.movers()
+        tick = ticks(body.time)
+        detections = self._detect(robot, self._faults.missed(tick))
         detections += self._false_detections(robot, self._faults.false_detections(tick))
         if self._faults.black(tick):
             return ()
         return tuple(sorted(detections, key=lambda d: (d.distance, d.label)))
 
-    def _detect(self, time: float, robot: Pose, missed: float) -> list[Detection]:
+    def _detect(self, robot: Pose, missed: float) -> list[Detection]:
         """Return the detections of cylinders; a fault hides the fraction `missed`."""
-        if len(self._movers):
-            self._positions[self._moving] = self._movers.positions(time)
         offsets = self._positions - self._view["position"][0, :2]
         order = np.argsort(np.hypot(offsets[:, 0], offsets[:, 1]), kind="stable")
         positions = self._positions[order]

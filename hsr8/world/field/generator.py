@@ -15,7 +15,7 @@ of scale 1:
 """
 
 from collections import Counter
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from hsr8.errors import ScenarioError
 from hsr8.scenario.mission import Course, Tour
@@ -24,7 +24,7 @@ from hsr8.scenario.world import TrackMover
 from hsr8.seeds import named_rng
 from hsr8.world.field.attempt import Attempt, CrowdedError
 from hsr8.world.field.certificate import MAX_WORK, Certificate, certify
-from hsr8.world.field.layout import Layout, with_faults
+from hsr8.world.field.layout import Layout, Reactions, with_faults
 
 MAX_WORLDS = 20  # attempts per seed
 MAX_LANES = 4000  # lanes tried in crowded worlds per seed
@@ -81,8 +81,8 @@ def draw_world(scenario: Scenario, seed: int) -> FairWorld:
         certificate = certify(layout, scenario.robot, reached, MAX_WORK - work)
         work += certificate.work
         if certificate.solvable or not _draws(scenario):
-            faulty = with_faults(layout, scenario.fault)
-            return FairWorld(faulty, certificate, rejected, crowded.total())
+            layout = with_faults(_with_reactions(layout, scenario, seed), scenario.fault)
+            return FairWorld(layout, certificate, rejected, crowded.total())
         rejected += 1
         if work >= MAX_WORK:
             break
@@ -96,6 +96,17 @@ def draw_world(scenario: Scenario, seed: int) -> FairWorld:
         f"of {width:g} m x {depth:g} m, got {', '.join(reasons)}; expected a larger world.size or "
         "smaller world.n_static, world.n_moving or world.radius"
     )
+
+
+def _with_reactions(layout: Layout, scenario: Scenario, seed: int) -> Layout:
+    """Return a layout whose movers react; the seed draws which of them yield."""
+    rng, fraction = named_rng(seed, "yield"), scenario.world.yield_fraction
+    reactions = Reactions(robot_radius=scenario.robot.radius, time_scale=scenario.time_scale)
+    obstacles = (
+        *layout.static,
+        *(replace(m, yields=bool(rng.random() < fraction)) for m in layout.movers),
+    )
+    return replace(layout, obstacles=obstacles, reactions=reactions)
 
 
 def _draws(scenario: Scenario) -> bool:

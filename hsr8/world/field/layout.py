@@ -31,6 +31,7 @@ class Obstacle:
         height: height of the cylinder [m].
         color: name of the colour class.
         motion: motion law of a mover; None of a static obstacle.
+        yields: whether a mover waits for the robot.
     """
 
     position: Point
@@ -38,6 +39,24 @@ class Obstacle:
     height: float
     color: str
     motion: MotionLaw | None = None
+    yields: bool = False
+
+
+@dataclass(frozen=True, slots=True)
+class Reactions:
+    """Reactions of the movers to the robot and to one another.
+
+    Attributes:
+        crowd: whether movers avoid one another, and static obstacles, by ORCA.
+        sees_robot: whether such a crowd avoids the robot, too.
+        robot_radius: radius of the robot [m].
+        time_scale: duration of an action relative to that of HSR-VIII [1].
+    """
+
+    crowd: bool = False
+    sees_robot: bool = True
+    robot_radius: float = 0.0
+    time_scale: float = 1.0
 
 
 @dataclass(frozen=True, slots=True)
@@ -82,6 +101,7 @@ class Layout:
         endless: the first waypoint follows the last one.
         bumps: low discs on the floor (faults).
         scale: size of drawings and distances relative to those for HSR-VIII [1].
+        reactions: reactions of the movers.
     """
 
     field_size: Point
@@ -93,6 +113,7 @@ class Layout:
     endless: bool
     bumps: tuple[Bump, ...] = ()
     scale: float = 1.0
+    reactions: Reactions = Reactions()
 
     @property
     def static(self) -> tuple[Obstacle, ...]:

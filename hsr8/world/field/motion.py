@@ -165,13 +165,13 @@ def pace(motion: MotionLaw) -> float:
 
 
 class _Kind(Protocol):
-    """Movers of one kind, evaluated together."""
+    """Movers of one kind, evaluated together, each at its own time or all at the same."""
 
     def positions(self, times: Array) -> Array:
-        """Return the positions at `times` (...) [s] (..., n, 2) [m]."""
+        """Return the positions at `times` (..., n or 1) [s] (..., n, 2) [m]."""
 
     def velocities(self, times: Array) -> Array:
-        """Return the velocities at `times` (...) [s] (..., n, 2) [m/s]."""
+        """Return the velocities at `times` (..., n or 1) [s] (..., n, 2) [m/s]."""
 
 
 class Movers:
@@ -197,22 +197,32 @@ class Movers:
     def __len__(self) -> int:
         return len(self.motions)
 
-    def positions(self, time: float | Array) -> Array:
-        """Return the positions at `time` [s] (...), in layout order (..., n, 2) [m]."""
+    def positions(self, time: float | Array, clocks: Array | None = None) -> Array:
+        """Return the positions at `time` [s] (...), in layout order (..., n, 2) [m].
+
+        Args:
+            time: world time, which decides whether appearing movers are present.
+            clocks: time of each mover on its lane (..., n) [s]; `time` by default.
+        """
         times = np.asarray(time, dtype=float)
         positions = np.empty((*times.shape, len(self.motions), 2))
         for chosen, kind in self._kinds:
-            positions[..., chosen, :] = kind.positions(times)
+            own = times[..., None] if clocks is None else clocks[..., chosen]
+            positions[..., chosen, :] = kind.positions(own)
         if len(self._appearing):
             positions[..., self._appearing, 0] += np.where(self._present(times), 0.0, self._away)
         return positions
 
-    def velocities(self, time: float | Array) -> Array:
-        """Return the velocities at `time` [s] (...), in layout order (..., n, 2) [m/s]."""
+    def velocities(self, time: float | Array, clocks: Array | None = None) -> Array:
+        """Return the velocities by their own times in layout order (..., n, 2) [m/s].
+
+        Arguments as in `positions`.
+        """
         times = np.asarray(time, dtype=float)
         velocities = np.empty((*times.shape, len(self.motions), 2))
         for chosen, kind in self._kinds:
-            velocities[..., chosen, :] = kind.velocities(times)
+            own = times[..., None] if clocks is None else clocks[..., chosen]
+            velocities[..., chosen, :] = kind.velocities(own)
         if len(self._appearing):
             velocities[..., self._appearing, :] *= self._present(times)[..., None]
         return velocities
@@ -248,7 +258,7 @@ class _Lanes:
         return rates
 
     def _travelled(self, times: Array) -> Array:
-        travelled: Array = np.mod(self._offset + self._speed * times[..., None], self._period)
+        travelled: Array = np.mod(self._offset + self._speed * times, self._period)
         return travelled
 
 
@@ -261,14 +271,14 @@ class _Circles:
         self._speed, self._rate = table[:, 3:4], table[:, 3] / table[:, 2]
 
     def positions(self, times: Array) -> Array:
-        angle = self._angle + self._rate * times[..., None]
+        angle = self._angle + self._rate * times
         positions: Array = self._centre + self._radius * np.stack(
             [np.cos(angle), np.sin(angle)], axis=-1
         )
         return positions
 
     def velocities(self, times: Array) -> Array:
-        angle = self._angle + self._rate * times[..., None]
+        angle = self._angle + self._rate * times
         velocities: Array = self._speed * np.stack([-np.sin(angle), np.cos(angle)], axis=-1)
         return velocities
 
@@ -295,7 +305,7 @@ class _Passages:
         return velocities
 
     def _travelled(self, times: Array) -> Array:
-        travelled: Array = self._speed * (times[..., None] - self._depart)
+        travelled: Array = self._speed * (times - self._depart)
         return travelled
 
 
@@ -320,7 +330,7 @@ class _Wanders:
 
     def _sides(self, times: Array) -> tuple[Array, Array, Array]:
         """Return the last corner, the vector to the next one, and the travelled fraction."""
-        sides = (self._offset + self._speed * times[..., None]) / self._side
+        sides = (self._offset + self._speed * times) / self._side
         whole = np.floor(sides)
         n = self._corners.shape[1]
         last = whole.astype(np.intp) % n

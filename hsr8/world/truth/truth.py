@@ -80,6 +80,7 @@ class Truth:
         robot: x, y, heading of the robot frame R in W (3,) [m, m, rad].
         obstacle_positions: axes of all obstacles, layout order (n, 2) [m].
         obstacle_velocities: (n, 2) [m/s].
+        mover_clocks: time of each mover on its lane, none where all follow time (m,) [s].
         contacts: since the previous record.
         clearance: distance of the robot to the nearest obstacle or beacon [m].
         joint_torque: (n,) [N m].
@@ -94,6 +95,7 @@ class Truth:
     robot: Array
     obstacle_positions: Array
     obstacle_velocities: Array
+    mover_clocks: Array
     contacts: tuple[Contact, ...]
     clearance: float
     joint_torque: Array

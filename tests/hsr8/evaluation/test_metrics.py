@@ -44,7 +44,11 @@ def measure(layout, tables_of):
             **tables_of(records),
             manifest={"state_hash": "hash", "wall_time_s": 5.0},
             exit_reason=reason,
-            scenario=lambda: SimpleNamespace(navigation=navigation),
+            scenario=lambda: SimpleNamespace(
+                navigation=navigation,
+                robot=SimpleNamespace(radius=0.12),
+                recorder=SimpleNamespace(space_scale=None),
+            ),
         )
         return module.measure(run, world, certificate)
 
@@ -74,6 +78,7 @@ def test_the_certified_path_counts_if_it_leads_to_the_goal(
     results = measure([], world=replace(layout, endless=endless), certificate=certificate)
     assert results["certified_time_s"] == time
     assert results["certified_length_m"] == length
+    assert (results["spl"], results["stl"]) == ((None, None) if time is None else (0.0, 0.0))
 
 
 def test_a_straight_walk(measure, walk):

@@ -118,7 +118,7 @@ def test_a_scaled_recording_is_walked_along_scaled_curves(given_samples, length,
 @given(st.lists(tracks(), min_size=1, max_size=5), st.lists(st.floats(0.0, 30.0), min_size=1))
 def test_all_together_are_each_alone(chosen, instants):
     table = TrackTable(chosen)
-    together = table.positions(np.array(instants))
+    together = table.positions(np.array(instants)[:, None])
     for k, time in enumerate(instants):
         assert together[k] == pytest.approx(
             np.array([track.position(time) for track in chosen]), abs=1e-9

@@ -3,7 +3,7 @@ from math import cos, hypot, pi, sin
 import numpy as np
 import pytest
 
-from navigation.baselines.orca import HalfPlane, orca_plane, solve
+from navigation.baselines.half_planes import HalfPlane, orca_plane, solve
 from navigation.parameters.planner import OrcaParameters
 
 V_MAX = 0.2

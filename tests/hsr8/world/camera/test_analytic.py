@@ -1,3 +1,4 @@
+from dataclasses import replace
 from math import pi
 
 import numpy as np
@@ -17,10 +18,12 @@ from hsr8.world.camera.analytic import (
     project_all,
 )
 from hsr8.world.camera.feed import CameraFaults
-from hsr8.world.field.layout import Obstacle
+from hsr8.world.field.layout import Obstacle, Reactions
+from hsr8.world.field.motion import Shuttle
 from navigation.observation import CameraModel
 from tests.vision.scene import CAMERA, pose
 from vision.view import view_of
+from walking.state import JointTargets
 
 SIZE = {"width": CAMERA.width, "height": CAMERA.height, "vertical_fov_deg": 70.0}
 AHEAD = Camera(source="analytic")
@@ -232,3 +235,24 @@ def test_a_beacon_is_visible_with_its_seam_and_a_part_of_both_colours(position, 
         assert shown == whole
     if not 2.0 < row < CAMERA.height - 2.0:
         assert shown[2] == 0.0
+
+
+def test_the_camera_sees_a_mover_where_it_waits(world, silent):
+    """Without the robot in front of it, it would be 1.4 m away."""
+    lane = Shuttle((1.2, 0.0), (-0.2, 0.0), 0.2)
+    mover = Obstacle((1.2, 0.0), 0.08, 0.3, "red", lane, yields=True)
+    layout, model = world(mover)
+    layout = replace(layout, reactions=Reactions(robot_radius=0.12))
+    body = KinematicBody(model, load_robot("hsr8"), layout, silent, np.random.default_rng(0))
+    body.data.joint("head_tilt").qpos[0] = -0.35
+    targets = JointTargets(body.sense().joint_position.copy(), body.sense().joint_position.copy())
+    for _ in range(2800):
+        body.apply(targets)
+    constants = CameraModel(CAMERA.horizontal_fov, pi, shadow=OPEN)
+    settings = AHEAD.model_copy(update=SIZE)
+    camera = AnalyticCamera(layout, settings, constants, np.random.default_rng(1), CameraFaults())
+    detections = [d for d in camera.capture(body) if d.kind == "obstacle"]
+    (position,) = body.movers().tolist()
+    assert body.truth().mover_clocks < 7.0
+    assert [d.distance for d in detections] == [pytest.approx(position[0], abs=0.02)]
+    assert lane.position(14.0)[0] - position[0] > 0.5
