@@ -7,7 +7,6 @@ import signal
 
 import psutil
 import pytest
-from hsr8.robots.file.locate import find_description
 
 from hsr8.api import run as api_run
 from hsr8.cli.main import entry
@@ -17,6 +16,7 @@ from hsr8.recorder.run import run_folder
 from hsr8.recorder.run.run_folder import RunFolder
 from hsr8.recorder.run.run_reader import open_run
 from hsr8.rerun_log.run_log import RunLog, write_log
+from hsr8.robots.file.locate import find_description
 from hsr8.robots.loaded import load_robot
 
 FAST = ("--body", "kinematic", "--camera", "analytic")
