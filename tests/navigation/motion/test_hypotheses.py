@@ -5,7 +5,7 @@ import pytest
 
 from compilation.record import record
 from navigation.belief.belief import Motion
-from navigation.belief.imm import arc
+from navigation.belief.mode_filter import arc
 from navigation.belief.tracks import Tracks
 from navigation.motion.hypotheses import chord_velocity, collision_discs, within_reach
 from navigation.parameters.motion import SafetyFilterParameters
