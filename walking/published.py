@@ -109,7 +109,7 @@ def walking_state(published: Records[Published], commanded: Command) -> WalkingS
         published: state (1,); the arrays of the value are parts of it.
         commanded: last command.
     """
-    numbers: Any = cast(NDArray[Any], published).item()
+    numbers: Any = cast("NDArray[Any]", published).item()
     phase, odometry, camera, velocity, footsteps, *rest, balance = numbers[:13]
     footstep_count, corner_count, bound, explicit, applied = numbers[13:]
     com, dcm, support, *others = balance
