@@ -83,7 +83,7 @@ class WalkingEngine:
     @property
     def torques(self) -> Array:
         """Planned torques of all joints in the last tick (n,) [N m]."""
-        joints = cast(NDArray[Any], self._joints)
+        joints = cast("NDArray[Any]", self._joints)
         lag = joints["rate_ahead"] * joints["lag"]
         torques: Array = (joints["offset"] - lag) / joints["compliance"]
         return torques

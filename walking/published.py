@@ -3,6 +3,7 @@
 from math import asin, atan2, cos, sin
 from typing import Annotated, Any, cast
 
+import numpy as np
 from numpy.typing import NDArray
 
 from compilation import compiled
@@ -99,7 +100,6 @@ class Published:
     bound: int  # limits that bind, as bits
     explicit: bool  # whether the applied command is a command state
     applied: Annotated[Array, 6]  # its numbers
-    scratch: Strides  # intermediate result
 
 
 def walking_state(published: Records[Published], commanded: Command) -> WalkingState:
@@ -109,9 +109,9 @@ def walking_state(published: Records[Published], commanded: Command) -> WalkingS
         published: state (1,); the arrays of the value are parts of it.
         commanded: last command.
     """
-    numbers: Any = cast(NDArray[Any], published).item()
+    numbers: Any = cast("NDArray[Any]", published).item()
     phase, odometry, camera, velocity, footsteps, *rest, balance = numbers[:13]
-    footstep_count, corner_count, bound, explicit, applied, _ = numbers[13:]
+    footstep_count, corner_count, bound, explicit, applied = numbers[13:]
     com, dcm, support, *others = balance
     applied_command = commanded
     if bound:
@@ -215,12 +215,13 @@ def publish_limits(published: Published, walk: Data, robot: Model) -> None:
     out.bound, out.explicit = walk.limits, steering.state.explicit
     if out.bound == 0:
         return
+    strides = np.zeros(1, Strides)[0]
     if out.explicit:
-        strides = walk.plan.following
         if walk.admission.fraction == 1.0:
             # The footsteps follow the wanted strides, corrected for slip.
-            strides = out.scratch
             command_strides(strides, steering.state.step, 0.0, robot)
+        else:
+            strides = walk.plan.following
         command = command_of(strides, timing)
         for k, value in enumerate(command):
             out.applied[k] = value
@@ -228,8 +229,8 @@ def publish_limits(published: Published, walk: Data, robot: Model) -> None:
     velocity = twist_of(walk.placing.applied)
     if out.bound & STRIDE_LIMITS:
         time = duration(timing)
-        velocity_strides(out.scratch, velocity, time, robot)
-        velocity = mean_velocity(out.scratch, time, robot)
+        velocity_strides(strides, velocity, time, robot)
+        velocity = mean_velocity(strides, time, robot)
     for k, value in enumerate(velocity):
         out.applied[k] = value
 

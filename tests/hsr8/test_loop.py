@@ -1,4 +1,5 @@
 from dataclasses import replace
+from types import SimpleNamespace
 
 import cv2
 import numpy as np
@@ -13,6 +14,7 @@ from hsr8.robots.loaded import load_robot
 from hsr8.scenario.loader import load_scenario
 from hsr8.world.truth.truth import Contact, Truth
 from navigation.decision import GazeDecision, MotionDecision
+from walking.dimension import HSR_VIII, scale_parameters
 
 STAND_INS = ['robot.body="kinematic"', 'camera.source="analytic"']
 
@@ -148,3 +150,12 @@ def test_a_margin_is_below_half_the_width_of_the_sole_of_the_robot_that_walks(ke
         walking_parameters(robot, scenario)
     monkeypatch.setattr(robot.model, "sole", replace(robot.model.sole, half_width=1.1 * half))
     walking_parameters(robot, scenario)
+
+
+def test_a_value_that_equals_the_default_of_another_robot_is_kept():
+    robot, scenario = load_robot("hsr8"), load_scenario("walk", ["walking.gait.footstep_time=0.34"])
+    giant = replace(HSR_VIII, leg=2.0 * HSR_VIII.leg, time=1.4 * HSR_VIII.time)
+    scaled = scale_parameters(robot.parameters, HSR_VIII, giant)
+    loaded = SimpleNamespace(model=robot.model, parameters=scaled)
+    assert scaled.gait.footstep_time > 0.4
+    assert walking_parameters(loaded, scenario).gait.footstep_time == 0.34

@@ -1,5 +1,6 @@
 """The engine on a body without dynamics: velocities, explicit footsteps, mirror images."""
 
+from contextlib import nullcontext
 from dataclasses import replace
 from itertools import pairwise
 
@@ -11,7 +12,7 @@ from tests.walking.conftest import IdealBody
 from walking.body.robot_model import RobotModel
 from walking.body.tree import HEAD
 from walking.command import CommandState, HeadTarget, Limit, VelocityCommand
-from walking.engine import WalkingEngine
+from walking.engine import PlanDiverged, WalkingEngine
 from walking.parameters import CONTROL_PERIOD, HeadParameters, WalkingParameters
 from walking.plan.footsteps import STANCE_YAW_TOLERANCE
 from walking.state import Phase
@@ -144,6 +145,15 @@ def test_a_robot_that_falls_while_walking_takes_no_more_steps(robot, ideal_body)
     assert engine.state().step_count <= steps + 1
     assert np.ptp(held, axis=0).max() == 0.0
     assert engine.limits == (Limit.FALLEN,)
+
+
+@pytest.mark.parametrize(("legs", "diverged"), [(5.0, False), (12.0, True)])
+def test_a_plan_that_leaves_the_feet_far_behind_is_an_error(robot, ideal_body, legs, diverged):
+    engine = WalkingEngine(robot, WalkingParameters())
+    engine.step(ideal_body.sense(), VelocityCommand(), AHEAD)
+    engine._walk.pendulum.x += legs * robot.legs[0].length
+    with pytest.raises(PlanDiverged, match="m from the feet") if diverged else nullcontext():
+        engine.step(ideal_body.sense(), VelocityCommand(), AHEAD)
 
 
 def test_reading_the_state_changes_nothing(robot, ideal_body):

@@ -91,16 +91,18 @@ def set_body(
     """
     roll, pitch, body.heading = roll_pitch_yaw(orientation)
     follow_tilt(body, roll, pitch, gyro, robot.estimator.tilt_gain)
-    tilt, attitude = (body.roll, body.pitch), inclined(body.roll, body.pitch)
+    attitude = inclined(body.roll, body.pitch)
     # Of the heading, not about the axis of the trunk.
     body.turn_rate = (sin(body.roll) * gyro[1] + cos(body.roll) * gyro[2]) / cos(body.pitch)
     for side in range(2):
         foot, frame = body.feet[side], body.frames[side]
-        foot.x, foot.y, foot.z = level((frame[MOVE], frame[MOVE + 1], frame[MOVE + 2]), tilt)
+        x, y, z = frame[MOVE], frame[MOVE + 1], frame[MOVE + 2]
+        foot.x, foot.y, foot.z = rotated(attitude, x, y, z)
         ahead, aside, _ = rotated(attitude, frame[0], frame[3], frame[6])
         foot.yaw = atan2(aside, ahead)
         foot.load, foot.pressure_x, foot.pressure_y = load_of(pads[side], robot.sole)
-    body.com_x, body.com_y, body.com_z = level(com, tilt)
+    x, y, z = com
+    body.com_x, body.com_y, body.com_z = rotated(attitude, x, y, z)
     left = max(0.0, body.feet[LEFT].load - robot.light_load)
     right = max(0.0, body.feet[RIGHT].load - robot.light_load)
     both = left + right
@@ -272,12 +274,3 @@ def _com_error(
     foot = body.feet[side]
     x, y = rotate(reference.yaw - foot.yaw, body.com_x - foot.x, body.com_y - foot.y)
     return x + reference.x - planned[0], y + reference.y - planned[1], x, y
-
-
-@compiled
-def level(point: Vector, tilt: Point) -> Vector:
-    """Transform a point of the base frame to the level frame, given roll and pitch [rad]."""
-    cr, sr, cp, sp = cos(tilt[0]), sin(tilt[0]), cos(tilt[1]), sin(tilt[1])
-    x, y, z = point
-    depth = sr * y + cr * z
-    return cp * x + sp * depth, cr * y - sr * z, cp * depth - sp * x

@@ -13,6 +13,7 @@ from walking.parameters import CONTROL_PERIOD
 from walking.plane import Point, Vector, clamp, rotate_back, within
 
 NO_FOOT = -1
+DISCARDED = -1  # number of errors of a discarded cycle
 
 
 @compiled
@@ -66,8 +67,9 @@ def heading_rate(corrections: Corrections, ahead: float, renew: bool, robot: Mod
 
 
 @compiled
-def reset_speed(corrections: Corrections) -> None:
-    """Discard the correction of the speed."""
+def end_corrections(corrections: Corrections) -> None:
+    """Discard the correction of the speed and the present cycle of the CoM offset."""
+    corrections.errors = DISCARDED
     corrections.posed = corrections.whole = False
     corrections.speed.x = corrections.speed.y = 0.0
 
@@ -126,12 +128,6 @@ def _displacement(before: Pose, pose: Vector) -> Point:
 
 
 @compiled
-def discard_offset_cycle(corrections: Corrections) -> None:
-    """Discard the present cycle of the CoM offset; keep the offset."""
-    corrections.errors = -1
-
-
-@compiled
 def correct_offset(
     corrections: Corrections,
     error: Point,
@@ -162,7 +158,7 @@ def correct_offset(
         c.error_sum.x = c.error_sum.y = 0.0
         c.errors = 0
     if disturbed:
-        discard_offset_cycle(c)
+        c.errors = DISCARDED
     elif c.errors >= 0 and pressed:
         x, y = error
         c.error_sum.x, c.error_sum.y = c.error_sum.x + x, c.error_sum.y + y

@@ -10,9 +10,8 @@ from walking.plan.corrections import (
     correct_offset,
     cycle_begins,
     detects_touchdown,
-    discard_offset_cycle,
+    end_corrections,
     heading_rate,
-    reset_speed,
     restart_cycle,
     speed_correction,
     speed_ratio,
@@ -68,8 +67,7 @@ def want_strides(walk: Data, odometry: DeadReckoning, robot: Model) -> None:
         restart_cycle(corrections)
     if not (gait.stepping and moves(steering)):
         # The last footsteps only close the stance.
-        reset_speed(corrections)
-        discard_offset_cycle(corrections)
+        end_corrections(corrections)
         set_wanted_strides(steering, STILL, robot)
         return
     begins = cycle_begins(corrections, gait.support)

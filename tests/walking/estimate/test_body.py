@@ -13,7 +13,6 @@ from walking.data import Body, Data, PlanError
 from walking.estimate.body import (
     filter_error,
     follow_tilt,
-    level,
     load_of,
     roll_pitch_yaw,
     set_body,
@@ -87,13 +86,6 @@ def test_rates_of_a_trunk_that_does_not_yaw_are_integrated():
         result = tilt.update(0.0, 0.0, [0.1, -0.3, 0.0])
     time = 100 * CONTROL_PERIOD
     assert result == pytest.approx((0.05 + 0.1 * time, -0.02 - 0.3 * time))
-
-
-@given(SEEDS)
-def test_a_level_point_keeps_its_distance(seed):
-    point = tuple(np.random.default_rng(seed).normal(0.0, 0.1, 3).tolist())
-    levelled = level(point, (0.2, -0.3))
-    assert np.linalg.norm(levelled) == pytest.approx(np.linalg.norm(point))
 
 
 @pytest.mark.parametrize(("pad", "x", "y"), [(0, 1, 1), (1, 1, -1), (2, -1, 1), (3, -1, -1)])

@@ -15,7 +15,7 @@ from walking.plan.corrections import (
     correct_offset,
     cycle_begins,
     detects_touchdown,
-    discard_offset_cycle,
+    end_corrections,
     heading_rate,
     restart_cycle,
     speed_correction,
@@ -202,7 +202,7 @@ def test_the_offset_outlasts_a_rest():
         correct_offset(record, (0.01, 0.0), True, tick % CYCLE == 0, False, PARAMETERS)
     before = float(record.com_offset[0])
     assert before < 0.0
-    discard_offset_cycle(record)
+    end_corrections(record)
     correct_offset(record, (-0.3, 0.0), True, False, False, PARAMETERS)
     assert record.com_offset[0] <= before
 
