@@ -17,9 +17,9 @@ from hsr8.world.field.generator import draw_world
 FAST = {"walking": {"limits": dict.fromkeys(("vx", "vx_backward", "vy", "wz"), 9.0)}}
 LENGTHS = {
     *("position", "radius", "height", "start", "end", "centre", "track", "side", "offset", "away"),
-    *("field_size", "waypoints", "known", "points"),
+    *("field_size", "waypoints", "known", "points", "robot_radius"),
 }
-TIMES = {"depart", "times", "begin", "linger", "first", "period"}
+TIMES = {"time_scale", "depart", "times", "begin", "linger", "first", "period"}
 SPEEDS = {"speed", "rate", "rates"}
 
 
