@@ -6,6 +6,7 @@ from pathlib import Path as FilePath
 
 from hsr8.keys import Path
 from hsr8.mistakes import Mistake
+from hsr8.scenario.fault import MoverAppears
 from hsr8.scenario.fault_checks import fault_problems, robot_problems
 from hsr8.scenario.mission import Course, Points, Tour, Walk
 from hsr8.scenario.schema import Scenario
@@ -24,7 +25,7 @@ def check(scenario: Scenario) -> Iterator[Mistake]:
     """Yield all inconsistencies."""
     checks = (
         *(_parameters, _mission, _command, fault_problems, robot_problems),
-        *(_outside, _gaps, _movers),
+        *(_outside, _gaps, _movers, _crowd),
     )
     for problems in checks:
         yield from problems(scenario)
@@ -220,6 +221,21 @@ def _movers(scenario: Scenario) -> Iterator[Mistake]:
         key, first = _initial_position(mover)
         if start is not None and _distance(first, start) < mover.radius + scenario.robot.radius:
             yield Mistake(("world", "mover", i, key), "begins at the start of the robot")
+
+
+def _crowd(scenario: Scenario) -> Iterator[Mistake]:
+    """Movers without ends, and reactions of single movers, in a crowd."""
+    world, key = scenario.world, ("world", "crowd")
+    if world.crowd == "none":
+        return
+    placed = {mover.motion for mover in world.mover} - {"shuttle"}
+    drawn = set(world.motions) - {"shuttle"} if world.n_moving else set()
+    for motion in sorted(placed | drawn):
+        yield Mistake(key, f"movers need two ends, got motion {motion!r}; expected shuttle")
+    if world.yield_fraction:
+        yield Mistake(("world", "yield_fraction"), 'requires world.crowd = "none"')
+    if any(isinstance(fault, MoverAppears) for fault in scenario.fault):
+        yield Mistake(("fault",), 'mover-appears requires world.crowd = "none"')
 
 
 def _initial_position(mover: ShuttleMover | LineMover | CircleMover) -> tuple[str, Point]:

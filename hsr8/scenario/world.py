@@ -123,6 +123,37 @@ class Encounters(Section):
     ] = 0.75
 
 
+class CircleCrossing(Section):
+    """People who cross a circle, each to the opposite point: the circle crossing of CrowdNav.
+
+    The lengths of CrowdNav, with robot and people of radius 0.3 m and a circle of 4 m, are scaled
+    to `robot.radius`; 1 m/s is scaled to `robot.speed.vx`.
+    """
+
+    n: Annotated[Count, doc("Number of people [1].")] = 0
+    path_radius: Annotated[
+        float, Interval(gt=0.0, le=50.0), "m", doc("Radius of the circle around the origin [m].")
+    ] = 1.6
+    radius: Annotated[Radius, doc("Radius of a person [m].")] = 0.12
+    speed_ratio: Annotated[
+        float,
+        Interval(gt=0.0, le=10.0),
+        doc("Preferred speed relative to `robot.speed.vx` [1]."),
+    ] = 1.0
+    perturbation: Annotated[
+        float,
+        Interval(ge=0.0, le=50.0),
+        "m",
+        doc("Width of the uniform perturbation of each start along x and y [m]."),
+    ] = 0.4
+    gap: Annotated[
+        float,
+        Interval(ge=0.0, le=50.0),
+        "m",
+        doc("Minimum distance of a start or goal from other ones and those of the robot [m]."),
+    ] = 0.08
+
+
 class TrackMover(Section):
     """Along recorded tracks: one mover for each id of a file that enters the field."""
 
@@ -224,6 +255,16 @@ class World(Section):
             "ahead on their lane [1]."
         ),
     ] = 0.0
+    crowd: Annotated[
+        Literal["none", "orca"],
+        doc(
+            "orca: moving obstacles walk to the ends of their lanes and avoid one another, static "
+            "obstacles and the robot, a world without a certificate; none: they stay on their "
+            "lanes."
+        ),
+    ] = "none"
+    crowd_sees_robot: Annotated[bool, doc("Whether a crowd avoids the robot.")] = True
+    circle: Annotated[CircleCrossing, doc("People who cross a circle.")] = CircleCrossing()
     beacons: Annotated[
         bool, doc("Whether the field has six beacons: two-colour landmarks at known places.")
     ] = True

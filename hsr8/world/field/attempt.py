@@ -12,7 +12,8 @@ from hsr8.scenario.mission import Course, Points, Tour
 from hsr8.scenario.schema import Scenario
 from hsr8.scenario.track import Recording
 from hsr8.scenario.world import Mover, TrackMover
-from hsr8.world.field.encounter import NominalWalk, course_to, passage_through
+from hsr8.world.field.circle_crossing import draw_crossing
+from hsr8.world.field.encounter import NominalWalk, course_to, passage_through, starts_near
 from hsr8.world.field.lane import Lane, apart_at_all_times, distance, motion_law
 from hsr8.world.field.layout import (
     OBSTACLE_HEIGHT,
@@ -22,7 +23,7 @@ from hsr8.world.field.layout import (
     standard_beacons,
     with_first_moved,
 )
-from hsr8.world.field.motion import Circle, MotionLaw, Passage, Point, Shuttle
+from hsr8.world.field.motion import Circle, MotionLaw, Point, Shuttle
 from hsr8.world.field.wander import draw_wander
 
 Array = NDArray[np.float64]
@@ -129,6 +130,7 @@ class Attempt:
         if points is None:
             points = self._draw_points(start)
         self._draw_encounters(start, points)
+        self._draw_circle([start, *points[-1:]])
         return Layout(
             field_size=world.size,
             obstacles=(*self._static, *(lane.obstacle for lane in self._lanes)),
@@ -339,11 +341,9 @@ class Attempt:
                 course = course_to(velocity, speed, side * bearing)
                 if course is None:
                     continue
-                reach_x, reach_y = (
-                    self._half - radius - 2.0 * self._fair.obstacle_to_border
-                ).tolist()
-                motion = passage_through(point, course, time, (reach_x, reach_y))
-                if motion is None or _starts_near(motion, walk, radius + self._fair.start_to_mover):
+                reach = self._half - radius - 2.0 * self._fair.obstacle_to_border
+                motion = passage_through(point, course, time, tuple(reach.tolist()))
+                if motion is None or starts_near(motion, walk, radius + self._fair.start_to_mover):
                     continue
                 lane = self._lane(motion, radius, self._color())
                 # The mover stays at its end, which must not block a point.
@@ -353,6 +353,13 @@ class Attempt:
                     break
             else:
                 raise CrowdedError("movers on collision courses")
+
+    def _draw_circle(self, ends: Sequence[Point]) -> None:
+        circle, robot = self._world.circle, self._scenario.robot
+        passages = draw_crossing(self._rng, circle, robot.speed.vx, ends, robot.radius)
+        if len(passages) < circle.n:
+            raise CrowdedError("people on the circle")
+        self._lanes += [self._lane(p, circle.radius, self._color()) for p in passages]
 
     def _start_clear(self, p: Array) -> Mask:
         free: Mask = self._static_gap(p) >= self._fair.start_to_static
@@ -390,9 +397,3 @@ class Attempt:
 
     def _color(self) -> str:
         return COLORS[int(self._rng.integers(len(COLORS)))]
-
-
-def _starts_near(motion: Passage, walk: NominalWalk, room: float) -> bool:
-    """Return whether a waiting mover departs nearer than `room` [m] to the nominal walk."""
-    (x, y), _ = walk.at(motion.depart)
-    return motion.depart > 0.0 and bool(distance(np.array([motion.start]), [(x, y)])[0] < room)

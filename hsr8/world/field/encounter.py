@@ -104,3 +104,9 @@ def _to_border(point: Point, velocity: Point, reach: Point) -> float:
 
 def _length(leg: tuple[Point, Point]) -> float:
     return hypot(leg[1][0] - leg[0][0], leg[1][1] - leg[0][1])
+
+
+def starts_near(motion: Passage, walk: NominalWalk, room: float) -> bool:
+    """Return whether a waiting mover departs nearer than `room` [m] to the nominal walk."""
+    (x, y), _ = walk.at(motion.depart)
+    return motion.depart > 0.0 and bool(hypot(motion.start[0] - x, motion.start[1] - y) < room)

@@ -77,6 +77,11 @@ def draw_world(scenario: Scenario, seed: int) -> FairWorld:
             if lanes > MAX_LANES:
                 break
             continue
+        if scenario.world.crowd != "none":
+            # A crowd reacts: no path is certain to be free.
+            layout = _with_reactions(layout, scenario, seed)
+            points = len(layout.waypoints)
+            return FairWorld(layout, Certificate(False, 0, points, 0.0), 0, crowded.total())
         reached = scenario.navigation.mission.r_via
         certificate = certify(layout, scenario.robot, reached, MAX_WORK - work)
         work += certificate.work
@@ -101,7 +106,12 @@ def draw_world(scenario: Scenario, seed: int) -> FairWorld:
 def _with_reactions(layout: Layout, scenario: Scenario, seed: int) -> Layout:
     """Return a layout whose movers react; the seed draws which of them yield."""
     rng, fraction = named_rng(seed, "yield"), scenario.world.yield_fraction
-    reactions = Reactions(robot_radius=scenario.robot.radius, time_scale=scenario.time_scale)
+    reactions = Reactions(
+        crowd=scenario.world.crowd != "none",
+        sees_robot=scenario.world.crowd_sees_robot,
+        robot_radius=scenario.robot.radius,
+        time_scale=scenario.time_scale,
+    )
     obstacles = (
         *layout.static,
         *(replace(m, yields=bool(rng.random() < fraction)) for m in layout.movers),
@@ -112,6 +122,6 @@ def _with_reactions(layout: Layout, scenario: Scenario, seed: int) -> Layout:
 def _draws(scenario: Scenario) -> bool:
     """Return whether another attempt gives another world."""
     world = scenario.world
-    drawn = world.n_static + world.n_moving + world.encounters.n
+    drawn = world.n_static + world.n_moving + world.encounters.n + world.circle.n
     part = any(isinstance(m, TrackMover) and m.latest_start is not None for m in world.mover)
     return drawn > 0 or part or isinstance(scenario.mission, Course | Tour)

@@ -19,7 +19,7 @@ LENGTHS = {
     *("position", "radius", "height", "start", "end", "centre", "track", "side", "offset", "away"),
     *("field_size", "waypoints", "known", "points", "robot_radius"),
 }
-TIMES = {"depart", "times", "begin", "linger", "first", "period"}
+TIMES = {"time_scale", "depart", "times", "begin", "linger", "first", "period"}
 SPEEDS = {"speed", "rate", "rates"}
 
 
