@@ -21,7 +21,7 @@ from walking.estimate.body import measure, reckon_body, update_error
 from walking.model import LEFT, RIGHT, Joint, Link, Model
 from walking.parameters import CONTROL_PERIOD
 from walking.plan.admission import remember
-from walking.plan.balance import is_fallen, place_foot, zmp_shift
+from walking.plan.balance import follow_body, is_fallen, place_foot, zmp_shift
 from walking.plan.corrections import restart_cycle
 from walking.plan.decision import detect_touchdown, follow, start_walk, want_strides
 from walking.plan.departure import end_capture
@@ -146,6 +146,8 @@ def plan_tick(
         walk.limits = FALLEN if explicit or command[:3] != STILL else 0
         _keep_posture(parts, angles)
         return 0.0
+    if gait.stepping:
+        follow_body(walk, robot)
     remember(walk)
     limits = follow(walk, command, explicit, robot)
     want_strides(walk, odometry[0], robot)

@@ -7,12 +7,13 @@ the DCM error and damp the trunk.
 
 from compilation import compiled
 from compilation.record import Records
-from walking.data import Data, Pose
+from walking.data import Body, Data, Pose
 from walking.model import RIGHT, Joint, Model
 from walking.parameters import CONTROL_PERIOD
 from walking.plane import Array, Point, Vector, clamp, rotate_back, within
 
 LEG_JOINTS = 6
+HIP_JOINTS = 3  # first joints of a leg
 
 
 @compiled
@@ -101,6 +102,9 @@ def set_offsets(
                 axis, compliance = axes[side, k], joint.compliance
                 offset = ankle_offset(axis, shift, gyro, compliance, robot)
                 joint.offset += load * offset
+            for k in range(HIP_JOINTS):
+                offset = hip_offset(axes[side, k], walk.body, gyro, robot)
+                joints[LEG_JOINTS * side + k].offset += load * offset
 
 
 @compiled
@@ -142,6 +146,26 @@ def ankle_offset(axis: Array, shift: Point, gyro: Array, compliance: float, robo
     moved = robot.weight * compliance * (axis[1] * dx - axis[0] * dy)
     damping = robot.stabilizer.gyro_gain * (axis[0] * gyro[0] + axis[1] * gyro[1])
     offset: float = moved + damping
+    return offset
+
+
+@compiled
+def hip_offset(axis: Array, body: Body, gyro: Array, robot: Model) -> float:
+    """Return the offset of a hip joint [rad] that turns the trunk upright on its stance leg.
+
+    Where ankle or knee give way, or the foot tips, the trunk tilts with the leg although the hip
+    has its planned angle.
+
+    Args:
+        axis: axis of the joint in the base frame (3,).
+        body: measured tilt of the trunk.
+        gyro: angular velocity of the trunk (3,) [rad/s].
+        robot: constants.
+    """
+    p = robot.stabilizer
+    roll = body.roll + p.hip_damping * gyro[0]
+    pitch = body.pitch + p.hip_damping * gyro[1]
+    offset: float = p.hip_gain * (axis[0] * roll + axis[1] * pitch)
     return offset
 
 

@@ -31,7 +31,7 @@ from walking.plan.reference import plan_walk
 from walking.plan.steering import moves
 from walking.plan.support import Region, clip, support_region
 from walking.plan.timing import equal_clocks
-from walking.plane import Point, clamp, dead_zone, norm, rotate, rotate_back
+from walking.plane import Point, clamp, dead_zone, norm, rotate, rotate_back, within
 
 ROUNDING = 1e-6  # rounding error of a time in control ticks [1]
 
@@ -69,6 +69,35 @@ def zmp_shift(zmp: Point, error: Point, region: Region, robot: Model) -> Point:
     (zmp_x, zmp_y), (off_x, off_y) = zmp, error
     x, y = clip(region, zmp_x + gain * off_x, zmp_y + gain * off_y)
     return x - zmp_x, y - zmp_y
+
+
+@compiled
+def follow_body(walk: Data, robot: Model) -> None:
+    """Move the plan towards the body: admittance of the centre of mass.
+
+    A push that the ankles cannot hold turns body and stance leg about the edge of the sole. Servos
+    that keep the planned posture tilt the trunk by the same angle, and the next foot lands tilted.
+    The plan that takes over the error inclines the leg instead, under an upright trunk. The DCM,
+    planned plus error, does not change, nor does a capture step.
+
+    Args:
+        walk: state; pendulum and error are changed.
+        robot: constants.
+    """
+    pendulum, error, p = walk.pendulum, walk.error, robot.stabilizer
+    length = robot.support.half_length - p.sole_margin
+    width = robot.support.half_width - p.sole_margin
+    x, y = rotate_back(support_foot(walk.plan.gait).yaw, error.dcm_x, error.dcm_y)
+    excess = max(abs(x) / length, abs(y) / width) - p.capture_dead_zone
+    part = p.com_admittance * within(excess, 0.0, 1.0)
+    pendulum.x += part * error.x
+    pendulum.y += part * error.y
+    pendulum.vx += part * error.vx
+    pendulum.vy += part * error.vy
+    rest = 1.0 - part
+    error.x, error.y = rest * error.x, rest * error.y
+    error.vx, error.vy = rest * error.vx, rest * error.vy
+    error.dcm_x, error.dcm_y = rest * error.dcm_x, rest * error.dcm_y
 
 
 @compiled
