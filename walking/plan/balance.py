@@ -72,6 +72,19 @@ def zmp_shift(zmp: Point, error: Point, region: Region, robot: Model) -> Point:
 
 
 @compiled
+def excess_error(walk: Data, robot: Model) -> float:
+    """Return the DCM error beyond the dead zone of the capture step, negative within [1].
+
+    The unit is the range of the ankles on the support foot.
+    """
+    p, error = robot.stabilizer, walk.error
+    length = robot.support.half_length - p.sole_margin
+    width = robot.support.half_width - p.sole_margin
+    x, y = rotate_back(support_foot(walk.plan.gait).yaw, error.dcm_x, error.dcm_y)
+    return max(abs(x) / length, abs(y) / width) - p.capture_dead_zone
+
+
+@compiled
 def follow_body(walk: Data, robot: Model) -> None:
     """Move the plan towards the body: admittance of the centre of mass.
 
@@ -84,12 +97,8 @@ def follow_body(walk: Data, robot: Model) -> None:
         walk: state; pendulum and error are changed.
         robot: constants.
     """
-    pendulum, error, p = walk.pendulum, walk.error, robot.stabilizer
-    length = robot.support.half_length - p.sole_margin
-    width = robot.support.half_width - p.sole_margin
-    x, y = rotate_back(support_foot(walk.plan.gait).yaw, error.dcm_x, error.dcm_y)
-    excess = max(abs(x) / length, abs(y) / width) - p.capture_dead_zone
-    part = p.com_admittance * within(excess, 0.0, 1.0)
+    pendulum, error = walk.pendulum, walk.error
+    part = robot.stabilizer.com_admittance * within(excess_error(walk, robot), 0.0, 1.0)
     pendulum.x += part * error.x
     pendulum.y += part * error.y
     pendulum.vx += part * error.vx

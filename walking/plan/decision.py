@@ -5,7 +5,7 @@ from walking.command import BALANCE, TIMING
 from walking.data import Data, DeadReckoning
 from walking.model import LEFT, RIGHT, Model
 from walking.parameters import CONTROL_PERIOD
-from walking.plan.balance import exceeds_support
+from walking.plan.balance import exceeds_support, excess_error
 from walking.plan.corrections import (
     correct_offset,
     cycle_begins,
@@ -109,10 +109,16 @@ def start_walk(walk: Data, robot: Model) -> int:
 
 @compiled
 def detect_touchdown(walk: Data, robot: Model) -> None:
-    """Stop the swing foot on early touchdown."""
+    """Stop the swing foot on early touchdown; after a push the support ends with this tick.
+
+    A support that waited for its planned end would let the error of the DCM grow on one foot while
+    both are on the floor.
+    """
     gait = walk.plan.gait
     phase = phase_of(gait)
     if not phase.double and not gait.landed_early:
         force = walk.body.feet[swing_of(gait)].load
         if detects_touchdown(walk.corrections, phase.swing, force, robot) and phase.swing < 1.0:
             touch_down(gait, walk.limbs.feet, robot)
+            if excess_error(walk, robot) > 0.0:
+                gait.clock.single.ticks = phase.elapsed + 1

@@ -267,14 +267,9 @@ def aimed(gait: Gait, landing: Foothold, wanted: Foothold, robot: Model) -> Foot
 
 @compiled
 def touch_down(gait: Gait, feet: Records[FootReference], robot: Model) -> None:
-    """Stop the swing foot at an early touchdown, and end the single support with this tick.
-
-    A support that waited for its planned end would let the error of the DCM grow on one foot while
-    both are on the floor.
-    """
+    """Stop the swing foot at an early touchdown."""
     swing = swing_of(gait)
     foot = feet[swing]
-    gait.clock.single.ticks = phase_of(gait).elapsed + 1
     gait.landed_early = True
     put(gait.landing, Foothold(swing == LEFT, foot.x, foot.y, foot.yaw))
 
