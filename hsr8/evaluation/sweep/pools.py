@@ -6,6 +6,7 @@ import socket
 import time as clock
 from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
+from multiprocessing.process import BaseProcess
 from queue import Empty, SimpleQueue
 from typing import Any, Protocol
 
@@ -94,15 +95,16 @@ class LocalPool(_Futures):
 
     def close(self) -> None:
         """Stop the jobs that still run."""
-        processes = list(RUNNING)
-        for process in processes:
-            process.terminate()
-        end = clock.monotonic() + GRACE
-        for process in processes:
-            while process.is_alive() and clock.monotonic() < end:
-                clock.sleep(0.02)
-            process.kill()
-        self._threads.shutdown()
+        self._threads.shutdown(wait=False, cancel_futures=True)
+        end, stopped = clock.monotonic() + GRACE, set[BaseProcess]()
+        while not all(future.done() for future in self._futures):
+            for process in list(RUNNING):  # also one that has just started
+                if clock.monotonic() > end:
+                    process.kill()
+                elif process not in stopped:
+                    process.terminate()
+                    stopped.add(process)
+            clock.sleep(0.02)
 
 
 class DaskPool(_Futures):
@@ -145,9 +147,13 @@ class DaskPool(_Futures):
 
     @property
     def free(self) -> int:
-        """Number of jobs that it can take now."""
+        """Number of jobs that it can take now.
+
+        Raises:
+            Hsr8Error: the scheduler was lost.
+        """
         if self._client.status != "running":
-            return 0
+            raise self._lost()
         threads: int = sum(self._client.nthreads().values())
         return QUEUED * threads - len(self._futures)
 
@@ -159,8 +165,11 @@ class DaskPool(_Futures):
 
     def _result(self, job: Job, future: Any) -> RunResult:
         if future.status in ("cancelled", "lost"):
-            raise Hsr8Error(f"{self._option}: the connection to the scheduler was lost")
+            raise self._lost()
         return super()._result(job, future)
+
+    def _lost(self) -> Hsr8Error:
+        return Hsr8Error(f"{self._option}: the connection to the scheduler was lost")
 
 
 def parse_executor(name: str) -> str:

@@ -194,7 +194,7 @@ def _run(waiting: deque[_Run], execution: Execution, sweeps: int) -> None:
                 if run.claim():
                     running[run.job.folder, run.job.seed] = run
                     pool.submit(run.job)
-            for job, result in pool.wait(POLL) if running else ():
+            for job, result in pool.wait(POLL) if running or waiting else ():
                 run = running[job.folder, job.seed]
                 again = result["outcome"] == CRASHED and job.attempt < ATTEMPTS
                 if again:

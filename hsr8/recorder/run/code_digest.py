@@ -2,6 +2,7 @@
 
 import hashlib
 from collections.abc import Iterator
+from functools import cache
 from importlib.util import find_spec
 from pathlib import Path
 
@@ -15,8 +16,12 @@ NOT_IN_DIGEST = (
 )
 
 
+@cache
 def code_digest() -> str:
-    """Return the first digits of the SHA-256 of all files that influence a result."""
+    """Return the first digits of the SHA-256 of all files that influence a result.
+
+    It is computed once per process: the code that runs does not follow later changes of the files.
+    """
     digest = hashlib.sha256()
     for name, file in _files():
         digest.update(name.encode() + b"\0" + hashlib.sha256(file.read_bytes()).digest())

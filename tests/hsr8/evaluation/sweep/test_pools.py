@@ -114,6 +114,12 @@ def test_closing_ends_runs_that_ignore_sigterm_too(pool, monkeypatch, tmp_path, 
     assert not Path(f"/proc/{pid}").exists()
 
 
+def test_closing_ends_a_run_that_is_starting(pool, tmp_path):
+    pool.submit(job_of(2, tmp_path))
+    pool.close()
+    assert not isolation.RUNNING
+
+
 def test_a_killed_server_is_a_crash_and_the_next_run_has_a_new_one(pool, tmp_path):
     pool.submit(job_of(2, tmp_path))
     pid = pid_of(tmp_path, 2)
