@@ -179,38 +179,42 @@ def _read(description: RobotDescription, folder: Path, model_file: Path) -> RawR
     set_efforts(spec, description.effort)
     feet = [moving_body(spec.body(foot), prepared.root) for foot in description.feet]
     light = [] if description.camera is None else feet
-    model, mesh_notes = _compiled(source, light)
+    fresh = spec.copy()  # a copy loses references to missing elements, which `spec` reports
+    model, mesh_notes = _compiled(source, spec, light)
+    if mesh_notes:
+        drop_invalid_meshes(fresh)
+    prepared = replace(prepared, spec=fresh)
     notes = [*source.notes, *prepared.notes, *mesh_notes]
     frame = _frame(model, description, prepared)
     if not frame.is_body:
         notes += base_note(model, frame, prepared.base)
-        turn_base(spec, prepared.root, frame)
-        before, (model, _) = Posed.at(model, {}, base=frame), _compiled(source, light)
+        turn_base(fresh, prepared.root, frame)
+        before = Posed.at(model, {}, base=frame)
+        model, _ = _compiled(source, fresh.copy(), light)
         require_same(before, Posed.at(model, {}), str(model_file))
     speed = {**source.speed, **description.speed}
     if description.linkage is not None:
         carried, linkage_notes = drive_serially(prepared, description, speed)
         speed = {**carried, **speed}
         notes += linkage_notes
-        set_efforts(spec, description.effort)
-        model, _ = _compiled(source, light)
+        set_efforts(fresh, description.effort)
+        model, _ = _compiled(source, fresh.copy(), light)
     return RawRobot(model_file, prepared, model, posture, speed, tuple(notes))
 
 
-def _compiled(source: ModelFile, feet: list[str]) -> tuple[mujoco.MjModel, list[str]]:
-    """Compile a model; return notes on the meshes that are left out, also of its specification.
+def _compiled(
+    source: ModelFile, spec: mujoco.MjSpec, feet: list[str]
+) -> tuple[mujoco.MjModel, list[str]]:
+    """Compile a model; return notes on the meshes that are left out.
 
     Args:
-        source: model.
+        source: file of the model.
+        spec: specification; it is slow to change afterwards.
         feet: bodies whose drawn meshes are needed; all of the robot are if there are none.
     """
-    light = source.spec.copy()  # a compiled specification is slow to change
     if feet:
-        drop_drawn_meshes(light, feet)
-    model, notes = compile_spec(source, light)
-    if notes:
-        drop_invalid_meshes(source.spec)
-    return model, notes
+        drop_drawn_meshes(spec, feet)
+    return compile_spec(source, spec)
 
 
 def _frame(model: mujoco.MjModel, description: RobotDescription, prepared: Prepared) -> BaseFrame:

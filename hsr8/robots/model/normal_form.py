@@ -256,7 +256,10 @@ def _camera_pose(
         camera = model.cam(stated).id
         body = model.body(int(model.cam_bodyid[camera])).name
         rotation = data.cam_xmat[camera].reshape(3, 3) * (1.0, -1.0, -1.0)
-        return (body, data.cam_xpos[camera].copy(), rotation), f"camera {stated!r} on {body!r}"
+        width, height = model.cam_resolution[camera].tolist()
+        size = f", its resolution of {width} x {height} left out: the scenario states it"
+        note = f"camera {stated!r} on {body!r}{size if width > 1 else ''}"
+        return (body, data.cam_xpos[camera].copy(), rotation), note
     mount = stated or _default_mount(zero, roles)
     tilt_deg = mount.tilt_deg
     if tilt_deg is None:
