@@ -13,6 +13,7 @@ NUMBERS = (
     *("head_travel_radps", "localization_rmse_m", "heading_rmse_deg", "nees_mean"),
     *("static_track_rmse_m", "mover_velocity_rmse_mps", "max_tilt_deg", "limited_fraction"),
     *("real_time_factor", "wall_time_s", "walk_tick_mean_ms"),
+    "personal_space_intrusions",
 )
 """Metrics of a run that the columns use, with these names."""
 
@@ -150,6 +151,7 @@ COLUMNS: dict[str, tuple[str, Column]] = {
         "velocity error RMS, median [cm/s]",
         _middle("velocity_error_mps", 1e2, ".1f"),
     ),
+    "intrusions": ("in personal space, mean", _mean("personal_space_intrusions")),
     "limited": ("limited ticks, median [1]", _middle("limited_fraction")),
     "speed": ("speed over real time, median", _middle("real_time_factor", 1.0, ".1f", " times")),
     "wall": ("wall time, median [s]", _middle("wall_time_s", 1.0, ".1f")),

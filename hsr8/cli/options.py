@@ -275,13 +275,13 @@ class Plot:
 
 @dataclass(frozen=True)
 class Export:
-    """Export runs or a robot in the formats of other tools.
+    """Export runs, a robot or a world in the formats of other tools.
 
     Existing files and folders are not overwritten.
     """
 
     runs: Positional[Annotated[tuple[Path, ...], arg(metavar="RUN", help_behavior_hint="")]] = ()
-    """Run folder, or a parent folder for its newest run."""
+    """Run folder, or a parent folder for its newest run; a scenario for --irsim and --map."""
     bag: Annotated[File, arg(metavar="DIR")] = None
     """New rosbag2 folder of the run (MCAP); needs the extra `ros`."""
     csv: Annotated[File, arg(metavar="DIR")] = None
@@ -292,6 +292,12 @@ class Export:
     """URDF file of the robot, with its meshes in a folder next to it."""
     robot: Text = None
     """Robot of --urdf: a shipped name or a description file; default: that of RUN, or hsr8."""
+    irsim: File = None
+    """World of the run or scenario for IR-SIM, a YAML file."""
+    map: File = None
+    """Map of its static obstacles for the ROS map server, YAML, with a PGM file next to it."""
+    seed: Integer = None
+    """Seed of the world of a scenario; default: that of the scenario."""
     json: Json = False
 
 

@@ -93,10 +93,10 @@ class Crowd:
         members = np.hstack([self._positions, self._velocities]).tolist()
         bodies = [(*m, r, HALF) for m, r in zip(members, self._radii, strict=True)]
         others = [(*at, 0.0, 0.0, radius, FULL) for at, radius in self._fixed]
-        seen = () if self._seen_radius is None else ((*robot, self._seen_radius, HALF),)
+        visible = () if self._seen_radius is None else ((*robot, self._seen_radius, HALF),)
         decisions = []
         for i, (body, top_speed) in enumerate(zip(bodies, self._speeds, strict=True)):
-            near = [*bodies[:i], *bodies[i + 1 :], *others, *seen]
+            near = [*bodies[:i], *bodies[i + 1 :], *others, *visible]
             near.sort(key=lambda other: hypot(other[0] - body[0], other[1] - body[1]))
             planes = [plane for other in near if (plane := self._plane(body, other, top_speed))]
             decisions.append(solve(planes, 0, self._preferred(i), top_speed))
@@ -112,7 +112,7 @@ class Crowd:
         x, y, vx, vy, radius, _ = body
         ox, oy, ux, uy, other_radius, responsibility = other
         reach = radius + other_radius
-        # The half-plane goes a fraction, the responsibility, of the way to a meeting.
+        # The half-plane is at that fraction of the change of velocity that leads to a meeting.
         fastest = (2.0 / responsibility - 1.0) * top_speed + hypot(ux, uy)
         if hypot(ox - x, oy - y) - reach > self._horizon * fastest:
             return None

@@ -165,7 +165,7 @@ def pace(motion: MotionLaw) -> float:
 
 
 class _Kind(Protocol):
-    """Movers of one kind, evaluated together, each at its own time or all at the same."""
+    """Movers of one kind, evaluated together, each at its own time or all at one time."""
 
     def positions(self, times: Array) -> Array:
         """Return the positions at `times` (..., n or 1) [s] (..., n, 2) [m]."""
