@@ -36,10 +36,9 @@ def write_bag(run: Run, folder: Path) -> int:
     robot = load_robot(scenario.robot.model)
     urdf = urdf_of(robot)
     first = odom_in_map(run.frames["pose"][:1], run.frames["odometry"][:1])
-    start = first[0] if len(first) else np.zeros(3)
-    setup = Setup.of(robot, scenario.camera.pinhole, urdf.text, start)
-    translator = Translator(messages, setup)
-    sources = {START: {"time": np.zeros(1)}, **{name: getattr(run, name) for name in READ}}
+    start = {"time": np.zeros(1), "start": first if len(first) else np.zeros((1, 3))}
+    translator = Translator(messages, Setup.of(robot, scenario.camera.pinhole, urdf.text))
+    sources = {START: start, **{name: getattr(run, name) for name in READ}}
     sent = {
         topic: (times, contents)
         for table, rows in sources.items()

@@ -33,7 +33,10 @@ Array = NDArray[np.float64]
 Rows = Mapping[str, Any]
 """Columns of rows, a `hsr8.recorder.table.Table` or the like; column ``time`` is always there."""
 
-START, PIXELS = "start", "pixels"  # sources that are not tables: the start of a run, live images
+START = "start"
+"""Source with one row: time, and pose of odom in the map before the first frame, ``start``."""
+PIXELS = "pixels"
+"""Source with the images of live runs, uncompressed."""
 PLANE = np.array([0, 1, 5])  # x, y and yaw among the six axes of ROS covariances
 CYLINDER, DELETE_ALL = 3, 3  # visualization_msgs/msg/Marker
 
@@ -47,28 +50,20 @@ class Setup:
         robot: links and joints of the robot.
         height: height of the robot [m].
         camera: width and height of an image and focal length [pixel].
-        start: pose of odom in the map before the first frame (3,) [m, m, rad].
     """
 
     urdf: str
     robot: Robot
     height: float
     camera: tuple[int, int, float]
-    start: Array
 
     @classmethod
-    def of(
-        cls,
-        robot: LoadedRobot,
-        camera: PinholeCamera,
-        urdf: str,
-        start: Sequence[float] | Array,
-    ) -> Self:
+    def of(cls, robot: LoadedRobot, camera: PinholeCamera, urdf: str) -> Self:
         """Return the constants of a run of a robot."""
         links: list[Link] = links_of(model_of(robot))
         lens = camera.width, camera.height, camera.focal
         parts = Robot(tuple(links), robot.held, robot.model.names)
-        return cls(urdf, parts, stature(robot), lens, np.array(start))
+        return cls(urdf, parts, stature(robot), lens)
 
 
 class Translator:
@@ -148,10 +143,10 @@ def _tf_static(translator: Translator, kind: str, rows: Rows) -> tuple[Stamps, l
 
 
 def _tf_moving(translator: Translator, kind: str, rows: Rows) -> tuple[Stamps, list[bytes]]:
-    time, start = np.asarray(rows["time"]), translator.setup.start
+    time = np.asarray(rows["time"])
     tick = np.maximum(translator.at("ticks", time), 0)
     frame = translator.at("frames", time)
-    correction = np.tile(start, (len(time), 1))
+    correction = np.repeat(translator.latest[START]["start"], len(time), axis=0)
     if (known := frame >= 0).any():
         frames = translator.latest["frames"]
         poses = odom_in_map(np.asarray(frames["pose"]), np.asarray(frames["odometry"]))
