@@ -119,7 +119,7 @@ class Topic:
         name: name of the topic.
         kind: type of its messages.
         table: table that has a row for each message, `START` or `PIXELS`.
-        columns: columns of that table, besides the time.
+        columns: columns of that table, except the time.
         messages: function that returns times of arrival (n,) [ns] and messages (n) of rows.
         latched: whether later subscribers receive the last message.
     """

@@ -275,8 +275,8 @@ IMAGE = Row(
 )
 
 COMMAND = Row(
-    "Command from outside (`hsr8 run --ros-drive`), NaN where it commands nothing. A driven run "
-    "has at least one.",
+    "Command from outside (option `--ros-drive`), NaN where it commands nothing. A driven run has "
+    "at least one.",
     Column("time", "time of the control tick after which it is in force", "s"),
     Column("velocity", "velocity vx, vy, wz in R", VELOCITY, (3,)),
     Column("gaze", "pan and tilt", "rad", (2,)),

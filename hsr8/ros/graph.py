@@ -49,8 +49,8 @@ class Endpoint:
     def token(self) -> str:
         """Liveliness token."""
         qos = LATCHED_QOS if self.latched else QOS
-        place = f"{self.session}/0/{self.number}/{self.role}/%/%/{NAME}"
-        return f"@ros2_lv/{self.domain}/{place}/{self.name.replace('/', '%')}/{self._type}/{qos}"
+        owner = f"{self.session}/0/{self.number}/{self.role}/%/%/{NAME}"
+        return f"@ros2_lv/{self.domain}/{owner}/{self.name.replace('/', '%')}/{self._type}/{qos}"
 
     @property
     def _type(self) -> str:

@@ -1,6 +1,6 @@
 """Messages that drive the robot: their topics, and the commands in them."""
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Collection
 from dataclasses import dataclass
 from math import isfinite
 from typing import Any
@@ -26,12 +26,13 @@ class Input:
     kind: str
     command: Callable[[Any], Command]
 
-    def read(self, store: Any, payload: bytes) -> Command:
+    def read(self, store: Any, payload: bytes, joints: Collection[str]) -> Command:
         """Return the command in a serialized message.
 
         Args:
             store: definitions of the message types.
             payload: message in CDR.
+            joints: names of the joints of the robot; others are left out.
 
         Raises:
             ValueError: the message is malformed or has an invalid number.
@@ -42,7 +43,9 @@ class Input:
             command = self.command(store.deserialize_cdr(payload, self.kind))
         except Exception as error:  # whatever bytes from the network lead to
             raise ValueError(f"malformed message, {error}") from error
-        numbers = command.values() if isinstance(command, Mapping) else command
+        if isinstance(command, dict):
+            command = {name: angle for name, angle in command.items() if name in joints}
+        numbers = command.values() if isinstance(command, dict) else command
         for number in numbers:
             if not (isfinite(number) and abs(number) <= MAX_NUMBER):
                 raise ValueError(f"got {number:g}; expected -{MAX_NUMBER:g} to {MAX_NUMBER:g}")

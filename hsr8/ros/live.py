@@ -1,14 +1,12 @@
 """Live topics of a run: what each tick hands to the publishing process, and takes from it."""
 
 import multiprocessing
-import os
 import select
 import sys
 from collections.abc import Callable, Iterator, Mapping
 from contextlib import suppress
 from functools import partial
 from importlib.util import find_spec
-from queue import Full
 from typing import Any, Self
 
 from hsr8.decisions import DriveCommand
@@ -22,6 +20,7 @@ from hsr8.recorder.recorded import FrameSampler
 from hsr8.recorder.rows import TABLES
 from hsr8.robots.loaded import LoadedRobot
 from hsr8.ros.inputs import Command
+from hsr8.ros.outbox import Outbox
 from hsr8.ros.process import Network, serve
 
 BACKLOG = 400  # ticks that wait for the publishing process; further ones are dropped
@@ -59,20 +58,22 @@ class LiveTopics:
         self._sampler = FrameSampler(scale)
         self._getters = {table: _getters(table) for table in ("ticks", "frames", "records")}
         self._published = self._dropped = 0
+        self._gone = False
         self._warned: set[str] = set()
         self._driven_at: float | None = None  # time of the velocity in force [s]
         spawn = multiprocessing.get_context("spawn")
-        self._queue = spawn.Queue(BACKLOG)
-        self._queue.cancel_join_thread()  # a process that was killed reads no more
-        self._connection, self._other = spawn.Pipe()
-        arguments = network, setup, self._queue, self._other, os.getpid()
+        ticks, outgoing = spawn.Pipe(duplex=False)
+        self._connection, answers = spawn.Pipe(duplex=False)
+        self._others, self._outbox = (ticks, answers), Outbox(outgoing, BACKLOG)
+        arguments = network, setup, ticks, answers
         self._process = spawn.Process(target=serve, args=arguments, daemon=True)
         self._poll = select.poll()
         self._poll.register(self._connection, select.POLLIN)
 
     def __enter__(self) -> Self:
         self._process.start()
-        self._other.close()
+        for other in self._others:
+            other.close()
         state, reason = "failed", "the publishing process does not start"
         with suppress(EOFError):
             if self._connection.poll(STARTUP):
@@ -87,9 +88,9 @@ class LiveTopics:
 
     def __exit__(self, *_: object) -> None:
         """End the process and report."""
-        with suppress(Full):
-            self._queue.put(None, timeout=1.0)
-            self._process.join(LEAVING)
+        with suppress(BrokenPipeError):
+            self._outbox.close(LEAVING)
+        self._process.join(LEAVING)
         self._process.kill()
         self._process.join()
         self._receive(None)
@@ -98,15 +99,23 @@ class LiveTopics:
 
     def exchange(self, tick: Tick) -> None:
         """Publish a tick and take the commands that arrived; it never waits."""
-        try:
-            self._queue.put_nowait([*self._rows(tick)])
-        except Full:
-            self._dropped += 1
-            self._warn("dropped", "the publishing process is too slow or gone: ticks are dropped")
+        self._send(tick)
         self._receive(tick.time)
         if self._driven_at is not None and tick.time - self._driven_at > TIMEOUT:
             self._driven_at = None
             self._warn("silence", f"/cmd_vel: no message for {TIMEOUT:g} s: the robot stops")
+
+    def _send(self, tick: Tick) -> None:
+        if self._gone:
+            self._dropped += 1
+            return
+        try:
+            if not self._outbox.put([*self._rows(tick)]):
+                self._dropped += 1
+                self._warn("slow", "the publishing process is too slow: ticks are dropped")
+        except BrokenPipeError:
+            self._gone = True
+            self._warn("gone", "the publishing process ended: the run goes on without topics")
 
     def _rows(self, tick: Tick) -> Iterator[Row]:
         if tick.number == 0 and tick.record is not None:
@@ -132,8 +141,6 @@ class LiveTopics:
                 kind, content = self._connection.recv()
             except (EOFError, OSError):
                 self._poll.unregister(self._connection)
-                if time is not None:
-                    self._warn("gone", "the publishing process ended: the run goes on alone")
                 return
             if kind == "published":
                 self._published = content
@@ -150,7 +157,8 @@ class LiveTopics:
         head = [self._model.names[joint] for joint in self._model.tree.head or ()]
         if not command.keys() & set(head):
             expected = " or ".join(head) or "a robot with a movable head"
-            self._warn("/head/command", f"got joints {', '.join(command)}; expected {expected}")
+            got = ", ".join(command) or "no joint of the robot"
+            self._warn("/head/command", f"/head/command: got {got}; expected {expected}")
             return
         for name in command.keys() & set(head):
             self._posture[self._model.names.index(name)] = command[name]

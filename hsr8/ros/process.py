@@ -2,6 +2,7 @@
 
 import signal
 from collections.abc import Mapping
+from contextlib import suppress
 from dataclasses import dataclass
 from multiprocessing.connection import Connection
 from typing import Any
@@ -11,7 +12,6 @@ from numpy.typing import NDArray
 
 from hsr8.export.bag import require_rosbags
 from hsr8.export.topics import PIXELS, TOPICS, Rows, Setup, Topic, Translator
-from hsr8.parent_watch import end_with_parent
 from hsr8.recorder.recorded import jpeg_of
 from hsr8.ros.graph import PUBLISHER, SUBSCRIPTION, Endpoint, attachment, node_token
 from hsr8.ros.inputs import DRIVEN, INPUTS, Command, Input
@@ -106,7 +106,7 @@ class Session:
         self.count = 0
         self.commands: dict[str, Command] = {}
         self.refused: dict[str, str] = {}
-        self._store = translator.messages.store
+        self._store, self._joints = translator.messages.store, translator.setup.robot.joints
         self._sequence: dict[Topic, int] = {}
         self._session: Any = zenoh.open(network.config())
         self._zid = str(self._session.info.zid())
@@ -164,7 +164,7 @@ class Session:
 
         def receive(sample: Any) -> None:  # in a thread of Zenoh
             try:
-                command = source.read(self._store, sample.payload.to_bytes())
+                command = source.read(self._store, sample.payload.to_bytes(), self._joints)
             except ValueError as error:
                 self.refused[source.name] = f"{source.name}: message refused: {error}"
             else:
@@ -173,37 +173,41 @@ class Session:
         self._declared.append(self._session.declare_subscriber(endpoint.key, receive))
 
 
-def serve(network: Network, setup: Setup, ticks: Any, parent: Connection, process: int) -> None:
-    """Publish the rows in a queue until None arrives.
+def serve(network: Network, setup: Setup, ticks: Connection, parent: Connection) -> None:
+    """Publish the rows of ticks until their sender closes or ends.
 
-    It sends the parent ``ready`` or ``failed``, commands and refusals during the run, and the
-    number of messages at its end.
+    It sends the parent ``ready`` or ``failed``, then commands and refusals, and at the end the
+    number of messages.
 
     Args:
         network: place in the network.
         setup: constants of the run.
-        ticks: queue of lists of table and row.
-        parent: connection to the parent.
-        process: process id of the parent.
+        ticks: sends lists of table and row, one for each tick.
+        parent: receives the answers.
     """
-    signal.signal(signal.SIGINT, signal.SIG_IGN)  # the parent ends it
-    if not end_with_parent(process, signal.SIGKILL):
-        return
+    signal.signal(signal.SIGINT, signal.SIG_IGN)  # the parent decides when the run ends
     _, messages = require_rosbags()
-    try:
-        session = Session(network, Translator(messages, setup))
-    except Exception as error:  # zenoh.ZError, which is not importable without the extra
-        parent.send(("failed", str(error)))
-        return
-    parent.send(("ready", ""))
-    while (rows := ticks.get()) is not None:
-        for table, values in rows:
-            session.publish(table, values)
-            if table == PIXELS:
-                jpeg = jpeg_of(values["image"], QUALITY)
-                session.publish("images", {**values, "jpeg": jpeg})
-        for taken, kind in ((session.commands, "command"), (session.refused, "refused")):
-            for name in tuple(taken):
-                parent.send((kind, (name, taken.pop(name))))
-    session.close()
-    parent.send(("published", session.count))
+    with suppress(BrokenPipeError):  # the parent ended
+        try:
+            session = Session(network, Translator(messages, setup))
+        except Exception as error:  # zenoh.ZError, which is not importable without the extra
+            parent.send(("failed", str(error)))
+            return
+        parent.send(("ready", ""))
+        with suppress(EOFError):
+            while True:
+                _publish(session, ticks.recv())
+                for taken, kind in ((session.commands, "command"), (session.refused, "refused")):
+                    for name in tuple(taken):
+                        parent.send((kind, (name, taken.pop(name))))
+        session.close()
+        parent.send(("published", session.count))
+
+
+def _publish(session: Session, rows: list[tuple[str, Mapping[str, Any]]]) -> None:
+    """Publish the rows of a tick; images also compressed."""
+    for table, values in rows:
+        session.publish(table, values)
+        if table == PIXELS:
+            jpeg = jpeg_of(values["image"], QUALITY)
+            session.publish("images", {**values, "jpeg": jpeg})

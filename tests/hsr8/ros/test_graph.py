@@ -1,9 +1,8 @@
 """Keys, tokens and attachments are those of an independent client of `rmw_zenoh_cpp`."""
 
+import pytest
 from hypothesis import given
 from hypothesis import strategies as st
-
-import pytest
 
 pytest.importorskip("zenoh_ros2_sdk")
 from zenoh_ros2_sdk.attachment import Attachment
