@@ -3,6 +3,7 @@
 from bisect import bisect_right
 from collections.abc import Sequence
 from math import atan2, cos, hypot, inf, sin
+from typing import Protocol
 
 import numpy as np
 from numpy.typing import NDArray
@@ -74,6 +75,13 @@ def _drawn(
     return pieces
 
 
+class CommandSource(Protocol):
+    """Source of commands by time."""
+
+    def at(self, time: float) -> Command:
+        """Return the command in force at `time` [s]."""
+
+
 class ScheduledMission:
     """Mission without destination: never done, with a target straight ahead for the gaze."""
 
@@ -91,7 +99,7 @@ class ScheduledPlanner:
         schedule: commands by time.
     """
 
-    def __init__(self, schedule: CommandSchedule) -> None:
+    def __init__(self, schedule: CommandSource) -> None:
         self._schedule = schedule
 
     def begin(self) -> None:

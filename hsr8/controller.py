@@ -9,6 +9,7 @@ from typing import Protocol
 import numpy as np
 
 from compilation.value import value
+from hsr8.command_schedule import CommandSource
 from hsr8.decisions import Decision, DecisionContext, Decisions, FrameRecord, Image, Situation
 from navigation.angles import wrap
 from navigation.belief.belief import Belief
@@ -58,13 +59,6 @@ class Estimator(Protocol):
 
     def update(self, frame: Frame) -> Belief:
         """Return the belief after `frame`."""
-
-
-class CommandSource(Protocol):
-    """Source of commands by time."""
-
-    def at(self, time: float) -> Command:
-        """Return the command in force at `time` [s]."""
 
 
 class Robot:

@@ -1,5 +1,7 @@
 """The robot's decisions at a camera frame: where to go, how to move, where to look."""
 
+from dataclasses import dataclass
+from math import nan
 from typing import Any, Protocol
 
 import numpy as np
@@ -56,6 +58,21 @@ class Situation:
     motion: MotionDecision | None
     motion_due: bool
     image: Image | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class DriveCommand:
+    """Command that arrived from outside during a run; NaN where it commands nothing.
+
+    Attributes:
+        time: time of the control tick after which it is in force [s].
+        velocity: velocity vx, vy, wz in R [m/s, m/s, rad/s].
+        gaze: pan and tilt [rad].
+    """
+
+    time: float
+    velocity: tuple[float, float, float] = (nan, nan, nan)
+    gaze: tuple[float, float] = (nan, nan)
 
 
 @value

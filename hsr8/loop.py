@@ -12,6 +12,7 @@ import numpy as np
 
 from hsr8.controller import Robot, SensorFrame
 from hsr8.decisions import FrameRecord, Situation
+from hsr8.drive import Drive
 from hsr8.errors import ScenarioError, SimulationDiverged
 from hsr8.plugin_decisions import GazePlugin, PlannerPlugin
 from hsr8.plugin_method import number
@@ -74,6 +75,7 @@ class Simulation:
         planner: replaces the motion planner of the scenario.
         gaze: replaces the gaze planner of the scenario.
         walker: replaces the walking engine of the scenario.
+        drive: commands from outside, which replace the planner and, once one is given, the gaze.
 
     Attributes:
         scenario: what to run.
@@ -102,6 +104,7 @@ class Simulation:
         planner: PlannerPlugin | None = None,
         gaze: GazePlugin | None = None,
         walker: CustomWalker | None = None,
+        drive: Drive | None = None,
     ) -> None:
         self.scenario = scenario
         self.seed = scenario.seed if seed is None else scenario.with_seed(seed).seed
@@ -114,6 +117,7 @@ class Simulation:
         self.truth: Truth | None = None
         self._begun: _BegunTick | None = None
         self._body = build_body(scenario, self.seed, self.layout, self.model)
+        self._drive = drive
         self._robot = self._build_robot(planner, gaze, walker)
         self._watch = EventWatch(scenario.fault)
         names = self.humanoid.model.names
@@ -139,7 +143,13 @@ class Simulation:
         scenario = self.scenario
         try:
             return build_robot(
-                scenario, self.layout, self.seed, planner=planner, gaze=gaze, walker=walker
+                scenario,
+                self.layout,
+                self.seed,
+                planner=planner,
+                gaze=gaze,
+                walker=walker,
+                drive=self._drive,
             )
         except (ValueError, ArithmeticError, MemoryError) as error:
             raise ScenarioError(
@@ -335,6 +345,7 @@ class Simulation:
             record=record,
             seconds=tuple(seconds),
             events=tuple(events),
+            commands=() if self._drive is None else self._drive.take(),
         )
 
     def _record(self, number: int) -> tuple[TickRecord | None, list[Event]]:

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from compilation.value import value
-from hsr8.decisions import FrameRecord
+from hsr8.decisions import DriveCommand, FrameRecord
 from hsr8.scenario.fault import Fault
 from hsr8.world.truth.saturation import Saturation
 from hsr8.world.truth.truth import CollisionCounter, Falls, Truth
@@ -84,6 +84,7 @@ class Tick:
         record: state of the run, if one is due.
         seconds: states with hashes: at the start of every second and at the end of the run.
         events: since the previous tick.
+        commands: commands from outside since the previous tick.
     """
 
     number: int
@@ -97,6 +98,7 @@ class Tick:
     record: TickRecord | None
     seconds: tuple[Second, ...]
     events: tuple[Event, ...]
+    commands: tuple[DriveCommand, ...]
 
 
 @dataclass(frozen=True, slots=True)

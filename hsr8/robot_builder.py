@@ -15,6 +15,7 @@ from hsr8.command_schedule import (
 )
 from hsr8.controller import Robot
 from hsr8.decisions import Decisions, GazeController, MissionPlanner, MotionPlanner
+from hsr8.drive import Drive, DrivenGaze
 from hsr8.errors import ScenarioError, UsageError
 from hsr8.plugin_decisions import GazePlugin, Limits, PlannerPlugin, PluginGaze, PluginPlanner
 from hsr8.plugin_file import load_named
@@ -79,6 +80,7 @@ def build_robot(
     planner: PlannerPlugin | None = None,
     gaze: GazePlugin | None = None,
     walker: CustomWalker | None = None,
+    drive: Drive | None = None,
 ) -> Robot:
     """Return the robot of `scenario` in `layout`.
 
@@ -89,6 +91,7 @@ def build_robot(
         planner: replaces the motion planner of the scenario.
         gaze: replaces the gaze planner of the scenario.
         walker: replaces the walking engine of the scenario.
+        drive: commands from outside.
     """
     humanoid = load_robot(scenario.robot.model)
     schedule = build_schedule(scenario, named_rng(seed, "command"))
@@ -102,8 +105,10 @@ def build_robot(
             1e-3 * scenario.camera.shutter_ms,
         ),
         belief=build_estimator(scenario, layout, named_rng(seed, "belief")),
-        decisions=build_decisions(scenario, layout, seed, schedule, planner=planner, gaze=gaze),
-        schedule=schedule,
+        decisions=build_decisions(
+            scenario, layout, seed, schedule, planner=planner, gaze=gaze, drive=drive
+        ),
+        schedule=drive or schedule,
     )
 
 
@@ -169,6 +174,7 @@ def build_decisions(
     *,
     planner: PlannerPlugin | None = None,
     gaze: GazePlugin | None = None,
+    drive: Drive | None = None,
 ) -> Decisions:
     """Return mission, motion planner and gaze planner of `scenario`.
 
@@ -179,6 +185,7 @@ def build_decisions(
         schedule: commands that replace mission and motion planner.
         planner: replaces the motion planner of the scenario.
         gaze: replaces the gaze planner of the scenario.
+        drive: commands from outside, which replace the motion planner and the gaze.
 
     Raises:
         UsageError: the planner or gaze, given or named by the scenario, is invalid, or both a
@@ -207,6 +214,8 @@ def build_decisions(
         gaze_planner = GazePlanner(navigation, limits, beacons, neck(scenario))
     else:
         gaze_planner = PluginGaze(gaze, decision_limits(scenario))
+    if drive is not None:
+        motion, gaze_planner = ScheduledPlanner(drive), DrivenGaze(gaze_planner, drive)
     return Decisions(
         mission=mission,
         planner=motion,

@@ -67,6 +67,18 @@ class Run(RunOptions):
     """Also draw the video, after the run."""
     bag: Flag = False
     """Also write the run as a rosbag2 folder, see `hsr8 export`."""
+    ros: Flag = False
+    """Publish ROS 2 topics over Zenoh during the run, on this machine; needs the extra `ros`."""
+    ros_domain: int = 0
+    """ROS domain."""
+    ros_connect: Text = None
+    """Zenoh endpoint to connect to, such as tcp/HOST:7447, the router of another machine."""
+    ros_listen: Text = None
+    """Zenoh endpoint to listen on, such as tcp/0.0.0.0:7447; default: tcp/127.0.0.1:7447."""
+    ros_drive: Flag = False
+    """Follow /cmd_vel instead of the planner, and /head/command instead of the gaze."""
+    pace: Number = None
+    """Simulated seconds per second at most, 0: unlimited; default: 1 with --ros, else unlimited."""
     json: Json = False
     quiet: Quiet = False
 

@@ -1,7 +1,7 @@
 """One run of ``hsr8 run``, its folder and its result."""
 
 import sys
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import ExitStack, contextmanager
 from typing import TYPE_CHECKING
 
@@ -10,7 +10,9 @@ from rich.console import Console
 from hsr8.cli import report
 from hsr8.cli.first_compilation import two_processes
 from hsr8.cli.options import Run
+from hsr8.cli.pace import Pace
 from hsr8.cli.progress import Progress
+from hsr8.drive import Drive
 from hsr8.errors import Hsr8Error
 from hsr8.evaluation.crash import crash_report
 from hsr8.evaluation.recording import run_scenario
@@ -19,6 +21,7 @@ from hsr8.files import atomic
 from hsr8.files.shell import shell_word
 from hsr8.files.writing import require_temporary
 from hsr8.gl import require_gl
+from hsr8.record import Tick
 from hsr8.recorder.run.run import Run as RecordedRun
 from hsr8.recorder.run.run_folder import VIDEO, new_run_folder
 from hsr8.recorder.run.verdict import exit_code
@@ -47,6 +50,10 @@ def start(options: Run, scenario: Scenario, command: Sequence[str]) -> int:
         from hsr8.export.bag import require_rosbags  # noqa: PLC0415  with the exports
 
         require_rosbags()
+    if options.ros:
+        from hsr8.ros.live import require_zenoh  # noqa: PLC0415  with the exports
+
+        require_zenoh()
     if options.video:
         require_gl()
     if options.log or options.view:
@@ -58,12 +65,25 @@ def start(options: Run, scenario: Scenario, command: Sequence[str]) -> int:
 def _start(options: Run, scenario: Scenario, command: Sequence[str]) -> int:
     new = new_run_folder(options.out, scenario.name, scenario.seed)  # before any compilation
     with new as path, _view(options) as view:
-        with crash_report(path), ExitStack() as shown:
-            on_tick = None
+        with crash_report(path), ExitStack() as opened:
+            drive = Drive() if options.ros_drive else None
+            receivers: list[Callable[[Tick], None]] = []
+            if options.ros:
+                from hsr8.cli.live_topics import live_topics  # noqa: PLC0415  with the exports
+
+                topics = live_topics(options, scenario, path, drive, opened)
+                receivers.append(topics.exchange)
             if not options.quiet:
-                on_tick = shown.enter_context(Progress(scenario.duration)).show
+                receivers.append(opened.enter_context(Progress(scenario.duration)).show)
+            if pace := float(options.ros) if options.pace is None else options.pace:
+                receivers.append(Pace(pace).wait)
+
+            def on_tick(tick: Tick) -> None:
+                for receive in receivers:
+                    receive(tick)
+
             address = view.address if view else ""
-            run = run_scenario(scenario, path, command, live=address, on_tick=on_tick)
+            run = run_scenario(scenario, path, command, live=address, on_tick=on_tick, drive=drive)
         if run.diverged:
             print(f"hsr8: {run.diverged}", file=sys.stderr)
         if not (options.json or options.quiet):

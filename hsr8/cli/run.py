@@ -2,15 +2,19 @@
 
 import sys
 from dataclasses import replace
+from math import inf
 
 from hsr8.cli.command_line import command_words, option_tables, settings
 from hsr8.cli.options import Run
+from hsr8.errors import UsageError
 from hsr8.files.shell import shell_line
 from hsr8.plugin_file import inspect_plugins
 from hsr8.robots.file.description import read_description
 from hsr8.robots.file.locate import find_description
 from hsr8.robots.scale import DEFAULT_ROBOT
 from hsr8.scenario.loader import load_scenario
+
+MAX_DOMAIN = 232  # of ROS 2
 
 
 def warn_of_rehearsed_robot(model: str) -> None:
@@ -38,10 +42,30 @@ def main(options: Run) -> int:
         trust=options.trust or None,
     )
     inspect_plugins(scenario.plugin)
+    _require_ros_options(options)
     if not options.quiet:
         print(f"{scenario.name}, seed {scenario.seed}", file=sys.stderr, flush=True)
         warn_of_rehearsed_robot(scenario.robot.model)
     from hsr8.cli.recorded_run import start  # noqa: PLC0415  takes seconds
 
     repeated = replace(options, seed=scenario.seed, view=None)
+    if not options.ros_drive:  # topics without commands do not change a run
+        repeated = replace(repeated, ros=False, ros_domain=0, ros_connect=None, ros_listen=None)
     return start(options, scenario, (shell_line(command_words(repeated)),))
+
+
+def _require_ros_options(options: Run) -> None:
+    """Require a valid pace and domain, and ``--ros`` with its further options."""
+    if options.pace is not None and not 0.0 <= options.pace < inf:
+        raise UsageError(f"--pace: got {options.pace:g}; expected a finite number of at least 0")
+    if not 0 <= options.ros_domain <= MAX_DOMAIN:
+        raise UsageError(f"--ros-domain: got {options.ros_domain}; expected 0 to {MAX_DOMAIN}")
+    further = {
+        "--ros-domain": options.ros_domain,
+        "--ros-connect": options.ros_connect,
+        "--ros-listen": options.ros_listen,
+        "--ros-drive": options.ros_drive,
+    }
+    for option, value in further.items():
+        if value and not options.ros:
+            raise UsageError(f"{option}: got no --ros; expected both")

@@ -9,6 +9,7 @@ from types import TracebackType
 from typing import Self
 
 from hsr8.compilation_watch import CompilationWatch
+from hsr8.drive import Drive
 from hsr8.errors import RecordingFailed
 from hsr8.evaluation.metrics import measure
 from hsr8.evaluation.signals import stop_on_signals
@@ -39,6 +40,7 @@ def run_scenario(
     planner: PlannerPlugin | None = None,
     gaze: GazePlugin | None = None,
     walker: CustomWalker | None = None,
+    drive: Drive | None = None,
 ) -> Run:
     """Run a scenario to the end, record and measure it.
 
@@ -53,6 +55,7 @@ def run_scenario(
         planner: replaces the planner of the scenario.
         gaze: replaces the gaze controller of the scenario.
         walker: replaces the walking engine of the scenario.
+        drive: commands from outside.
 
     Raises:
         ScenarioError: the world cannot be drawn.
@@ -62,7 +65,7 @@ def run_scenario(
     """
     source = scenario.camera.source
     renderer = require_gl() if source == "rendered" else source
-    simulation = Simulation(scenario, planner=planner, gaze=gaze, walker=walker)
+    simulation = Simulation(scenario, planner=planner, gaze=gaze, walker=walker, drive=drive)
     with stop_on_signals(simulation.interrupt):
         recording = Recording(simulation, RunFolder(path, scenario, command, renderer), live=live)
         with suppress(KeyboardInterrupt), recording:

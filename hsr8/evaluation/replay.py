@@ -7,7 +7,8 @@ from itertools import islice
 
 import numpy as np
 
-from hsr8.decisions import DecisionContext, FrameRecord
+from hsr8.decisions import DecisionContext, DriveCommand, FrameRecord
+from hsr8.drive import Drive
 from hsr8.errors import SimulationDiverged
 from hsr8.loop import HASH
 from hsr8.recorder.columns import attributes
@@ -140,7 +141,7 @@ def _computed(run: Run) -> Iterator[RecordedFrame]:
     layout = draw_layout(scenario, run.seed)
     estimator = build_estimator(scenario, layout, named_rng(run.seed, "belief"))
     schedule = build_schedule(scenario, named_rng(run.seed, "command"))
-    decisions = build_decisions(scenario, layout, run.seed, schedule)
+    decisions = build_decisions(scenario, layout, run.seed, schedule, drive=_drive(run.commands))
     sampler = FrameSampler(layout.scale)
     inputs = zip(_inputs(run.frames, camera_model(scenario)), run.frames["first_plan"], strict=True)
     for index, ((detections, measured, context), first_plan) in enumerate(inputs):
@@ -163,6 +164,13 @@ def _computed(run: Run) -> Iterator[RecordedFrame]:
                 decision=decision,
             )
         )
+
+
+def _drive(commands: Table) -> Drive | None:
+    """Return the commands of a driven run; None without any."""
+    rows = zip(*(commands[name].tolist() for name in ("time", "velocity", "gaze")), strict=True)
+    recorded = [DriveCommand(time, tuple(v), tuple(gaze)) for time, v, gaze in rows]
+    return Drive(recorded) if recorded else None
 
 
 def _inputs(

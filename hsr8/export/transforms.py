@@ -1,14 +1,13 @@
 """Frames of a run as the robot believes them: map, odom, base_footprint and its links."""
 
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 from scipy.spatial.transform import Rotation
 
-from hsr8.export.links import CAMERA, Link, about, inverse, links_of, model_of, product, rotated
-from hsr8.recorder.run.run import Run
-from hsr8.robots.loaded import LoadedRobot
+from hsr8.export.links import CAMERA, Link, about, inverse, product, rotated
 
 Array = NDArray[np.float64]
 
@@ -30,30 +29,48 @@ class Transforms:
     orientations: Array
 
 
-def fixed_transforms(robot: LoadedRobot, measured: tuple[str, ...]) -> Transforms:
+@dataclass(frozen=True, eq=False)
+class Robot:
+    """Links and joints of a robot.
+
+    Attributes:
+        links: links, parents first.
+        held: angles of the joints that walking does not move [rad].
+        joints: names of the measured joints.
+    """
+
+    links: tuple[Link, ...]
+    held: Mapping[str, float]
+    joints: tuple[str, ...]
+
+
+def fixed_transforms(robot: Robot) -> Transforms:
     """Return the transforms of the links that no measured joint moves (1, transforms, ...)."""
-    links = [link for link in links_of(model_of(robot)) if link.parent]
-    return _of_links([link for link in links if link.joint not in measured], robot, {}, 1)
+    links = [link for link in robot.links if link.parent and link.joint not in robot.joints]
+    return _of_links(links, robot.held, {}, 1)
 
 
-def moving_transforms(run: Run, robot: LoadedRobot) -> Transforms:
-    """Return the transforms at the time of every record, at least one.
+def moving_transforms(
+    robot: Robot, joints: Array, correction: Array, odometry: Array, camera: tuple[Array, Array]
+) -> Transforms:
+    """Return the transforms at n times, at least one.
 
     The frame map is W, base_footprint R. The base is where the camera pose of the robot puts it.
+
+    Args:
+        robot: links and joints.
+        joints: measured angles (n, joints) [rad].
+        correction: pose of odom in the map (n, 3) [m, m, rad].
+        odometry: pose of R in odom (n, 3) [m, m, rad].
+        camera: position (n, 3) [m] and rotation (n, 3, 3) of the camera in R.
     """
-    records, frames = run.records, run.frames
-    count = len(records)
-    measured = run.ticks["joint_position"][run.ticks.at(records["time"])]
-    angles = dict(zip(run.ticks.names("joint_position"), measured.T, strict=True))
-    links = links_of(model_of(robot))
-    moved = _of_links([k for k in links if k.parent and k.joint in angles], robot, angles, count)
-    odometry = records["odometry"]
-    correction = np.zeros((count, 3))
-    if len(frames):
-        correction = _difference(frames["pose"], frames["odometry"])[frames.at(records["time"])]
-    base = _base(links, robot, angles, records["camera_position"], records["camera_rotation"])
+    angles, held = dict(zip(robot.joints, joints.T, strict=True)), robot.held
+    moved = _of_links(
+        [k for k in robot.links if k.parent and k.joint in angles], held, angles, len(joints)
+    )
+    base = _base(robot.links, held, angles, *camera)
     ahead = [_planar(correction), _planar(odometry), base]
-    root = next(link.name for link in links if not link.parent)
+    root = next(link.name for link in robot.links if not link.parent)
     return Transforms(
         ((MAP, ODOM), (ODOM, FOOTPRINT), (FOOTPRINT, root), *moved.frames),
         np.concatenate([np.stack([p for p, _ in ahead], axis=1), moved.positions], axis=1),
@@ -62,9 +79,9 @@ def moving_transforms(run: Run, robot: LoadedRobot) -> Transforms:
 
 
 def _of_links(
-    links: list[Link], robot: LoadedRobot, angles: dict[str, Array], count: int
+    links: Sequence[Link], held: Mapping[str, float], angles: dict[str, Array], count: int
 ) -> Transforms:
-    poses = [_pose(link, robot, angles, count) for link in links]
+    poses = [_pose(link, held, angles, count) for link in links]
     return Transforms(
         tuple((link.parent, link.name) for link in links),
         np.array([position for position, _ in poses]).reshape(-1, count, 3).swapaxes(0, 1),
@@ -73,11 +90,10 @@ def _of_links(
 
 
 def _pose(
-    link: Link, robot: LoadedRobot, angles: dict[str, Array], count: int
+    link: Link, held: Mapping[str, float], angles: dict[str, Array], count: int
 ) -> tuple[Array, Array]:
     """Return position (n, 3) [m] and orientation (n, 4) of a link in its parent."""
-    held = np.full(count, robot.held.get(link.joint, 0.0))
-    angle = angles.get(link.joint, held)
+    angle = angles.get(link.joint, np.full(count, held.get(link.joint, 0.0)))
     position, turn = link.position, link.orientation
     if link.kind == "prismatic":
         position = position + rotated(turn, angle[:, None] * link.axis)
@@ -87,8 +103,8 @@ def _pose(
 
 
 def _base(
-    links: list[Link],
-    robot: LoadedRobot,
+    links: Sequence[Link],
+    held: Mapping[str, float],
     angles: dict[str, Array],
     camera_position: Array,
     camera_rotation: Array,
@@ -99,7 +115,7 @@ def _base(
     position, turn = np.zeros((count, 3)), np.tile([1.0, 0.0, 0.0, 0.0], (count, 1))
     link = by_name[CAMERA]
     while link.parent:
-        offset, step = _pose(link, robot, angles, count)
+        offset, step = _pose(link, held, angles, count)
         position, turn = offset + rotated(step, position), product(step, turn)
         link = by_name[link.parent]
     camera = Rotation.from_matrix(camera_rotation).as_quat(scalar_first=True)
@@ -107,7 +123,7 @@ def _base(
     return camera_position - rotated(orientation, position), orientation
 
 
-def _difference(pose: Array, odometry: Array) -> Array:
+def odom_in_map(pose: Array, odometry: Array) -> Array:
     """Return the pose of odom in the map (n, 3) from those of R in both."""
     yaw = pose[:, 2] - odometry[:, 2]
     c, s = np.cos(yaw), np.sin(yaw)

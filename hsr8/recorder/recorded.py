@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from compilation.value import value
-from hsr8.decisions import FrameRecord
+from hsr8.decisions import FrameRecord, Image
 from hsr8.record import Tick
 from navigation.belief.belief import Belief
 from navigation.belief.tracks import Tracks
@@ -182,6 +182,7 @@ def objects_of(ticks: Sequence[Tick], sampler: FrameSampler) -> dict[str, Sequen
         "records": records,
         "frames": [sampler.sample(record.frame) for record in records if record.frame is not None],
         "events": [event for tick in ticks for event in tick.events],
+        "commands": [command for tick in ticks for command in tick.commands],
         "seconds": [second for tick in ticks for second in tick.seconds],
     }
 
@@ -189,9 +190,14 @@ def objects_of(ticks: Sequence[Tick], sampler: FrameSampler) -> dict[str, Sequen
 def image_row(frame: FrameRecord, quality: int) -> RecordedImage:
     """Return the row of the image of a frame, compressed with a `quality` [%]."""
     assert frame.image is not None
-    bgr = cv2.cvtColor(frame.image, cv2.COLOR_RGB2BGR)
-    jpeg = cv2.imencode(".jpg", bgr, [cv2.IMWRITE_JPEG_QUALITY, quality])[1].tobytes()
+    jpeg = jpeg_of(frame.image, quality)
     return RecordedImage(frame.index, frame.time, frame.measured.time, jpeg)
+
+
+def jpeg_of(image: Image, quality: int) -> bytes:
+    """Return an image (height, width, 3), compressed with a `quality` [%]."""
+    bgr = cv2.cvtColor(image, cv2.COLOR_RGB2BGR)
+    return cv2.imencode(".jpg", bgr, [cv2.IMWRITE_JPEG_QUALITY, quality])[1].tobytes()
 
 
 def confidence_shades(belief: Belief) -> NDArray[np.uint8]:

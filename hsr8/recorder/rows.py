@@ -281,6 +281,14 @@ IMAGE = Row(
     Column("jpeg", "the image", type=BYTES),
 )
 
+COMMAND = Row(
+    "Command from outside (option `--ros-drive`), NaN where it commands nothing. A driven run has "
+    "at least one.",
+    Column("time", "time of the control tick after which it is in force", "s"),
+    Column("velocity", "velocity vx, vy, wz in R", VELOCITY, (3,)),
+    Column("gaze", "pan and tilt", "rad", (2,)),
+)
+
 TABLES = {
     "ticks": TICK,
     "records": RECORD,
@@ -288,4 +296,5 @@ TABLES = {
     "seconds": SECOND,
     "events": EVENT,
     "images": IMAGE,
+    "commands": COMMAND,
 }

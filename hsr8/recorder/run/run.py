@@ -208,6 +208,11 @@ class Run:
         """Images of the head camera."""
         return self._table("images")
 
+    @cached_property
+    def commands(self) -> Table:
+        """Commands from outside, of a driven run."""
+        return self._table("commands")
+
     def unit(self, column: str) -> str:
         """Return the unit of a column, for example of ``records.zmp``.
 
