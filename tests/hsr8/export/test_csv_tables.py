@@ -39,7 +39,7 @@ def check(table, columns, times):
         if values.dtype == float:
             written = np.array([[float(v or "nan") for v in column] for _, column in some])
             expected = values.reshape(len(values), count).T
-            assert np.array_equal(written, expected, equal_nan=True), name
+            assert np.array_equal(written.reshape(expected.shape), expected, equal_nan=True), name
     assert not left
 
 
