@@ -5,6 +5,7 @@ are written as JSON, which is YAML, too.
 """
 
 import json
+from dataclasses import replace
 from math import cos, pi, sin
 from pathlib import Path
 from typing import Any
@@ -51,13 +52,16 @@ def irsim_yaml(layout: Layout, scenario: Scenario) -> str:
         "step_time": STEP,
         "sample_time": STEP,
     }
-    standing: tuple[Obstacle | Beacon, ...] = (*layout.static, *layout.beacons)
-    obstacles = [{**_disc(o), "color": _color(o)} for o in standing]
+    obstacles = [{**_disc(o), "color": _color(o)} for o in _standing(layout)]
     obstacles += [_mover(mover, layout, scenario.duration) for mover in layout.movers]
     lines = ["world:", *(f"  {key}: {json.dumps(value)}" for key, value in world.items())]
     lines += ["robot:", f"  - {json.dumps(_robot(layout, scenario))}", "obstacle:"]
     lines += [f"  - {json.dumps(obstacle)}" for obstacle in obstacles]
     return "\n".join(lines) + "\n"
+
+
+def _standing(layout: Layout) -> tuple[Obstacle | Beacon, ...]:
+    return (*layout.static, *layout.beacons)
 
 
 def _robot(layout: Layout, scenario: Scenario) -> Table:
@@ -94,9 +98,8 @@ def _mover(mover: Obstacle, layout: Layout, duration: float) -> Table:
     speed = pace(motion)
     limits = {"vxmax": speed, "vymax": speed} if layout.reactions.crowd else {}
     return {
+        **_disc(replace(mover, position=motion.position(0.0))),
         "kinematics": {"name": "omni"},
-        "shape": {"name": "circle", "radius": mover.radius},
-        "state": [*motion.position(0.0), 0.0],
         "goal": [[[x, y, 0.0] for x, y in goals]],
         "goal_threshold": ARRIVAL * layout.scale,
         "vel_min": [-speed, -speed],
@@ -132,25 +135,18 @@ def occupancy_map(layout: Layout) -> Image:
     Static obstacles and beacons are occupied; movers are not in the map.
     """
     cell = CELL * layout.scale
-    columns, rows = (round(side / cell) for side in _extent(layout))
+    standing = _standing(layout)
+    reach = [np.abs(c.position) + c.radius for c in standing]
+    half = np.max([0.5 * np.array(layout.field_size), *reach], axis=0)
+    columns, rows = np.ceil(2.0 * half / cell - 1e-9).astype(int).tolist()
     half_x, half_y = 0.5 * columns * cell, 0.5 * rows * cell
     x = -half_x + (np.arange(columns) + 0.5) * cell
     y = half_y - (np.arange(rows) + 0.5) * cell
     image = np.full((rows, columns), FREE, np.uint8)
-    standing: tuple[Obstacle | Beacon, ...] = (*layout.static, *layout.beacons)
     for cylinder in standing:
         (cx, cy), radius = cylinder.position, cylinder.radius
         image[(x - cx) ** 2 + (y[:, None] - cy) ** 2 <= radius**2] = OCCUPIED
     return image
-
-
-def _extent(layout: Layout) -> list[float]:
-    """Return the sides of the map [m]: the field with its beacons."""
-    far = [(abs(b.position[k]) + b.radius) for b in layout.beacons for k in (0, 1)]
-    return [
-        max(side, *(2.0 * reach for reach in far[k::2])) if far else side
-        for k, side in enumerate(layout.field_size)
-    ]
 
 
 def write_map(layout: Layout, file: Path, image_file: Path, image_name: str) -> None:

@@ -102,8 +102,7 @@ class Wall(Section):
 class Encounters(Section):
     """Moving obstacles on collision courses, which cross the field once at constant velocity.
 
-    Each would meet a robot that walks straight from point to point at the nominal pace. None
-    reacts to the robot.
+    Each would meet a robot that walks straight from point to point at the nominal pace.
     """
 
     n: Annotated[
