@@ -29,7 +29,7 @@ def write_bag(run: Run, folder: Path) -> int:
         UsageError: `rosbags` is not installed, or the run is empty or cannot be read.
         OSError: the folder cannot be written.
     """
-    rosbag2, messages = require_rosbags()
+    rosbag2, serializer = require_rosbags()
     if not len(run.records):
         raise UsageError(f"--bag: {run.folder}: no records")
     scenario = run.scenario()
@@ -37,14 +37,14 @@ def write_bag(run: Run, folder: Path) -> int:
     urdf = urdf_of(robot)
     first = odom_in_map(run.frames["pose"][:1], run.frames["odometry"][:1])
     start = {"time": np.zeros(1), "start": first if len(first) else np.zeros((1, 3))}
-    translator = Translator(messages, Setup.of(robot, scenario.camera.pinhole, urdf.text))
+    translator = Translator(serializer, Setup.of(robot, scenario.camera.pinhole, urdf.text))
     sources = {START: start, **{name: getattr(run, name) for name in READ}}
     sent = {
-        topic: (times, contents)
+        topic: messages
         for table, rows in sources.items()
         if len(rows["time"])
-        for topic, times, contents in translator.translate(table, rows)
-        if len(times)
+        for topic, messages in translator.translate(table, rows)
+        if messages
     }
     topics = [topic for topic in TOPICS if topic in sent]
     writer = rosbag2.Writer(folder, version=9, storage_plugin=rosbag2.StoragePlugin.MCAP)
@@ -54,19 +54,18 @@ def write_bag(run: Run, folder: Path) -> int:
             writer.add_connection(
                 topic.name,
                 topic.kind,
-                typestore=messages.store,
+                typestore=serializer.store,
                 offered_qos_profiles=[_latched()] if topic.latched else [],
             )
             for topic in topics
         ]
-        order = np.argsort(np.concatenate([sent[topic][0] for topic in topics]), kind="stable")
         lines = [
-            (connection, time, message)
+            (time, connection, message)
             for topic, connection in zip(topics, connections, strict=True)
-            for time, message in zip(sent[topic][0].tolist(), sent[topic][1], strict=True)
+            for time, message in sent[topic]
         ]
-        for k in order.tolist():
-            writer.write(*lines[k])
+        for time, connection, message in sorted(lines, key=lambda line: line[0]):
+            writer.write(connection, time, message)
     urdf.write(folder / "robot.urdf", folder / MESHES)
     return len(lines)
 

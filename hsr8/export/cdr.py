@@ -1,13 +1,12 @@
 """ROS 2 messages in CDR."""
 
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-Array = NDArray[np.float64]
 Stamps = NDArray[np.int64]
 Contents = dict[str, Any]
 """Fields of a message by name; those left out are zero or empty."""
@@ -33,24 +32,6 @@ class Messages:
             contents: its fields.
         """
         return bytes(self.store.serialize_cdr(self._message(kind, contents), kind))
-
-    def many(
-        self,
-        kind: str,
-        stamps: Stamps,
-        values: Array,
-        contents: Callable[[Contents, list[float]], Contents],
-    ) -> list[bytes]:
-        """Return a message for each time.
-
-        Args:
-            kind: type.
-            stamps: (n,) [ns].
-            values: numbers of each message (n, k).
-            contents: function that returns the fields for a stamp and k numbers.
-        """
-        rows = zip(stamps.tolist(), values.tolist(), strict=True)
-        return [self.one(kind, contents(stamp(time), numbers)) for time, numbers in rows]
 
     def _message(self, kind: str, contents: Contents) -> Any:
         _, fields = self.store.fielddefs[kind]

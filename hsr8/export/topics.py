@@ -6,12 +6,14 @@ of one tick.
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
+from functools import partial
+from math import cos, isfinite, pi, sin
 from typing import Any, Self
 
 import numpy as np
 from numpy.typing import NDArray
 
-from hsr8.export.cdr import Contents, Messages, Stamps, header, nanoseconds, stamp
+from hsr8.export.cdr import Contents, Messages, header, nanoseconds, stamp
 from hsr8.export.links import CAMERA, INERTIAL, Link, links_of, model_of
 from hsr8.export.transforms import (
     FOOTPRINT,
@@ -22,7 +24,6 @@ from hsr8.export.transforms import (
     fixed_transforms,
     moving_transforms,
     odom_in_map,
-    yaw_quaternions,
 )
 from hsr8.recorder.palette import of_label
 from hsr8.robots.loaded import LoadedRobot
@@ -30,6 +31,8 @@ from hsr8.robots.shown import stature
 from vision.camera import PinholeCamera
 
 Array = NDArray[np.float64]
+Stream = Iterator[Contents | None]
+"""Fields of the message of each row; None for no message."""
 Rows = Mapping[str, Any]
 """Columns of rows, a `hsr8.recorder.table.Table` or the like; column ``time`` is always there."""
 
@@ -37,7 +40,7 @@ START = "start"
 """Source with one row: time, and pose of odom in the map before the first frame, ``start``."""
 PIXELS = "pixels"
 """Source with the images of live runs, uncompressed."""
-PLANE = np.array([0, 1, 5])  # x, y and yaw among the six axes of ROS covariances
+PLANE = np.ix_([0, 1, 5], [0, 1, 5])  # x, y and yaw among the six axes of ROS covariances
 CYLINDER, DELETE_ALL = 3, 3  # visualization_msgs/msg/Marker
 
 
@@ -74,16 +77,21 @@ class Translator:
         setup: constants of the run.
 
     Attributes:
+        messages: serializer.
+        setup: constants of the run.
         latest: latest rows of each table.
+        before: values of the previous row, by topic or frame.
     """
 
     def __init__(self, messages: Messages, setup: Setup) -> None:
         self.messages, self.setup = messages, setup
         self.latest: dict[str, Rows] = {}
-        self._before: dict[str, tuple[Array, Array]] = {}
+        self.before: dict[str, Any] = {}
 
-    def translate(self, table: str, rows: Rows) -> Iterator[tuple["Topic", Stamps, list[bytes]]]:
-        """Yield the topics of a table with the times of arrival (n,) [ns] and the messages (n).
+    def translate(
+        self, table: str, rows: Rows
+    ) -> Iterator[tuple["Topic", list[tuple[int, bytes]]]]:
+        """Yield the topics of a table with times of arrival [ns] and messages.
 
         Args:
             table: name of the table. At one time, ``ticks`` precede ``frames``, which precede
@@ -91,18 +99,17 @@ class Translator:
             rows: the rows that follow those of the previous call.
         """
         self.latest[table] = rows
+        times = nanoseconds(rows["time"]).tolist()
+        stamps = [stamp(time) for time in times]
         for topic in TOPICS:
             if topic.table == table:
-                times, sent = topic.messages(self, topic.kind, rows)
-                yield topic, times, sent
-
-    def before(self, name: str, times: Array, values: Array) -> tuple[Array, Array]:
-        """Return the row before each row: times (n,) and values (n, k); NaN before the first."""
-        nothing = np.full(1, np.nan), np.full((1, values.shape[1]), np.nan)
-        time, value = self._before.get(name, nothing)
-        if len(times):
-            self._before[name] = times[-1:], values[-1:]
-        return np.concatenate([time, times[:-1]]), np.concatenate([value, values[:-1]])
+                contents = zip(times, topic.contents(self, rows, stamps), strict=True)
+                sent = [
+                    (time, self.messages.one(topic.kind, fields))
+                    for time, fields in contents
+                    if fields is not None
+                ]
+                yield topic, sent
 
     def at(self, table: str, times: Array) -> NDArray[np.intp]:
         """Return the latest row of a table not after each time (n,) [s]; -1 before the first."""
@@ -120,7 +127,7 @@ class Topic:
         kind: type of its messages.
         table: table that has a row for each message, `START` or `PIXELS`.
         columns: columns of that table, except the time.
-        messages: function that returns times of arrival (n,) [ns] and messages (n) of rows.
+        contents: function that yields the contents of rows with their stamps.
         latched: whether later subscribers receive the last message.
     """
 
@@ -128,196 +135,151 @@ class Topic:
     kind: str
     table: str
     columns: tuple[str, ...]
-    messages: Callable[[Translator, str, Rows], tuple[Stamps, list[bytes]]]
+    contents: Callable[[Translator, Rows, list[Contents]], Stream]
     latched: bool = False
 
 
-def _description(translator: Translator, kind: str, rows: Rows) -> tuple[Stamps, list[bytes]]:
-    text = translator.messages.one(kind, {"data": translator.setup.urdf})
-    return nanoseconds(rows["time"]), [text]
+def _values(stamps: list[Contents], rows: Rows, *columns: str) -> Iterator[tuple[Any, ...]]:
+    """Yield the stamp of each row and its values as plain numbers."""
+    return zip(stamps, *(np.asarray(rows[name]).tolist() for name in columns), strict=True)
 
 
-def _tf_static(translator: Translator, kind: str, rows: Rows) -> tuple[Stamps, list[bytes]]:
-    times = nanoseconds(rows["time"])
-    return times, _tf(translator.messages, kind, times, fixed_transforms(translator.setup.robot))
+def _description(translator: Translator, rows: Rows, stamps: list[Contents]) -> Stream:
+    yield from ({"data": translator.setup.urdf} for _ in stamps)
 
 
-def _tf_moving(translator: Translator, kind: str, rows: Rows) -> tuple[Stamps, list[bytes]]:
+def _tf_static(translator: Translator, rows: Rows, stamps: list[Contents]) -> Stream:
+    return _tf(stamps, fixed_transforms(translator.setup.robot))
+
+
+def _tf_moving(translator: Translator, rows: Rows, stamps: list[Contents]) -> Stream:
     time = np.asarray(rows["time"])
     tick = np.maximum(translator.at("ticks", time), 0)
     frame = translator.at("frames", time)
     correction = np.repeat(translator.latest[START]["start"], len(time), axis=0)
     if (known := frame >= 0).any():
         frames = translator.latest["frames"]
-        poses = odom_in_map(np.asarray(frames["pose"]), np.asarray(frames["odometry"]))
-        correction[known] = poses[frame[known]]
+        correction[known] = odom_in_map(frames["pose"], frames["odometry"])[frame[known]]
     joints = np.asarray(translator.latest["ticks"]["joint_position"])[tick]
     camera = rows["camera_position"], rows["camera_rotation"]
-    moving = moving_transforms(translator.setup.robot, joints, correction, rows["odometry"], camera)
-    return (times := nanoseconds(time)), _tf(translator.messages, kind, times, moving)
+    robot = translator.setup.robot
+    return _tf(stamps, moving_transforms(robot, joints, correction, rows["odometry"], camera))
 
 
-def _tf(messages: Messages, kind: str, times: Stamps, tf: Transforms) -> list[bytes]:
-    values = np.concatenate([tf.positions, tf.orientations], axis=2).reshape(len(times), -1)
-
-    def contents(time: Contents, numbers: list[float]) -> Contents:
-        return {
+def _tf(stamps: list[Contents], tf: Transforms) -> Stream:
+    for time, *poses in zip(stamps, tf.positions.tolist(), tf.orientations.tolist(), strict=True):
+        yield {
             "transforms": [
                 {
                     "header": header(time, parent),
                     "child_frame_id": child,
-                    "transform": {
-                        "translation": _xyz(numbers[7 * k : 7 * k + 3]),
-                        "rotation": _wxyz(numbers[7 * k + 3 : 7 * k + 7]),
-                    },
+                    "transform": {"translation": _xyz(position), "rotation": _wxyz(orientation)},
                 }
-                for k, (parent, child) in enumerate(tf.frames)
+                for (parent, child), position, orientation in zip(tf.frames, *poses, strict=True)
             ]
         }
 
-    return messages.many(kind, times, values, contents)
+
+def _clock(translator: Translator, rows: Rows, stamps: list[Contents]) -> Stream:
+    yield from ({"clock": time} for time in stamps)
 
 
-def _clock(translator: Translator, kind: str, rows: Rows) -> tuple[Stamps, list[bytes]]:
-    times = nanoseconds(rows["time"])
-    empty = np.zeros((len(times), 0))
-    return times, translator.messages.many(kind, times, empty, lambda time, _: {"clock": time})
+def _joint_states(translator: Translator, rows: Rows, stamps: list[Contents]) -> Stream:
+    names = translator.setup.robot.joints
+    for time, angles, rates in _values(stamps, rows, "joint_position", "joint_velocity"):
+        yield {"header": header(time, ""), "name": names, "position": angles, "velocity": rates}
 
 
-def _joint_states(translator: Translator, kind: str, rows: Rows) -> tuple[Stamps, list[bytes]]:
-    times, names = nanoseconds(rows["time"]), translator.setup.robot.joints
-    n = len(names)
-
-    def contents(time: Contents, v: list[float]) -> Contents:
-        return {"header": header(time, ""), "name": names, "position": v[:n], "velocity": v[n:]}
-
-    values = np.hstack([rows["joint_position"], rows["joint_velocity"]])
-    return times, translator.messages.many(kind, times, values, contents)
-
-
-def _imu(translator: Translator, kind: str, rows: Rows) -> tuple[Stamps, list[bytes]]:
-    times = nanoseconds(rows["time"])
-
-    def contents(time: Contents, v: list[float]) -> Contents:
-        return {
+def _imu(translator: Translator, rows: Rows, stamps: list[Contents]) -> Stream:
+    for time, turn, rate, force in _values(stamps, rows, "orientation", "gyro", "accelerometer"):
+        yield {
             "header": header(time, INERTIAL),
-            "orientation": _wxyz(v[:4]),
-            "angular_velocity": _xyz(v[4:7]),
-            "linear_acceleration": _xyz(v[7:]),
+            "orientation": _wxyz(turn),
+            "angular_velocity": _xyz(rate),
+            "linear_acceleration": _xyz(force),
         }
-
-    values = np.hstack([rows["orientation"], rows["gyro"], rows["accelerometer"]])
-    return times, translator.messages.many(kind, times, values, contents)
-
-
-def _odometry(translator: Translator, kind: str, rows: Rows) -> tuple[Stamps, list[bytes]]:
-    covariance = np.reshape(rows["odometry_covariance"], (-1, 9))
-    return _motion(translator, kind, rows, rows["odometry"], frame=ODOM, covariance=covariance)
-
-
-def _truth(translator: Translator, kind: str, rows: Rows) -> tuple[Stamps, list[bytes]]:
-    covariance = np.zeros((len(rows["time"]), 9))
-    return _motion(translator, kind, rows, rows["robot"], frame=MAP, covariance=covariance)
 
 
 def _motion(
-    translator: Translator, kind: str, rows: Rows, pose: Array, *, frame: str, covariance: Array
-) -> tuple[Stamps, list[bytes]]:
-    """Return poses in a frame with their covariance (n, 9) and velocity."""
-    time = np.asarray(rows["time"])
-    times = nanoseconds(time)
-
-    def contents(stamp: Contents, v: list[float]) -> Contents:
-        return {
-            "header": header(stamp, frame),
+    translator: Translator,
+    rows: Rows,
+    stamps: list[Contents],
+    *,
+    frame: str,
+    columns: tuple[str, ...],
+) -> Stream:
+    """Yield poses in a frame, with covariance if there is one, and velocities since the last."""
+    for stamp_, time, pose, *covariance in _values(stamps, rows, "time", *columns):
+        earlier, before = translator.before.get(frame, (time - 1.0, pose))
+        translator.before[frame] = time, pose
+        rate, c, s = 1.0 / (time - earlier), cos(pose[2]), sin(pose[2])
+        x, y, turn = (now - then for now, then in zip(pose, before, strict=True))
+        turn = (turn + pi) % (2.0 * pi) - pi
+        twist = _twist(rate * (c * x + s * y), rate * (c * y - s * x), rate * turn)
+        yield {
+            "header": header(stamp_, frame),
             "child_frame_id": FOOTPRINT,
-            "pose": _pose_message(v[:15]),
-            "twist": {"twist": _twist_message(v[15:])},
+            "pose": _uncertain(pose, *covariance),
+            "twist": {"twist": twist},
         }
 
-    twist = _twist(time, pose, *translator.before(frame, time, pose))
-    values = np.hstack([_pose(pose), covariance, twist])
-    return times, translator.messages.many(kind, times, values, contents)
+
+def _command(translator: Translator, rows: Rows, stamps: list[Contents]) -> Stream:
+    for _, command in _values(stamps, rows, "command"):
+        yield _twist(*command) if all(map(isfinite, command)) else None
 
 
-def _command(translator: Translator, kind: str, rows: Rows) -> tuple[Stamps, list[bytes]]:
-    known = np.isfinite(rows["command"]).all(axis=1)
-    times, command = nanoseconds(rows["time"])[known], rows["command"][known]
-    sent = translator.messages.many(kind, times, command, lambda _, v: _twist_message(v))
-    return times, sent
+def _compressed(translator: Translator, rows: Rows, stamps: list[Contents]) -> Stream:
+    for time, content in zip(_captures(rows), rows["jpeg"], strict=True):
+        yield {"header": header(time, CAMERA), "format": "jpeg", "data": content}
 
 
-def _compressed(translator: Translator, kind: str, rows: Rows) -> tuple[Stamps, list[bytes]]:
-    return nanoseconds(rows["time"]), [
-        translator.messages.one(
-            kind, {"header": header(stamp(time), CAMERA), "format": "jpeg", "data": content}
-        )
-        for time, content in zip(_captures(rows), rows["jpeg"], strict=True)
-    ]
-
-
-def _raw(translator: Translator, kind: str, rows: Rows) -> tuple[Stamps, list[bytes]]:
+def _raw(translator: Translator, rows: Rows, stamps: list[Contents]) -> Stream:
     width, height, _ = translator.setup.camera
     size = {"height": height, "width": width, "encoding": "rgb8", "step": 3 * width}
-    return nanoseconds(rows["time"]), [
-        translator.messages.one(
-            kind, {"header": header(stamp(time), CAMERA), "data": image.tobytes(), **size}
-        )
-        for time, image in zip(_captures(rows), rows["image"], strict=True)
-    ]
+    for time, image in zip(_captures(rows), rows["image"], strict=True):
+        yield {"header": header(time, CAMERA), "data": image.tobytes(), **size}
 
 
-def _camera_info(translator: Translator, kind: str, rows: Rows) -> tuple[Stamps, list[bytes]]:
+def _camera_info(translator: Translator, rows: Rows, stamps: list[Contents]) -> Stream:
     width, height, f = translator.setup.camera
     u, v = 0.5 * width - 0.5, 0.5 * height - 0.5  # ROS: centre of the first pixel
-    intrinsics = {
-        "height": height,
-        "width": width,
-        "distortion_model": "plumb_bob",
-        "d": np.zeros(5),
-        "k": [f, 0.0, u, 0.0, f, v, 0.0, 0.0, 1.0],
-        "r": np.eye(3).ravel(),
-        "p": [f, 0.0, u, 0.0, 0.0, f, v, 0.0, 0.0, 0.0, 1.0, 0.0],
-    }
-    return nanoseconds(rows["time"]), [
-        translator.messages.one(kind, {"header": header(stamp(time), CAMERA), **intrinsics})
-        for time in _captures(rows)
-    ]
+    for time in _captures(rows):
+        yield {
+            "header": header(time, CAMERA),
+            "height": height,
+            "width": width,
+            "distortion_model": "plumb_bob",
+            "d": np.zeros(5),
+            "k": [f, 0.0, u, 0.0, f, v, 0.0, 0.0, 1.0],
+            "r": np.eye(3).ravel(),
+            "p": [f, 0.0, u, 0.0, 0.0, f, v, 0.0, 0.0, 0.0, 1.0, 0.0],
+        }
 
 
-def _captures(rows: Rows) -> list[int]:
-    """Return the times at which images were taken [ns]."""
-    captures: list[int] = nanoseconds(rows["captured"]).tolist()
-    return captures
+def _captures(rows: Rows) -> list[Contents]:
+    """Return the stamps of the times at which images were taken."""
+    return [stamp(time) for time in nanoseconds(rows["captured"]).tolist()]
 
 
-def _belief(translator: Translator, kind: str, rows: Rows) -> tuple[Stamps, list[bytes]]:
-    times = nanoseconds(rows["time"])
-    values = np.hstack([_pose(rows["pose"]), np.reshape(rows["pose_covariance"], (-1, 9))])
-
-    def contents(stamp: Contents, v: list[float]) -> Contents:
-        return {"header": header(stamp, MAP), "pose": _pose_message(v)}
-
-    return times, translator.messages.many(kind, times, values, contents)
+def _belief(translator: Translator, rows: Rows, stamps: list[Contents]) -> Stream:
+    for time, pose, covariance in _values(stamps, rows, "pose", "pose_covariance"):
+        yield {"header": header(time, MAP), "pose": _uncertain(pose, covariance)}
 
 
-def _goal(translator: Translator, kind: str, rows: Rows) -> tuple[Stamps, list[bytes]]:
-    """Return the destinations that differ from the previous one."""
-    targets = np.column_stack([rows["target"], np.nan_to_num(rows["target_heading"])])
-    _, before = translator.before("goal", np.asarray(rows["time"]), targets)
-    new = np.isfinite(targets).all(axis=1) & (targets != before).any(axis=1)
-    times = nanoseconds(rows["time"])[new]
-
-    def contents(stamp: Contents, v: list[float]) -> Contents:
-        return {"header": header(stamp, MAP), "pose": _pose_message(v)["pose"]}
-
-    return times, translator.messages.many(kind, times, _pose(targets[new]), contents)
+def _goal(translator: Translator, rows: Rows, stamps: list[Contents]) -> Stream:
+    """Yield the destinations that differ from the previous one."""
+    for time, (x, y), heading in _values(stamps, rows, "target", "target_heading"):
+        target = x, y, heading if isfinite(heading) else 0.0
+        new = isfinite(x + y) and target != translator.before.get("goal")
+        translator.before["goal"] = target
+        yield {"header": header(time, MAP), "pose": _pose(target)} if new else None
 
 
-def _tracks(translator: Translator, kind: str, rows: Rows) -> tuple[Stamps, list[bytes]]:
-    """Return the tracks of every frame: cylinders that replace the former ones."""
-    height, times, tracks = translator.setup.height, nanoseconds(rows["time"]), rows["tracks"]
-    stamps = [stamp(time) for time in times.tolist()]
+def _tracks(translator: Translator, rows: Rows, stamps: list[Contents]) -> Stream:
+    """Yield the tracks of every frame: cylinders that replace the former ones."""
+    height, tracks = translator.setup.height, rows["tracks"]
+    markers: list[list[Contents]]
     markers = [[{"header": header(time, MAP), "action": DELETE_ALL}] for time in stamps]
     columns = [tracks[name].tolist() for name in ("id", "label", "position", "radius", "motion")]
     for row, number, label, (x, y), radius, motion in zip(
@@ -330,65 +292,51 @@ def _tracks(translator: Translator, kind: str, rows: Rows) -> tuple[Stamps, list
                 "ns": motion,
                 "id": number,
                 "type": CYLINDER,
-                "pose": {
-                    "position": _xyz([x, y, 0.5 * height]),
-                    "orientation": _wxyz([1.0, 0.0, 0.0, 0.0]),
-                },
+                "pose": {"position": _xyz([x, y, 0.5 * height]), "orientation": {"w": 1.0}},
                 "scale": _xyz([2.0 * radius, 2.0 * radius, height]),
                 "color": {"r": red / 255, "g": green / 255, "b": blue / 255, "a": 0.7},
             }
         )
-    return times, [translator.messages.one(kind, {"markers": some}) for some in markers]
+    yield from ({"markers": some} for some in markers)
 
 
-def _local_map(translator: Translator, kind: str, rows: Rows) -> tuple[Stamps, list[bytes]]:
-    """Return the confidence of the local maps [%], which some frames have."""
-    times = nanoseconds(rows["time"])
-    maps = [(row, shades) for row, shades in enumerate(rows["local_map"]) if shades is not None]
-    grids = []
-    for row, shades in maps:
-        time = stamp(int(times[row]))
-        x, y = rows["map_origin"][row].tolist()
-        origin = {"position": _xyz([x, y, 0.0]), "orientation": _wxyz([1.0, 0.0, 0.0, 0.0])}
-        info = {
-            "map_load_time": time,
-            "resolution": float(rows["map_cell"][row]),
-            "width": shades.shape[1],
-            "height": shades.shape[0],
-            "origin": origin,
-        }
-        percent = np.round(shades.ravel() * (100.0 / 255.0))
-        grid = {"header": header(time, MAP), "info": info, "data": percent}
-        grids.append(translator.messages.one(kind, grid))
-    return times[[row for row, _ in maps]], grids
+def _local_map(translator: Translator, rows: Rows, stamps: list[Contents]) -> Stream:
+    """Yield the confidence of the local maps [%], which some frames have."""
+    geometry = _values(stamps, rows, "map_origin", "map_cell")
+    for (time, origin, cell), shades in zip(geometry, rows["local_map"], strict=True):
+        yield (
+            None
+            if shades is None
+            else {
+                "header": header(time, MAP),
+                "info": {
+                    "map_load_time": time,
+                    "resolution": cell,
+                    "width": shades.shape[1],
+                    "height": shades.shape[0],
+                    "origin": {"position": _xyz([*origin, 0.0]), "orientation": {"w": 1.0}},
+                },
+                "data": np.round(shades.ravel() * (100.0 / 255.0)),
+            }
+        )
 
 
-def _pose(pose: Array) -> Array:
-    """Return x, y and quaternion of poses x, y, heading (n, 3) (n, 6)."""
-    return np.hstack([pose[:, :2], yaw_quaternions(pose[:, 2])])
+def _pose(pose: Sequence[float]) -> Contents:
+    """Return a pose x, y, heading."""
+    x, y, yaw = pose
+    turn = {"w": cos(0.5 * yaw), "z": sin(0.5 * yaw)}
+    return {"position": _xyz([x, y, 0.0]), "orientation": turn}
 
 
-def _pose_message(values: list[float]) -> Contents:
-    """Return a pose of 6 numbers of `_pose`, with up to 9 of the covariance of x, y, yaw."""
-    covariance = np.zeros((6, 6))
-    if len(values) > 6:
-        covariance[np.ix_(PLANE, PLANE)] = np.reshape(values[6:15], (3, 3))
-    pose = {"position": _xyz([*values[:2], 0.0]), "orientation": _wxyz(values[2:6])}
-    return {"pose": pose, "covariance": covariance.ravel()}
+def _uncertain(pose: Sequence[float], covariance: Any = 0.0) -> Contents:
+    """Return a pose x, y, heading with its covariance (3, 3)."""
+    whole = np.zeros((6, 6))
+    whole[PLANE] = covariance
+    return {"pose": _pose(pose), "covariance": whole.ravel()}
 
 
-def _twist(time: Array, pose: Array, earlier: Array, before: Array) -> Array:
-    """Return the velocity since the poses before, in R (n, 3) [m/s, m/s, rad/s]; zero at first."""
-    x, y, turn = (pose - before).T
-    turn = (turn + np.pi) % (2.0 * np.pi) - np.pi
-    c, s = np.cos(pose[:, 2]), np.sin(pose[:, 2])
-    moved = np.column_stack([c * x + s * y, c * y - s * x, turn])
-    return np.nan_to_num(moved / (time - earlier)[:, None])
-
-
-def _twist_message(values: list[float]) -> Contents:
-    vx, vy, wz = values
-    return {"linear": _xyz([vx, vy, 0.0]), "angular": _xyz([0.0, 0.0, wz])}
+def _twist(vx: float, vy: float, wz: float) -> Contents:
+    return {"linear": {"x": vx, "y": vy}, "angular": {"z": wz}}
 
 
 def _xyz(values: Sequence[float]) -> Contents:
@@ -401,6 +349,7 @@ def _wxyz(values: Sequence[float]) -> Contents:
 
 TF, ODOMETRY = "tf2_msgs/msg/TFMessage", "nav_msgs/msg/Odometry"
 CAMERA_POSE = ("camera_position", "camera_rotation")
+ODOM_COLUMNS, TRUE_COLUMNS = ("odometry", "odometry_covariance"), ("robot",)
 TARGET, GRID = ("target", "target_heading"), ("local_map", "map_origin", "map_cell")
 BELIEF = ("pose", "pose_covariance", "odometry")
 TOPICS = (
@@ -422,8 +371,20 @@ TOPICS = (
         ("orientation", "gyro", "accelerometer"),
         _imu,
     ),
-    Topic("/odom", ODOMETRY, "records", ("odometry", "odometry_covariance"), _odometry),
-    Topic("/ground_truth/odom", ODOMETRY, "records", ("robot",), _truth),
+    Topic(
+        "/odom",
+        ODOMETRY,
+        "records",
+        ODOM_COLUMNS,
+        partial(_motion, frame=ODOM, columns=ODOM_COLUMNS),
+    ),
+    Topic(
+        "/ground_truth/odom",
+        ODOMETRY,
+        "records",
+        TRUE_COLUMNS,
+        partial(_motion, frame=MAP, columns=TRUE_COLUMNS),
+    ),
     Topic("/cmd_vel", "geometry_msgs/msg/Twist", "records", ("command",), _command),
     Topic("/camera/image", "sensor_msgs/msg/Image", PIXELS, ("captured", "image"), _raw),
     Topic(

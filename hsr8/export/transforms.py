@@ -133,9 +133,4 @@ def odom_in_map(pose: Array, odometry: Array) -> Array:
 
 def _planar(pose: Array) -> tuple[Array, Array]:
     """Return position and orientation of a pose x, y, heading (n, 3)."""
-    return np.pad(pose[:, :2], ((0, 0), (0, 1))), yaw_quaternions(pose[:, 2])
-
-
-def yaw_quaternions(yaw: Array) -> Array:
-    """Return the quaternions w-x-y-z of headings (n,) [rad] (n, 4)."""
-    return about(np.array([0.0, 0.0, 1.0]), yaw)
+    return np.pad(pose[:, :2], ((0, 0), (0, 1))), about(np.array([0.0, 0.0, 1.0]), pose[:, 2])

@@ -122,11 +122,11 @@ class Session:
 
     def publish(self, table: str, values: Mapping[str, Any]) -> None:
         """Publish the messages of a row of a table."""
-        for topic, _, messages in self._translator.translate(table, rows_of(values)):
+        for topic, messages in self._translator.translate(table, rows_of(values)):
             if topic not in self._publishers:
                 continue
             endpoint, publisher = self._publishers[topic]
-            for message in messages:
+            for _, message in messages:
                 number = self._sequence[topic] = self._sequence.get(topic, 0) + 1
                 publisher.put(message, attachment=attachment(endpoint, number))
                 self.count += 1

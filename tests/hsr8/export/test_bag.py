@@ -17,7 +17,6 @@ from hsr8.robots.loaded import load_robot
 pytest.importorskip("rosbags")
 from rosbags.highlevel import AnyReader
 from rosbags.interfaces import QosDurability
-from rosbags.typesys import Stores, get_typestore
 
 
 def read(folder):
@@ -132,22 +131,6 @@ def test_local_maps_are_the_confidence_in_percent(run, messages):
     for grid, shades in zip(grids, maps, strict=True):
         data = np.reshape(grid.data, (grid.info.height, grid.info.width))
         assert np.abs(data - shades / 2.55).max() <= 0.5
-
-
-def test_messages_of_a_template_are_those_of_the_serializer():
-    from hsr8.export.cdr import Messages, header, nanoseconds, stamp  # noqa: PLC0415
-
-    messages, rng = Messages(get_typestore(Stores.ROS2_JAZZY)), np.random.default_rng(0)
-    times, values = nanoseconds(rng.uniform(0.0, 99.0, 20)), rng.normal(size=(20, 5))
-    kind = "sensor_msgs/msg/JointState"
-
-    def contents(time, numbers):
-        return {"header": header(time, "a"), "name": ["hip"], "position": numbers}
-
-    assert messages.many(kind, times, values, contents) == [
-        messages.one(kind, contents(stamp(t), v.tolist()))
-        for t, v in zip(times.tolist(), values, strict=True)
-    ]
 
 
 @pytest.mark.gl

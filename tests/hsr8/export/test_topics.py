@@ -24,12 +24,12 @@ def translated(run, batches):
     setup = Setup.of(load_robot("hsr8"), run.scenario().camera.pinhole, "<robot/>")
     translator, sent = Translator(messages, setup), defaultdict(list)
     for table, rows in batches:
-        for topic, times, contents in translator.translate(table, rows):
-            sent[topic.name] += zip(times.tolist(), contents, strict=True)
+        for topic, contents in translator.translate(table, rows):
+            sent[topic.name] += contents
     return sent
 
 
-def test_rows_one_by_one_give_the_messages_of_all_at_once(run):
+def test_rows_one_by_one_give_the_contentsof_all_at_once(run):
     tables = {name: getattr(run, name) for name in ("ticks", "frames", "records")}
     start = START, {"time": np.zeros(1), "start": np.array([[0.1, -0.2, 0.3]])}
     rows = [
