@@ -109,7 +109,7 @@ def start_walk(walk: Data, robot: Model) -> int:
 
 @compiled
 def detect_touchdown(walk: Data, robot: Model) -> None:
-    """Stop the swing foot on early touchdown; after a push the support ends with this tick.
+    """Stop the swing foot on early touchdown; off balance the support ends with this tick.
 
     A support that waited for its planned end would let the error of the DCM grow on one foot while
     both are on the floor.
@@ -120,5 +120,5 @@ def detect_touchdown(walk: Data, robot: Model) -> None:
         force = walk.body.feet[swing_of(gait)].load
         if detects_touchdown(walk.corrections, phase.swing, force, robot) and phase.swing < 1.0:
             touch_down(gait, walk.limbs.feet, robot)
-            if excess_error(walk, robot) > 0.0:
+            if gait.shortened or excess_error(walk, robot) > 0.0:
                 gait.clock.single.ticks = phase.elapsed + 1
