@@ -80,6 +80,35 @@ def zmp_shift(zmp: Point, error: Point, region: Region, robot: Record) -> Point:
 
 
 @compiled
+def follow_body(walk: Record, foot: Foothold, robot: Record) -> None:
+    """Move the plan towards the body: admittance of the centre of mass.
+
+    A push that the ankles cannot hold turns body and stance leg about the edge of the sole. Servos
+    that keep the planned posture tilt the trunk by as much, and the next foot lands tilted. The
+    plan that takes over the error inclines the leg instead, under an upright trunk. The DCM, planned
+    plus error, does not change, nor does a capture step.
+
+    Args:
+        walk: state; the pendulum and the error of the body are changed.
+        foot: support foot.
+        robot: constants.
+    """
+    sensing, pendulum, p = walk.sensing, walk.pendulum, robot.stabilizer
+    length, width = sole_margins(robot)
+    x, y = rotate_back(foot.yaw, sensing.dcm_x, sensing.dcm_y)
+    excess = max(abs(x) / length, abs(y) / width) - p.capture_dead_zone
+    part = p.com_admittance * min(1.0, max(0.0, excess))
+    pendulum.x += part * sensing.x
+    pendulum.y += part * sensing.y
+    pendulum.vx += part * sensing.vx
+    pendulum.vy += part * sensing.vy
+    rest = 1.0 - part
+    sensing.x, sensing.y = rest * sensing.x, rest * sensing.y
+    sensing.vx, sensing.vy = rest * sensing.vx, rest * sensing.vy
+    sensing.dcm_x, sensing.dcm_y = rest * sensing.dcm_x, rest * sensing.dcm_y
+
+
+@compiled
 def sole_margins(robot: Record) -> Point:
     """Return the ZMP margins of a sole, forward and lateral [m]."""
     support, margin = robot.support, robot.stabilizer.sole_margin

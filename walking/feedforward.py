@@ -29,6 +29,7 @@ indices in position and velocity of the dynamic model; planned angle [rad] and r
 for the feed-forward [rad/s], feed-forward offset [rad]."""
 
 LEG_JOINTS = 6
+HIP_JOINTS = 3  # first joints of a leg
 
 
 @compiled
@@ -119,6 +120,9 @@ def set_offsets(
                 axis, compliance = axes[side, k], joint.compliance
                 offset = ankle_offset(axis, shift, gyro, compliance, robot)
                 joint.offset += load * offset
+            for k in range(HIP_JOINTS):
+                offset = hip_offset(axes[side, k], walk.sensing, gyro, robot)
+                joints[LEG_JOINTS * side + k].offset += load * offset
 
 
 @compiled
@@ -153,6 +157,26 @@ def ankle_offset(axis: Array, shift: Point, gyro: Array, compliance: float, robo
     moved = robot.weight * compliance * (axis[1] * shift[0] - axis[0] * shift[1])
     damping = robot.stabilizer.gyro_gain * (axis[0] * gyro[0] + axis[1] * gyro[1])
     offset: float = moved + damping
+    return offset
+
+
+@compiled
+def hip_offset(axis: Array, sensing: Record, gyro: Array, robot: Record) -> float:
+    """Return the offset of a hip joint [rad] that turns the trunk upright on its stance leg.
+
+    Where ankle or knee give way, or the foot tips, the trunk tilts with the leg although the hip
+    has its planned angle.
+
+    Args:
+        axis: axis of the joint in the base frame (3,).
+        sensing: measured tilt of the trunk.
+        gyro: angular velocity of the trunk (3,) [rad/s].
+        robot: constants.
+    """
+    p = robot.stabilizer
+    roll = sensing.roll + p.hip_damping * gyro[0]
+    pitch = sensing.pitch + p.hip_damping * gyro[1]
+    offset: float = p.hip_gain * (axis[0] * roll + axis[1] * pitch)
     return offset
 
 

@@ -273,10 +273,15 @@ def aimed(gait: Record, landing: Foothold, wanted: Foothold, robot: Record) -> F
 
 @compiled
 def touch_down(gait: Record, feet: Record, robot: Record) -> None:
-    """Stop the swing foot at an early touchdown."""
+    """Stop the swing foot at an early touchdown, and end the single support with this tick.
+
+    A support that waited for its planned end would let the error of the DCM grow on one foot while
+    both are on the floor.
+    """
     swing = swing_of(gait)
     foot = feet[swing]
     gait.landed_early = True
+    gait.clock.single.ticks = gait.elapsed + 1
     put(gait.landing, Foothold(swing == 0, foot.x, foot.y, foot.yaw))
     update_phase(gait, robot)
 

@@ -9,7 +9,15 @@ import numpy as np
 from compilation import compiled
 from compilation.record import record_type
 from walking.admission import ADMISSION, remember
-from walking.balance import PLACING, advance_pendulum, end_capture, exceeds, place_foot, zmp_shift
+from walking.balance import (
+    PLACING,
+    advance_pendulum,
+    end_capture,
+    exceeds,
+    follow_body,
+    place_foot,
+    zmp_shift,
+)
 from walking.body.kinematics import tree_pass
 from walking.command import BALANCE, FALLEN, SWING_HEIGHT, TIMING
 from walking.corrections import (
@@ -171,6 +179,8 @@ def begin(
     gait = live.gait
     estimate(walk, odometry[0], gait.right_weight, gait.stepping, robot)
     settled = walk.ticks * CONTROL_PERIOD > robot.gait.settle_time
+    if gait.stepping:
+        follow_body(walk, support_foot(gait), robot)
     remember(walk.admission, gait)
     _follow(walk, gait, command, explicit, settled, robot)
     _want_strides(walk, gait, odometry[0], robot)
