@@ -273,16 +273,18 @@ def aimed(gait: Record, landing: Foothold, wanted: Foothold, robot: Record) -> F
 
 @compiled
 def touch_down(gait: Record, feet: Record, robot: Record) -> None:
-    """Stop the swing foot at an early touchdown, and end the single support with this tick.
-
-    A support that waited for its planned end would let the error of the DCM grow on one foot while
-    both are on the floor.
-    """
+    """Stop the swing foot at an early touchdown."""
     swing = swing_of(gait)
     foot = feet[swing]
     gait.landed_early = True
-    gait.clock.single.ticks = gait.elapsed + 1
     put(gait.landing, Foothold(swing == 0, foot.x, foot.y, foot.yaw))
+    update_phase(gait, robot)
+
+
+@compiled
+def end_support(gait: Record, robot: Record) -> None:
+    """End the single support with this tick."""
+    gait.clock.single.ticks = gait.elapsed + 1
     update_phase(gait, robot)
 
 

@@ -157,11 +157,11 @@ class StabilizerParameters:
     sole_margin: Annotated[float, SOLE] = 0.010  # ZMP shifted by the ankles to the sole's edge [m]
     gyro_gain: Annotated[float, ANKLE_TIME] = 0.02  # ankle setpoint per angular velocity [s]
     # hip setpoint per tilt of the trunk, of the legs that carry it [1]
-    hip_gain: Annotated[float, NUMBER] = 0.7
-    hip_damping: Annotated[float, TIME] = 0.03  # rate of the tilt in the same, as a tilt [s]
+    hip_gain: Annotated[float, NUMBER] = 0.5
+    hip_damping: Annotated[float, TIME] = 0.04  # rate of the tilt in the same, as a tilt [s]
     # part of the error of the body that the plan takes over, per tick and per excess of the DCM
     # error over the dead zone of the capture step, at most one [1]
-    com_admittance: Annotated[float, GAIN_PER_TICK] = 0.015
+    com_admittance: Annotated[float, GAIN_PER_TICK] = 0.022
     inertia_gain: Annotated[float, NUMBER] = 1.0  # accelerations in the feed-forward torques [1]
     max_inertia_acceleration: Annotated[float, RATE_CHANGE] = 300.0  # in these torques [rad/s²]
     velocity_gain: Annotated[float, NUMBER] = 0.6  # feed-forward of the servo lag, legs [1]

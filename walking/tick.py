@@ -37,6 +37,7 @@ from walking.feedforward import set_motion, set_offsets, set_setpoints
 from walking.footsteps import FOOTHOLD, STILL, Command, Foothold, foothold, put, tendency
 from walking.gait import (
     advance,
+    end_support,
     retime,
     stand,
     start,
@@ -326,11 +327,18 @@ def _maybe_start(walk: Record, gait: Record, robot: Record) -> None:
 
 @compiled
 def _detect_touchdown(walk: Record, gait: Record, robot: Record) -> None:
-    """Stop the swing foot on early touchdown."""
+    """Stop the swing foot on early touchdown; off balance, go on with the next footstep.
+
+    A support that waited for its planned end would let the error of the DCM grow over one foot
+    while both are on the floor.
+    """
     if gait.stepping and not gait.double and not gait.landed_early:
         phase, force = gait.swing_phase, walk.sensing.feet[swing_of(gait)].load
         if detects_touchdown(walk.corrections, phase, force, robot) and phase < 1.0:
             touch_down(gait, walk.limbs.feet, robot)
+            error, ratio = (walk.sensing.dcm_x, walk.sensing.dcm_y), robot.stabilizer.capture_dead_zone
+            if gait.shortened or exceeds(support_foot(gait), error, ratio, robot):
+                end_support(gait, robot)
 
 
 @compiled
