@@ -280,11 +280,12 @@ def _image_box(x: float, y: float, radius: float, height: float, view: np.record
 
 @compiled
 def _seam_rows(x: float, y: float, radius: float, height: float, view: np.record) -> Range:
-    """Return the first and the last row of the edges of a beacon's seam, halfway up [pixel]."""
+    """Return the first and the last row of a beacon's seam, halfway up [pixel]."""
     R, first, last = view.rotation, inf, -inf
     ratio = radius / sqrt(x * x + y * y)
-    for side in (-ratio, ratio):
-        X, Y, Z = x - side * y, y + side * x, 0.5 * height - view.position[2]
+    for side, near in ((-ratio, 0.0), (ratio, 0.0), (0.0, ratio)):  # both edges, and the front
+        X, Y = (1.0 - near) * x - side * y, (1.0 - near) * y + side * x
+        Z = 0.5 * height - view.position[2]
         depth = X * R[0, 2] + Y * R[1, 2] + Z * R[2, 2]
         if depth < MIN_DEPTH:
             return -inf, inf

@@ -94,6 +94,10 @@ def test_a_beacon_is_detected_where_its_seam_is_in_the_image(world, silent):
         position = (distance - float(pose.position[0]), -float(pose.position[1]))
         box = project(*position, 0.05, 0.6, True, view_of(camera, pose)[0], False)
         cut = bool(box[4])
+        seam = (np.array([distance, 0.0, 0.3]) - pose.position) @ rotation
+        row = float(camera.project(seam[None])[0, 1])
+        if min(abs(row), abs(row - camera.height)) < 8.0:
+            continue  # at the border
         found = [d for d in detector.detect(image, pose) if d.kind == "beacon"]
         detected[box[2] > 0.0].append(len(found))
         if cut and found:
