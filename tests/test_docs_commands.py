@@ -41,6 +41,7 @@ OTHERS = {
     "git",
     "jq",
     "pip",
+    "ros2",
     "source",
 }  # other people's programs
 RUNS = ("quick", "course", "paper")  # that a page may take for done
@@ -165,6 +166,7 @@ def hsr8(words, capsys):
         or " ".join(given[:2]) in ONLY_READ
         or ((given[0] in ("render", "doctor") or "--image" in given) and not draws())
         or (given[0] == "replay" and "--view" in given)  # lasts until Ctrl-C
+        or "--ros" in given  # takes a port of this machine
         or ("--robot" in given and not installed(given[given.index("--robot") + 1]))
     ):
         parse(given)
@@ -224,7 +226,7 @@ def others(words):
         project = tomllib.loads((ROOT / "pyproject.toml").read_text())["project"]
         for extra in re.findall(r"^\.\[(\w+)\]", words[-1]):
             assert extra in project["optional-dependencies"]
-    if words[:2] == ["docker", "run"]:
+    if words[:2] == ["docker", "run"] and "ros:jazzy" not in words:
         parse(words[words.index("hsr8") + 1 :])
     assert words[0] in OTHERS, f"{shlex.join(words)}: say in {__name__} how this is executed"
 

@@ -1,5 +1,6 @@
 """``hsr8 run``: checks before anything heavy is imported."""
 
+import re
 import sys
 from dataclasses import replace
 from math import inf
@@ -60,6 +61,9 @@ def _require_ros_options(options: Run) -> None:
         raise UsageError(f"--pace: got {options.pace:g}; expected a finite number of at least 0")
     if not 0 <= options.ros_domain <= MAX_DOMAIN:
         raise UsageError(f"--ros-domain: got {options.ros_domain}; expected 0 to {MAX_DOMAIN}")
+    for option, endpoint in ("connect", options.ros_connect), ("listen", options.ros_listen):
+        if endpoint is not None and not re.fullmatch(r"[a-z-]+/[^\s\"]+", endpoint):
+            raise UsageError(f"--ros-{option}: got {endpoint!r}; expected such as tcp/HOST:7447")
     further = {
         "--ros-domain": options.ros_domain,
         "--ros-connect": options.ros_connect,

@@ -1,5 +1,7 @@
 """The process that publishes: it makes the messages, and the Zenoh session lives in it."""
 
+import json
+import re
 import signal
 from collections.abc import Mapping
 from contextlib import suppress
@@ -51,8 +53,8 @@ class Network:
         single = bool(self.connect) and not self.listen
         config.insert_json5("mode", '"peer"' if single else '"router"')
         listen = self.listen or (ANYWHERE if single else HERE)
-        config.insert_json5("listen/endpoints", f'["{listen}"]')
-        config.insert_json5("connect/endpoints", f'["{self.connect}"]' if self.connect else "[]")
+        config.insert_json5("listen/endpoints", json.dumps([listen]))
+        config.insert_json5("connect/endpoints", json.dumps([self.connect] if self.connect else []))
         config.insert_json5("scouting/multicast/enabled", "false")
         config.insert_json5("timestamping/enabled", "true")  # for latched messages
         return config
@@ -191,7 +193,7 @@ def serve(network: Network, setup: Setup, ticks: Connection, parent: Connection)
         try:
             session = Session(network, Translator(messages, setup))
         except Exception as error:  # zenoh.ZError, which is not importable without the extra
-            parent.send(("failed", str(error)))
+            parent.send(("failed", re.sub(r" at \S+\.rs:\d+\.?", "", str(error))))
             return
         parent.send(("ready", ""))
         with suppress(EOFError):

@@ -5,6 +5,7 @@ import multiprocessing
 import os
 import signal
 import socket
+import subprocess
 import sys
 from collections import defaultdict
 from contextlib import contextmanager
@@ -187,6 +188,42 @@ def test_a_killed_process_leaves_the_run_alone(capsys):
     assert len(warnings) == 2  # that it ended, and the number of messages
 
 
+PEER = """
+import sys, time, zenoh
+config = zenoh.Config()
+config.insert_json5("connect/endpoints", f'["tcp/127.0.0.1:{sys.argv[1]}"]')
+config.insert_json5("scouting/multicast/enabled", "false")
+session = zenoh.open(config)
+subscriber = session.declare_subscriber("0/**", lambda sample: None)
+print("ready", flush=True)
+time.sleep(60.0)
+"""
+
+
+def test_a_stopped_and_a_killed_peer_leave_the_run_alone(capsys):
+    port, peers = free_port(), []
+
+    def hook(tick):
+        if tick.number == 0:
+            words = [sys.executable, "-c", PEER, str(port)]
+            peers.extend(subprocess.Popen(words, stdout=subprocess.PIPE) for _ in range(2))
+            assert [peer.stdout.readline() for peer in peers] == [b"ready\n"] * 2
+        if tick.number == 100:
+            peers[0].send_signal(signal.SIGSTOP)
+            peers[1].kill()
+
+    scenario = scenario_of("duration=4", *ANALYTIC)
+    try:
+        run = live_run(scenario, Network(listen=f"tcp/127.0.0.1:{port}"), hook, pace=1.0)
+    finally:
+        for peer in peers:
+            peer.kill()
+            peer.communicate()
+    assert run.exit_reason == "timeout"
+    assert len(run.ticks) == 801
+    assert len(capsys.readouterr().err.splitlines()) <= 2  # the end; ticks may be dropped
+
+
 def test_malformed_messages_and_silence_warn_once(capsys):
     scenario, port, drive = scenario_of("duration=6", *ANALYTIC), free_port(), Drive()
     rng, opened = np.random.default_rng(0), {}
@@ -232,18 +269,24 @@ def test_malformed_messages_and_silence_warn_once(capsys):
         assert sum(text in line for line in lines) == 1
 
 
-def test_a_taken_endpoint_is_refused():
+@pytest.mark.parametrize("address", ["tcp/127.0.0.1:{}", "nowhere", '"'])
+def test_a_taken_or_invalid_endpoint_is_refused(address):
     with socket.socket() as taken:
         taken.bind(("127.0.0.1", 0))
         taken.listen()
-        address = f"tcp/127.0.0.1:{taken.getsockname()[1]}"
+        network = Network(listen=address.format(taken.getsockname()[1]))
         with pytest.raises(UsageError, match="--ros-listen"):
-            live_run(scenario_of("duration=1", *ANALYTIC), Network(listen=address))
+            live_run(scenario_of("duration=1", *ANALYTIC), network)
 
 
 @pytest.mark.parametrize(
     "options",
-    [["--ros-drive"], ["--ros", "--ros-domain", "233"], ["--pace", "-1"], ["--ros-connect", "x"]],
+    [
+        ["--ros-drive"],
+        ["--ros", "--ros-domain", "233"],
+        ["--pace", "-1"],
+        ["--ros", "--ros-connect", "x"],
+    ],
 )
 def test_options_that_contradict_are_refused(options, tmp_path, capsys):
     assert entry(["run", "quick", "--out", str(tmp_path), *options]) == 2
