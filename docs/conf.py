@@ -11,7 +11,10 @@ import hsr8  # before NumPy: it selects the arithmetic
 CONTENTS = {
     "First steps": ("install", "tutorial"),
     "Concepts": ("concepts", "worlds", "vision", "belief", "gaze", "planning", "walking"),
-    "How to": ("python", "sweeps", "bench", "robots", "gym", "faults", "crowds", "circle", "export"),
+    "How to": (
+        *("python", "sweeps", "bench", "robots", "gym"),
+        *("faults", "crowds", "circle", "export"),
+    ),
     "Paper": ("equations", "figures"),
     "Reference": ("commands", "scenarios", "files", "metrics", "data", "api"),
     "Results": ("results/*",),

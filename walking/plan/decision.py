@@ -17,7 +17,7 @@ from walking.plan.corrections import (
     speed_ratio,
 )
 from walking.plan.footsteps import STILL, StepValues, tendency
-from walking.plan.gait import phase_of, retime, start, swing_of, touch_down
+from walking.plan.gait import end_support, phase_of, retime, start, swing_of, touch_down
 from walking.plan.steering import (
     follow_command,
     moves,
@@ -109,10 +109,10 @@ def start_walk(walk: Data, robot: Model) -> int:
 
 @compiled
 def detect_touchdown(walk: Data, robot: Model) -> None:
-    """Stop the swing foot on early touchdown; off balance the support ends with this tick.
+    """Stop the swing foot on early touchdown; off balance, end the single support with it.
 
-    A support that waited for its planned end would let the error of the DCM grow on one foot while
-    both are on the floor.
+    A support that waited for its planned end would let the error of the DCM grow over one foot
+    while both are on the floor.
     """
     gait = walk.plan.gait
     phase = phase_of(gait)
@@ -120,5 +120,6 @@ def detect_touchdown(walk: Data, robot: Model) -> None:
         force = walk.body.feet[swing_of(gait)].load
         if detects_touchdown(walk.corrections, phase.swing, force, robot) and phase.swing < 1.0:
             touch_down(gait, walk.limbs.feet, robot)
-            if gait.shortened or excess_error(walk, robot) > 0.0:
-                gait.clock.single.ticks = phase.elapsed + 1
+            off_balance = gait.shortened or excess_error(walk, robot) > 0.0
+            if off_balance and not robot.modifiable:
+                end_support(gait)

@@ -275,6 +275,12 @@ def touch_down(gait: Gait, feet: Records[FootReference], robot: Model) -> None:
 
 
 @compiled
+def end_support(gait: Gait) -> None:
+    """End the single support with this tick."""
+    gait.clock.single.ticks = phase_of(gait).elapsed + 1
+
+
+@compiled
 def advance(plan: Plan, feet: Records[FootReference], robot: Model) -> None:
     """Move the feet by one tick and start the next footstep at the end of this one.
 

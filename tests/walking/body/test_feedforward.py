@@ -9,12 +9,14 @@ from hypothesis import strategies as st
 
 from walking.body.feedforward import (
     ankle_offset,
+    hip_offset,
     set_motion,
     set_offsets,
     set_within_range,
     support_torque,
 )
 from walking.body.tree import LEFT_LEG, RIGHT_LEG
+from compilation.record import records
 from walking.constants import joint_records
 from walking.data import Data
 from walking.parameters import CONTROL_PERIOD, GRAVITY, StabilizerParameters, WalkingParameters
@@ -147,6 +149,17 @@ def test_an_ankle_shifts_the_zmp_by_its_compliance(model, axis, shift, sign):
     rest = (np.zeros(3), 0.02, model.robot)
     offset = ankle_offset(np.array(axis, float), shift, *rest)
     assert offset == pytest.approx(sign * model.robot.weight * 0.02 * 0.01)
+
+
+def test_a_hip_turns_the_trunk_against_its_tilt_and_rate(model):
+    body, gain = records(Data)[0].body, model.robot.stabilizer.hip_gain
+    body.roll, body.pitch = 0.1, -0.2
+    still = np.zeros(3)
+    assert hip_offset(np.array([1.0, 0.0, 0.0]), body, still, model.robot) == 0.1 * gain
+    assert hip_offset(np.array([0.0, 1.0, 0.0]), body, still, model.robot) == -0.2 * gain
+    assert hip_offset(np.array([0.0, 0.0, 1.0]), body, still, model.robot) == 0.0
+    falling = np.array([0.0, -3.0, 0.0])
+    assert hip_offset(np.array([0.0, 1.0, 0.0]), body, falling, model.robot) < -0.2 * gain
 
 
 def test_offsets_are_those_of_the_robot_wherever_it_stands(feed):

@@ -8,7 +8,9 @@ import pytest
 from hypothesis import assume, given
 from hypothesis import strategies as st
 
+from compilation.record import records
 from walking.command import BALANCE
+from walking.data import Data
 from walking.parameters import CONTROL_PERIOD, StabilizerParameters
 from walking.plan.admission import remember
 from walking.plan.balance import (
@@ -17,11 +19,20 @@ from walking.plan.balance import (
     capture_step,
     capture_time,
     exceeds_support,
+    follow_body,
     place_foot,
     zmp_shift,
 )
 from walking.plan.departure import end_capture
-from walking.plan.footsteps import STILL, Foothold, foothold, is_same, landing_of, reachable
+from walking.plan.footsteps import (
+    STILL,
+    Foothold,
+    foothold,
+    is_same,
+    landing_of,
+    put,
+    reachable,
+)
 from walking.plan.gait import (
     advance,
     is_double,
@@ -287,3 +298,31 @@ def test_during_a_capture_step_the_plan_goes_on_without_the_body_until_touchdown
     while not is_double(walk.gait):
         walk.tick(velocity)
     assert not walk.walk.off_plan
+
+
+@pytest.fixture
+def pushed():
+    """State of a walk with the left foot at `LEFT`."""
+    walk = records(Data)[0]
+    put(walk.plan.gait.footholds[0], LEFT)
+    return walk
+
+
+@pytest.mark.parametrize("off", [(0.06, 0.01), (-0.02, 0.05), (0.01, -0.2)])
+def test_a_plan_that_follows_the_body_keeps_body_and_dcm(model, pushed, off):
+    robot, error, pendulum = model.robot, pushed.error, pushed.pendulum
+    error.x, error.y = (0.4 * e for e in off)
+    error.vx, error.vy = (0.6 * robot.omega * e for e in off)
+    error.dcm_x, error.dcm_y = off
+    follow_body(pushed, robot)
+    dcm = (pendulum.x + pendulum.vx / robot.omega, pendulum.y + pendulum.vy / robot.omega)
+    assert pendulum.x + error.x == pytest.approx(0.4 * off[0])
+    assert pendulum.vy + error.vy == pytest.approx(0.6 * robot.omega * off[1])
+    assert np.add(dcm, (error.dcm_x, error.dcm_y)) == pytest.approx(off)
+    assert 0.0 < dcm[1] / off[1] < 1.0
+
+
+def test_a_plan_keeps_still_while_the_ankles_suffice(model, pushed):
+    pushed.error.x = pushed.error.dcm_x = 0.9 * STABILIZER.capture_dead_zone * 0.0425
+    follow_body(pushed, model.robot)
+    assert pushed.pendulum.x == pushed.pendulum.vx == 0.0

@@ -12,6 +12,7 @@ from walking.plan.footsteps import STILL, foothold, is_parallel, landing_of, put
 from walking.plan.gait import (
     advance,
     aimed,
+    end_support,
     is_adjustable,
     is_double,
     phase_of,
@@ -177,6 +178,16 @@ def test_early_contact_leaves_the_foot_where_it_is(walk):
         walk.tick(FORWARD)
     assert walk.gait.footholds[1].x == pytest.approx(x)
     assert 0.0 < walk.feet[1].height < height
+
+
+def test_a_support_that_ends_at_an_early_contact_begins_the_next_footstep(walk):
+    walk.start().swing_to(0.7)
+    touch_down(walk.gait, walk.feet, walk.model.robot)
+    end_support(walk.gait)
+    walk.tick(FORWARD)
+    assert walk.gait.completed == 1
+    assert is_double(walk.gait)
+    assert walk.gait.support == 1
 
 
 @pytest.mark.parametrize("lead", [2, 20, 40])
