@@ -57,7 +57,8 @@ class LiveTopics:
         self._posture = robot.model.ready.copy()
         self._sampler = FrameSampler(scale)
         self._getters = {table: _getters(table) for table in ("ticks", "frames", "records")}
-        self._published = self._dropped = 0
+        self._published: int | None = None  # known at the end
+        self._dropped = 0
         self._gone = False
         self._warned: set[str] = set()
         self._driven_at: float | None = None  # time of the velocity in force [s]
@@ -94,7 +95,8 @@ class LiveTopics:
         self._process.kill()
         self._process.join()
         self._receive(None)
-        text = f"ros: {self._published} messages published, {self._dropped} ticks dropped"
+        published = "an unknown number of" if self._published is None else self._published
+        text = f"ros: {published} messages published, {self._dropped} ticks dropped"
         print(text, file=sys.stderr)
 
     def exchange(self, tick: Tick) -> None:
