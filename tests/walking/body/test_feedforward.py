@@ -7,6 +7,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from compilation.record import records
 from walking.body.feedforward import (
     ankle_offset,
     hip_offset,
@@ -16,7 +17,6 @@ from walking.body.feedforward import (
     support_torque,
 )
 from walking.body.tree import LEFT_LEG, RIGHT_LEG
-from compilation.record import records
 from walking.constants import joint_records
 from walking.data import Data
 from walking.parameters import CONTROL_PERIOD, GRAVITY, StabilizerParameters, WalkingParameters
