@@ -2,12 +2,20 @@
 
 import pickle
 from collections.abc import Callable
+from contextlib import suppress
 from functools import cached_property
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, ParamSpec, TypeVar, cast
 
 from numba.core import config
-from numba.core.caching import FunctionCache, NullCache
+from numba.core.caching import (
+    CompileResultCacheImpl,
+    FunctionCache,
+    InTreeCacheLocator,
+    NullCache,
+    UserProvidedCacheLocator,
+    UserWideCacheLocator,
+)
 from numba.core.compiler import CompileResult
 
 from compilation.function import OPTIONS, CompiledFunction
@@ -71,11 +79,34 @@ class LazyCache(NullCache):
         self._cache.save_overload(sig, data)
 
 
+class ReadOnlyFolder(InTreeCacheLocator):
+    """Folder next to the source that has code of a function and cannot be written."""
+
+    def ensure_cache_path(self) -> None:
+        """Require files of the module.
+
+        Raises:
+            OSError: there are none.
+        """
+        if not any(Path(self.get_cache_path()).glob(f"{Path(self._py_file).stem}.*.nbi")):
+            raise FileNotFoundError(self.get_cache_path())
+
+
+class Folders(CompileResultCacheImpl):
+    """Choice of the folder: the first that serves."""
+
+    _locator_classes = (
+        UserProvidedCacheLocator,
+        InTreeCacheLocator,
+        ReadOnlyFolder,
+        UserWideCacheLocator,
+    )
+
+
 class CodeCache(FunctionCache):
     """Numba's cache, with a stamp of all sources and with the check of indices in the key.
 
-    Numba chooses the folder: `NUMBA_CACHE_DIR`, else `__pycache__` next to the source, else one of
-    the user.
+    Its folder is `NUMBA_CACHE_DIR`, else `__pycache__` next to the source, else one of the user.
 
     Args:
         function: function that Numba compiles.
@@ -83,6 +114,8 @@ class CodeCache(FunctionCache):
     Raises:
         RuntimeError: no folder can be written.
     """
+
+    _impl_class = Folders
 
     def __init__(self, function: Callable[..., Any]) -> None:
         super().__init__(function)
@@ -95,6 +128,11 @@ class CodeCache(FunctionCache):
         except (EOFError, pickle.UnpicklingError):  # cut files, from a full disk or a power failure
             self.flush()
             return None
+
+    def save_overload(self, sig: Any, data: CompileResult) -> None:
+        """Keep the code for the argument types, if the folder can be written."""
+        with suppress(OSError):
+            super().save_overload(sig, data)
 
     def _index_key(self, sig: Any, codegen: Any) -> tuple[Any, ...]:
         return (*super()._index_key(sig, codegen), config.BOUNDSCHECK)

@@ -12,6 +12,7 @@ from contextlib import contextmanager
 
 import numpy as np
 
+from compilation.function import CompiledFunction
 from hsr8.compilation_watch import CompilationWatch
 from hsr8.errors import RenderingUnavailable
 from hsr8.gl import require_gl
@@ -69,8 +70,8 @@ def two_processes(source: str, *, quiet: bool) -> Iterator[CompilationWatch]:
 
 
 def can_keep() -> bool:
-    """Return whether compiled code can be kept."""
-    return wrap.stats.cache_path is not None
+    """Return whether compiled code can be kept, if functions are compiled at all."""
+    return isinstance(wrap, CompiledFunction) and wrap.stats.cache_path is not None
 
 
 def compile_all(*, quiet: bool) -> int:

@@ -7,10 +7,10 @@ import sys
 from pathlib import Path
 
 import pytest
-from numba.core.caching import CacheImpl
 
 import compilation
 from compilation import compiled
+from compilation.decorator import Folders
 from navigation.angles import wrap
 
 FILES = {
@@ -100,7 +100,7 @@ def test_cut_files_are_replaced(library, kind):
 
 
 def test_without_a_folder_code_is_compiled_and_not_kept(monkeypatch):
-    monkeypatch.setattr(CacheImpl, "_locator_classes", [])
+    monkeypatch.setattr(Folders, "_locator_classes", ())
     function = compiled(wrap.py_func)
     assert function(1.0) == 1.0
     assert function.stats.cache_path is None

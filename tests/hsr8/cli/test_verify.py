@@ -9,6 +9,7 @@ from hsr8.errors import SimulationDiverged
 from hsr8.recorder.run.run_reader import open_run
 from hsr8.robots.file.locate import find_description
 from hsr8.world.body.kinematic import KinematicBody
+from walking.engine import PlanDiverged, WalkingEngine
 
 RUN = ["run", "quick", "--body", "kinematic", "--camera", "analytic", "--duration", "2"]
 
@@ -212,10 +213,16 @@ def test_a_diverged_run_diverges_again_at_the_same_tick(tmp_path, monkeypatch, r
     assert entry(["verify", str(run.path)]) == 1
 
 
-def test_a_planned_walk_that_diverges_ends_the_run_with_its_time(tmp_path, capsys):
-    """The robot believes that it leans: it steps aside faster and faster."""
-    leaning = ["--set", "sensors.roll_bias=0.3", "--seed", "0", "--duration", "4"]
-    assert entry([*RUN[:-2], *leaning, "--quiet", "--out", str(tmp_path)]) == 3
+def test_a_planned_walk_that_diverges_ends_the_run_with_its_time(tmp_path, monkeypatch, capsys):
+    step, ticks = WalkingEngine.step, iter(range(1000))
+
+    def diverging(self, *inputs):
+        if next(ticks) == 299:
+            raise PlanDiverged("the planned walk diverged")
+        return step(self, *inputs)
+
+    monkeypatch.setattr(WalkingEngine, "step", diverging)
+    assert entry([*RUN[:-2], "--duration", "4", "--quiet", "--out", str(tmp_path)]) == 3
     shown = capsys.readouterr()
     assert "the planned walk diverged" in shown.err
     assert "Traceback" not in shown.err

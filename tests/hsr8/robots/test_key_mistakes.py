@@ -205,7 +205,9 @@ def test_package_folders_of_an_mjcf_file_are_refused(described):
 
 def test_a_limit_of_the_model_is_not_blamed_on_a_key(described, tmp_path, monkeypatch):
     """The number of the message is enough, although it is rounded."""
-    monkeypatch.setattr("hsr8.robots.loaded.within_joints", lambda _robot, fitted, _: (fitted, []))
+    monkeypatch.setattr(
+        "hsr8.robots.walk.fitting.within_joints", lambda _robot, fitted, _: (fitted, [])
+    )
     file = described("", urdf)
     model = tmp_path / "small.urdf"
     root = ElementTree.fromstring(model.read_text())

@@ -1,5 +1,5 @@
-from collections.abc import Callable
-from typing import Any
+from collections.abc import Callable, Sequence
+from typing import Any, ClassVar
 
 from numba.core.compiler import CompileResult
 
@@ -9,10 +9,23 @@ class NullCache:
     def load_overload(self, sig: Any, target_context: Any) -> CompileResult | None: ...
     def save_overload(self, sig: Any, data: CompileResult) -> None: ...
 
+class CacheLocator:
+    _py_file: str
+    def ensure_cache_path(self) -> None: ...
+    def get_cache_path(self) -> str: ...
+
+class UserProvidedCacheLocator(CacheLocator): ...
+class InTreeCacheLocator(CacheLocator): ...
+class UserWideCacheLocator(CacheLocator): ...
+
+class CompileResultCacheImpl:
+    _locator_classes: ClassVar[Sequence[type[CacheLocator]]]
+
 class IndexDataCacheFile:
     _source_stamp: object
 
 class FunctionCache(NullCache):
+    _impl_class: ClassVar[type[CompileResultCacheImpl]]
     _cache_file: IndexDataCacheFile
     def __init__(self, py_func: Callable[..., Any]) -> None: ...
     def flush(self) -> None: ...
