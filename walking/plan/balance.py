@@ -223,8 +223,8 @@ def capture_step(
     p, omega, yaw, (error_x, error_y) = robot.stabilizer, robot.omega, support.yaw, error
     off_x, off_y = rotate_back(yaw, error_x, error_y)
     length, width = ankle_room(support, zmp, (off_x, off_y), robot)
-    x = dead_zone(off_x, p.capture_dead_zone * length)
-    y = dead_zone(off_y, p.capture_dead_zone * width)
+    x = dead_zone(off_x, p.capture_dead_zone * (robot.support.half_length - p.sole_margin))
+    y = dead_zone(off_y, p.capture_dead_zone * (robot.support.half_width - p.sole_margin))
     if x == 0.0 and y == 0.0:
         return Capture(False, landing, ticks_left)
     planned = ticks_left * CONTROL_PERIOD

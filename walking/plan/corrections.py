@@ -93,7 +93,8 @@ def speed_correction(
     Args:
         corrections: changed.
         pose: pose by odometry, heading unwrapped [m, m, rad].
-        planned: pose of the pelvis in the plan frame [m, m, rad].
+        planned: centre of mass and heading in the plan frame [m, m, rad]; a robot that turns on the
+            spot turns about it.
         begins: whether a gait cycle begins.
         disturbed: whether balance changes the footsteps.
         robot: constants.

@@ -75,8 +75,8 @@ def want_strides(walk: Data, odometry: DeadReckoning, robot: Model) -> None:
     disturbed = gait.shortened or shift > robot.stabilizer.max_steady_shift
     pressure = (error.pressure_x, error.pressure_y)
     correct_offset(corrections, pressure, error.pressed, begins, disturbed, robot)
-    pose, pelvis = (odometry.x, odometry.y, odometry.yaw), walk.limbs.pelvis
-    planned = (pelvis.x, pelvis.y, pelvis.yaw)
+    pose = (odometry.x, odometry.y, odometry.yaw)
+    planned = (walk.pendulum.x, walk.pendulum.y, walk.limbs.pelvis.yaw)
     vx, vy = speed_correction(corrections, pose, planned, begins, disturbed, robot)
     wz = heading_rate(corrections, ahead, begins or disturbed, robot)
     set_wanted_strides(steering, (vx, vy, wz), robot)
