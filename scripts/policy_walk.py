@@ -16,7 +16,7 @@ from hsr8.errors import ModelError, UsageError
 from hsr8.robots.file.locate import MENAGERIE_WHEEL
 from hsr8.robots.loaded import LoadedRobot
 from hsr8.scenario.sensors import SensorNoise
-from hsr8.world.body.body import FALLEN_RATIO, FALLEN_TILT
+from hsr8.world.body.body import FALLEN_DROP, FALLEN_TILT
 from hsr8.world.body.pushes import Pusher, ScheduledPush
 from hsr8.world.rotation import heading, up_component
 from walking.parameters import CONTROL_PERIOD
@@ -127,7 +127,7 @@ class PolicyWalker:
             for _ in range(substeps):
                 mujoco.mj_step(model, data)
             poses.append((*data.qpos[:2], heading(data.qpos[3:7])))
-            low = data.qpos[2] < FALLEN_RATIO * height
+            low = data.qpos[2] < (1.0 - FALLEN_DROP) * height
             if low or up_component(data.qpos[3:7]) < FALLEN_TILT:
                 return True, np.full(3, np.nan)
         return False, _mean_velocity(np.array(poses))
