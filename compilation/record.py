@@ -120,7 +120,7 @@ def _kind(annotation: Any) -> FieldType:
         one, *shape = get_args(annotation)
         if get_origin(one) is np.ndarray:
             (one,) = get_args(get_args(one)[1])
-        elif get_origin(one) is NDArray:  # an alias of its own from Python 3.12 on
+        elif get_origin(one) is NDArray:  # a separate alias from Python 3.12 on
             (one,) = get_args(one)
         elif get_origin(one) is Records:
             (one,) = get_args(one)
