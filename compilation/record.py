@@ -120,9 +120,7 @@ def _kind(annotation: Any) -> FieldType:
         one, *shape = get_args(annotation)
         if get_origin(one) is np.ndarray:
             (one,) = get_args(get_args(one)[1])
-        elif get_origin(one) is NDArray:  # a separate alias from Python 3.12 on
-            (one,) = get_args(one)
-        elif get_origin(one) is Records:
+        elif get_origin(one) in (NDArray, Records):  # NDArray is an alias from Python 3.12 on
             (one,) = get_args(one)
         return (one, *shape)
     if is_dataclass(annotation):
