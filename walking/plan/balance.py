@@ -72,14 +72,20 @@ def zmp_shift(zmp: Point, error: Point, region: Region, robot: Model) -> Point:
 
 
 @compiled
+def sole_margins(robot: Model) -> Point:
+    """Return the distances from the middle of a sole to its edges, less the margin [m]."""
+    support, margin = robot.support, robot.stabilizer.sole_margin
+    return support.half_length - margin, support.half_width - margin
+
+
+@compiled
 def excess_error(walk: Data, robot: Model) -> float:
     """Return the DCM error beyond the dead zone of the capture step, negative within [1].
 
     The unit is the range of the ankles on the support foot.
     """
     p, error = robot.stabilizer, walk.error
-    length = robot.support.half_length - p.sole_margin
-    width = robot.support.half_width - p.sole_margin
+    length, width = sole_margins(robot)
     x, y = rotate_back(support_foot(walk.plan.gait).yaw, error.dcm_x, error.dcm_y)
     return max(abs(x) / length, abs(y) / width) - p.capture_dead_zone
 
@@ -223,8 +229,9 @@ def capture_step(
     p, omega, yaw, (error_x, error_y) = robot.stabilizer, robot.omega, support.yaw, error
     off_x, off_y = rotate_back(yaw, error_x, error_y)
     length, width = ankle_room(support, zmp, (off_x, off_y), robot)
-    x = dead_zone(off_x, p.capture_dead_zone * (robot.support.half_length - p.sole_margin))
-    y = dead_zone(off_y, p.capture_dead_zone * (robot.support.half_width - p.sole_margin))
+    forward, lateral = sole_margins(robot)
+    x = dead_zone(off_x, p.capture_dead_zone * forward)
+    y = dead_zone(off_y, p.capture_dead_zone * lateral)
     if x == 0.0 and y == 0.0:
         return Capture(False, landing, ticks_left)
     planned = ticks_left * CONTROL_PERIOD
