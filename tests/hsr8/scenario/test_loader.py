@@ -76,12 +76,12 @@ mode = "integrate"
         (COURSE + "duration = nan", "duration: wrong value, got nan; expected a finite number"),
         (COURSE + "world = 3", "world: wrong value, got 3; expected a table"),
         (
-            COURSE + "[vision]\nmin_radius = nan",
-            "min_radius: wrong value, got nan; expected a finite",
+            COURSE + "[vision]\nmax_obstacle_range = nan",
+            "max_obstacle_range: wrong value, got nan; expected a finite",
         ),
         (
-            COURSE + '[vision]\nmin_radius = "1"',
-            'min_radius: wrong value, got "1"; expected a number',
+            COURSE + '[vision]\nmax_obstacle_range = "1"',
+            'max_obstacle_range: wrong value, got "1"; expected a number',
         ),
         (COURSE + "[vision]\nwidth = 1", "vision.width: unknown key"),
         (COURSE + "wold.size = [3, 3]", "file.toml:2: wold: unknown key"),

@@ -107,8 +107,6 @@ def test_values_of_a_user_are_literal_and_others_scaled(defaults, tmp_path):
     assert scenario.robot.speed.wz == pytest.approx(0.4)
     assert scenario.belief.tracking.forget_time == pytest.approx(25.0 * 2.0 / 1.5)
     assert scenario.world.scale == 2.0
-    assert scenario.vision.beacon_height == 1.2
-    assert scenario.navigation.gaze.risk.beacon_height == 1.2
 
 
 def test_defaults_in_lists_and_optional_tables_are_scaled(defaults):
@@ -162,15 +160,6 @@ def test_a_dump_is_complete_and_never_scaled_again(defaults, monkeypatch, name, 
     monkeypatch.undo()  # the robot is unknown here
     assert loads(text) == scenario
     assert dump(loads(text)) == text
-
-
-def test_the_dump_of_hsr_viii_keeps_constants_that_follow_the_scale_of_the_world():
-    words = ["world.scale=2.0", "constants.vision.beacon_height=0.6"]
-    scenario = load_scenario("course", words)
-    assert scenario.vision.obstacle_height == 0.6
-    assert scenario.vision.beacon_radius == 0.1
-    assert scenario.vision.beacon_height == 0.6
-    assert loads(dump(scenario)) == scenario
 
 
 def test_a_dump_with_a_missing_key_is_completed_for_its_robot(defaults):
