@@ -147,7 +147,7 @@ def walking_parameters(humanoid: LoadedRobot, scenario: Scenario) -> WalkingPara
         value = getattr(getattr(parameters, section), margin)
         if value >= half:
             raise ScenarioError(
-                f"constants.walking.{section}.{margin}: the sole has no support area left, "
+                f"walking.{section}.{margin}: the sole has no support area left, "
                 f"got {value:g}; expected less than half the width of the sole, {half:g}"
             )
     return parameters

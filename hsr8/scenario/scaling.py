@@ -77,17 +77,12 @@ def merged(base: Table, over: Table) -> Table:
 
 def scaled(tables: Mapping[str, Any], factor: Factor) -> Table:
     """Return the tables of a scenario for another robot."""
-    table: Table = _scaled(dict(tables), Scenario, factor)
-    if "constants" in table:
-        table["constants"] = _scaled(table["constants"], Scenario, factor)
+    table: Table = _scaled(tables, Scenario, factor)
     return table
 
 
 def with_scaled_defaults(tables: Mapping[str, Any], factor: Factor) -> Table:
-    """Return the tables of a scenario with the scaled default of every missing quantity.
-
-    Constants are expected in the tables of their libraries.
-    """
+    """Return the tables of a scenario with the scaled default of every missing quantity."""
     table = dict(tables)
     navigation = table.get("navigation", {})
     if isinstance(navigation, dict):

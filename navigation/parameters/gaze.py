@@ -1,6 +1,6 @@
 """Parameters of the gaze: partial evaluations, gaze map, votes, timing.
 
-Public keys of a scenario have bounds and a docstring; all other fields are constants.
+Public keys of a scenario have bounds and a docstring; all other fields are for studies.
 """
 
 from dataclasses import dataclass, field

@@ -235,7 +235,7 @@ def test_a_file_of_any_name_is_a_scenario(tmp_path, file, name):
     "rows",
     [
         [f"key{k} = {k}" for k in range(5000)],
-        ["[constants.walking]", *(f"key{k} = {k}" for k in range(5000))],
+        ["[walking.gait]", *(f"key{k} = {k}" for k in range(5000))],
         [f"[navigation.gaze.k{k}]" for k in range(5000)],
         ["text = '''", *["x"] * 50_000, "'''", *(f"key{k} = {k}" for k in range(100))],
     ],
@@ -296,7 +296,7 @@ def test_messages_have_printable_characters_alone(text, data):
                 {"camera": {text: {"x": 1}}},
                 {"robot": {"model": text}},
                 {"mission": {"kind": text}},
-                {"constants": {"vision": {text: text}}},
+                {"vision": {"split": {text: text}}},
                 {"vision": {"color_table": text}},
                 {"plugin": {"planner": text}},
                 {"extends": text},

@@ -86,7 +86,7 @@ def test_values_of_a_user_are_literal_and_others_scaled(defaults, tmp_path):
     file = tmp_path / "mine.toml"
     file.write_text(
         'extends = "corridor"\n[world]\nlane = [0.5, 0.6]\n[robot]\nmodel = "big"\n'
-        "[constants.navigation.mission]\nr_release = 0.11\n"
+        "[navigation.mission]\nr_release = 0.11\n"
     )
     scenario = load_scenario(
         str(file),
@@ -154,7 +154,7 @@ def test_the_camera_of_a_robot_takes_precedence_over_a_preset(monkeypatch):
 @pytest.mark.parametrize("name", ["course", "fig4b", "corridor", "push", "paper"])
 @pytest.mark.parametrize("more", [[], ["navigation.profile=paper", "world.scale=1.0"]])
 def test_a_dump_is_complete_and_never_scaled_again(defaults, monkeypatch, name, more):
-    scenario = load_scenario(name, [*BIG, *more, "constants.navigation.evaluation.omega_o=20.0"])
+    scenario = load_scenario(name, [*BIG, *more, "navigation.evaluation.omega_o=20.0"])
     text = dump(scenario)
     assert scenario.navigation.evaluation.omega_o == 20.0  # the default for HSR-VIII
     monkeypatch.undo()  # the robot is unknown here
