@@ -1,1 +1,1 @@
-"""Simulation: the closed loop of world and robot, the robot side, and what they return."""
+"""Simulation: the closed loop of world and robot, the robot side, ticks and events."""

@@ -75,7 +75,7 @@ def test_software_renderers_are_recognised():
 
 
 def test_a_window_without_a_display_is_one_error():
-    code = "from hsr8 import gl; gl.require_gl()"
+    code = "from hsr8.process import gl; gl.require_gl()"
     environment = {k: v for k, v in os.environ.items() if "DISPLAY" not in k}
     done = subprocess.run(
         [sys.executable, "-c", code],
