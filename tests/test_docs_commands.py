@@ -24,7 +24,7 @@ from hsr8.api import run
 from hsr8.cli.command_line import settings
 from hsr8.cli.main import COMMANDS, entry, parse
 from hsr8.errors import RenderingUnavailable, UsageError
-from hsr8.gl import require_gl
+from hsr8.process.gl import require_gl
 from hsr8.robots.file.description import read_description
 from hsr8.robots.file.locate import find_description, installed_model, robot_names
 
@@ -248,12 +248,12 @@ def stand_ins(monkeypatch, tmp_path, finished):
         shutil.copytree(finished, tmp_path / "runs" / name)
     shutil.copy(ROOT / "models" / "hsr8" / "hsr8.xml", tmp_path / "my_robot.xml")
     monkeypatch.setattr("hsr8.api.run", run_in_short)
-    monkeypatch.setattr("hsr8.evaluation.sweep.runs.require_gl", lambda: "none")
-    monkeypatch.setattr("hsr8.evaluation.sweep.runs.open_pool", lambda name, workers: Instant())
+    monkeypatch.setattr("hsr8.sweep.runs.require_gl", lambda: "none")
+    monkeypatch.setattr("hsr8.sweep.runs.open_pool", lambda name, workers: Instant())
     monkeypatch.setattr("hsr8.cli.recorded_run._write_video", lambda path, options: None)
-    monkeypatch.setattr("hsr8.render.viewer.has_display", lambda: True)
-    monkeypatch.setattr("hsr8.render.viewer.show", lambda logs: 0)
-    monkeypatch.setattr("hsr8.render.viewer.screenshot", lambda logs, time, size: b"PNG")
+    monkeypatch.setattr("hsr8.show.viewer.has_display", lambda: True)
+    monkeypatch.setattr("hsr8.show.viewer.show", lambda logs: 0)
+    monkeypatch.setattr("hsr8.show.viewer.screenshot", lambda logs, time, size: b"PNG")
     read, call = argparse.ArgumentParser.parse_args, tyro.cli
     subcommands = tyro.extras.subcommand_cli_from_dict
 
