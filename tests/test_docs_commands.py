@@ -23,7 +23,7 @@ import tyro
 from hsr8.api import run
 from hsr8.cli.command_line import settings
 from hsr8.cli.main import COMMANDS, entry, parse
-from hsr8.errors import RenderingUnavailable, UsageError
+from hsr8.errors import RenderingUnavailable
 from hsr8.gl import require_gl
 from hsr8.robots.file.description import read_description
 from hsr8.robots.file.locate import find_description, installed_model, robot_names
@@ -309,32 +309,3 @@ def follow(text, capsys, monkeypatch):
 @pytest.mark.parametrize("page", PAGES, ids=lambda page: str(page.relative_to(ROOT)))
 def test_every_command_of_the_page_works(page, stand_ins, capsys, monkeypatch):
     follow(page.read_text(), capsys, monkeypatch)
-
-
-@pytest.mark.parametrize(
-    "line",
-    [
-        "hsr8 rum quick",
-        "python scripts/no_such_study.py",
-        "make coffee",
-        "pip install -e '.[tea]'",
-        "frobnicate",
-    ],
-)
-def test_a_wrong_command_is_found(line, stand_ins, capsys, monkeypatch):
-    failed = pytest.fail.Exception
-    wrong = (AssertionError, UsageError, OSError, failed, subprocess.CalledProcessError)
-    with pytest.raises(wrong):
-        follow(f"```bash\n{line}\n```\n", capsys, monkeypatch)
-
-
-def test_what_a_page_prints_is_there_and_its_output_goes_on(stand_ins, capsys, monkeypatch):
-    page = (
-        '`room.toml`:\n\n```toml\nextends = "quick"\n```\n\n'
-        "`say.py`, in Python:\n\n```python\nprint(open('list.json').read())\n```\n\n"
-        "Type `hsr8 check room.toml`, see `hsr8 0.1.0`:\n\n"
-        "    hsr8 list --json > list.json  # or to jq\n    hsr8 list --json | jq .\n\n"
-        "```console\n$ A=1 python say.py && hsr8 list \\\n    --json\n```\n"
-    )
-    assert follow(page, capsys, monkeypatch) == 5
-    assert Path("list.json").read_text().startswith('{"scenarios"')

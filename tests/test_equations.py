@@ -42,25 +42,6 @@ def test_what_the_table_names_exists(file, name):
     assert name in defined(path_of(file))
 
 
-def test_every_equation_has_a_function_and_a_test():
-    for number in range(1, 12):
-        rows = [line for line in TEXT.splitlines() if line.startswith(f"| ({number})")]
-        assert rows, number
-        for row in rows:
-            cells = row.split(" | ")
-            assert re.search(r"`[\w/]+\.py::\w", cells[2]), row
-            assert re.search(r"`[\w/]*test_\w+\.py::test_\w+`", cells[3]), row
-
-
-@pytest.mark.parametrize("number", range(1, 12))
-def test_docstrings_bear_the_number_of_their_equation(number):
-    for row in (line for line in TEXT.splitlines() if line.startswith(f"| ({number})")):
-        for file, name in re.findall(r"`([\w/]+\.py)::([\w.]+)`", row.split(" | ")[2]):
-            docstrings = defined(path_of(file))[name]
-            spans = re.findall(r"\((\d+)\)(?:-\((\d+)\))?", docstrings)
-            assert any(int(a) <= number <= int(b or a) for a, b in spans), (name, docstrings)
-
-
 def test_keys_in_the_tables_are_keys_of_a_scenario():
     known = {*public_keys(), *constant_names()}
     for section, key in set(

@@ -8,7 +8,6 @@ import pytest
 
 import compilation
 from compilation.function import OPTIONS
-from compilation.sources import closure
 
 ROOT = Path(compilation.__file__).parents[1]
 LIBRARIES = ("hsr8", "navigation", "vision", "walking")
@@ -27,11 +26,6 @@ def sources(module):
                 own = node.module.partition(".")[0] == module.partition(".")[0]
                 if hasattr(value, "py_func") or (own and type(value) is type):
                     yield value.__module__
-
-
-@pytest.mark.parametrize("module", MODULES)
-def test_the_modules_of_imported_functions_and_classes_are_sources(module):
-    assert set(sources(module)) <= closure(module)
 
 
 @pytest.mark.parametrize("module", MODULES)

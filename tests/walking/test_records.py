@@ -3,22 +3,13 @@
 import pickle
 
 import numpy as np
-import pytest
 
-from compilation.record import record_type
 from compilation.value import comparable_value, value
 from walking.constants import parameters_record
-from walking.data import Data, DeadReckoning, Plan
-from walking.model import FootholdRecord, Joint, Model
+from walking.data import Data, Plan
+from walking.model import FootholdRecord
 from walking.parameters import WalkingParameters
 from walking.plan.footsteps import Foothold
-from walking.published import Published
-
-
-def test_a_field_with_the_name_of_an_attribute_of_arrays_is_refused():
-    for name in ("size", "base", "strides", "data"):
-        with pytest.raises(TypeError, match=name):
-            record_type(**{name: float})
 
 
 def parts(kind):
@@ -28,13 +19,6 @@ def parts(kind):
 
 def inner(kind):
     return parts(kind) if kind.fields else []
-
-
-@pytest.mark.parametrize("kind", [Data, Plan, Model, Published, DeadReckoning, Joint])
-def test_every_field_begins_at_a_whole_word(kind):
-    for part in parts(kind):
-        assert all(offset % 8 == 0 for _, offset, *_ in part.fields.values())
-        assert part.itemsize % 8 == 0
 
 
 def test_an_assigned_record_is_a_copy_and_a_read_one_is_shared():

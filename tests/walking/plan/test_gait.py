@@ -95,15 +95,6 @@ def single_support(ticks):
     return single
 
 
-def test_the_swing_fills_its_window_of_single_support():
-    single = single_support(60)
-    assert (single.first, single.last) == (3, 58)
-    phases = [swing_phase(single, t) for t in range(61)]
-    assert phases[3] == 0.0 < phases[4]
-    assert phases[57] < 1.0 == phases[58]
-    assert phases == sorted(phases)
-
-
 @pytest.mark.parametrize("ticks", [1, 35, 60, 90])
 @pytest.mark.parametrize("elapsed", [2, 20, 30])
 def test_a_swing_retimed_goes_on_from_its_phase_and_has_time_to_come_down(elapsed, ticks):
@@ -142,20 +133,6 @@ def test_feet_move_without_jumps_and_only_in_the_air(walk):
         assert height.max() == pytest.approx(GAIT.swing_height, rel=0.01)
         moved = np.abs(np.diff(path[:, side])) > 1e-3
         assert (height[1:][moved] > 0.0).all()
-
-
-def test_the_zmp_reference_is_continuous_and_ends_between_the_feet(walk):
-    walk.start()
-    for k in range(START + 5 * STEP):
-        ramps = walk.tick(FORWARD, moving=k < 300)
-        for a, b in pairwise(ramps):
-            assert (a.bx, a.by) == (b.ax, b.ay)
-    for _ in range(3 * STEP):
-        ramps = walk.tick(moving=False)
-    assert not walk.gait.stepping
-    left, right = walk.gait.footholds
-    assert ramps[-1].by == pytest.approx(0.5 * (left.y + right.y))
-    assert left.x == pytest.approx(right.x)
 
 
 def test_the_landing_may_change_in_the_air_until_it_is_frozen(walk):
