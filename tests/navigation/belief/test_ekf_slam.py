@@ -104,6 +104,22 @@ def test_a_landmark_is_correlated_with_the_pose_that_mapped_it(observe, frame, t
     assert np.linalg.det(slam.covariance) == pytest.approx(before, rel=0.05)
 
 
+def test_an_error_that_all_bearings_share_leaves_the_heading_uncertain(observe, frame, track):
+    """Eight landmarks seen again after an uncertain turn."""
+    here, variances = (0.0, 0.0, 0.0), []
+    posts = [observe(here, (x, y), label=label, sigma=SIGMA) for x, y, label in POSTS]
+    for shared in (0.0, SIGMA[1]):
+        slam = EkfSlam(BeliefParameters(), np.zeros(3))
+        first, again = frame(0.0, here, posts), frame(9.0, here, posts)
+        slam.update(first)
+        slam.map_landmarks(first, tracks(track, range(8)))
+        view = replace(again.view, model=replace(again.view.model, yaw_sigma=shared))
+        turned = np.diag([1e-6, 1e-6, 1e-2])
+        slam.update(replace(again, motion_covariance=turned, view=view))
+        variances.append(slam.covariance[2, 2])
+    assert variances[1] - variances[0] > 0.5 * SIGMA[1] ** 2
+
+
 def test_landmarks_that_move_are_deleted(observe, frame, track):
     slam, _ = last(tour(observe, frame, track, np.random.default_rng(2), 20.0))
     pose, covariance = slam.pose, slam.covariance

@@ -154,6 +154,14 @@ def test_a_detection_outside_the_gate_counts_once(last_time):
     assert track_of(objects, 10.0).covariance[2, 2] == pytest.approx(P.velocity_sigma**2)
 
 
+def test_two_equally_certain_radii_are_averaged():
+    d = np.zeros(1, DETECTION)[0]
+    d.position, d.covariance, d.radius, d.radius_sigma = (0.95, 2.0), SHARP, 0.10, 0.02
+    o = make(radius=0.08, radius_sigma=0.02)[0]
+    correct(o, d, 100.0, LIMITS[0])  # so late that the errors are independent
+    assert (o.radius, o.radius_sigma) == pytest.approx((0.09, 0.02 / np.sqrt(2.0)))
+
+
 @pytest.mark.parametrize(
     ("modes", "changes"),
     [
