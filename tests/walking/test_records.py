@@ -12,15 +12,6 @@ from walking.parameters import WalkingParameters
 from walking.plan.footsteps import Foothold
 
 
-def parts(kind):
-    """A record and all records in it."""
-    return [kind, *(part for field, *_ in kind.fields.values() for part in inner(field.base))]
-
-
-def inner(kind):
-    return parts(kind) if kind.fields else []
-
-
 def test_an_assigned_record_is_a_copy_and_a_read_one_is_shared():
     plans = np.zeros(2, Plan)
     plans[0].steps[0].x = 1.0
