@@ -50,7 +50,7 @@ class Mutation(Visitor):
 
 
 def _limited(factor):
-    """Return a hook of pytest that limits the CPU time of what it wraps."""
+    """Return a hook of pytest that limits the CPU time of a phase of a test."""
 
     @pytest.hookimpl(wrapper=True)
     def hook(self):
@@ -121,8 +121,8 @@ def main():
         tree = get_ast(module.read_text())
         for operator in filter(OPERATORS.fullmatch, operator_names()):
             (mutation := Mutation(operator)).walk(tree)
-            for number, place in enumerate(mutation.places):
-                places.setdefault((module, place), []).append((operator, number))
+            for number, position in enumerate(mutation.places):
+                places.setdefault((module, position), []).append((operator, number))
     files, draw, killed = sorted(options.tests.rglob("test_*.py")), random.Random(0), 0
     _, usable = forked(files, LIMIT)
     sample = sorted(draw.sample(sorted(places), min(options.mutants, len(places))))
