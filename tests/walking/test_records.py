@@ -1,7 +1,5 @@
 """Records and values: types of fields, copies, and parameters by name."""
 
-import pickle
-
 import numpy as np
 
 from compilation.value import comparable_value, value
@@ -9,7 +7,6 @@ from walking.constants import parameters_record
 from walking.data import Data, Plan
 from walking.model import FootholdRecord
 from walking.parameters import WalkingParameters
-from walking.plan.footsteps import Foothold
 
 
 def test_an_assigned_record_is_a_copy_and_a_read_one_is_shared():
@@ -51,8 +48,3 @@ def test_a_value_compares_by_identity_a_comparable_one_by_content():
     assert one == one != Pair(1.0)
     assert Numbers(1.0) == Numbers(1.0) != Numbers(2.0)
     assert repr(one) == "Pair(first=1.0, second=())"
-
-
-def test_a_value_survives_a_copy_to_another_process():
-    step = Foothold(left=True, x=0.1, y=0.2, yaw=0.3)
-    assert pickle.loads(pickle.dumps(step)) == step

@@ -65,17 +65,6 @@ def stage(view, observe):
     return Stage(view, observe)
 
 
-def test_far_away_no_track_begins_but_one_goes_on(stage):
-    far, near = P.birth_range + 0.3, P.birth_range - 0.2
-    stage.watch(0.6, (far, 0.0, 0.0, 0.0))
-    assert not stage.tracks
-    stage.watch(0.6, (near, 0.0, 0.0, 0.0))
-    (track,) = stage.watch(9.0, (near, 0.0, 0.06, 0.0))
-    assert track.position[0] == pytest.approx(near + 0.54, abs=0.05)
-    assert track.position[0] > P.birth_range
-    assert track.visible
-
-
 def test_single_false_detections_leave_no_track(stage):
     for k in range(300):
         a = 0.6 * np.sin(12.9 * k)

@@ -29,24 +29,6 @@ def test_max_deviation_is_that_of_the_eigenvalues_and_ignores_rotation():
     assert [max_deviation(q) for q in turn @ p @ turn.T] == pytest.approx(expected)
 
 
-def some(track):
-    cloud = ([[1.0, 0.0], [2.0, 0.0]], [[0.1, 0.0], [0.0, 0.2]], [0.5, 0.5])
-    lost = track((9.0, 9.0), (0.1, 0.0), id=4, age=2.0, particles=cloud, turn_rates=[0.1, 0.2])
-    return [
-        track((1.0, 0.5), (0.3, -0.4), id=2, sigma=0.02, radius=0.07, reach=0.3, turn_rate=0.2),
-        lost,
-        track((0.0, 2.0), motion=Motion.UNKNOWN, id=7, hits=3, age=0.5),
-    ]
-
-
-def test_tracks_move_at_constant_velocity(track):
-    before = Tracks.of(some(track))
-    after = before.moved(0.5)
-    assert after[0].position == pytest.approx([1.15, 0.3])
-    assert before[0].position == pytest.approx([1.0, 0.5])
-    assert after[2].position == pytest.approx(before[2].position)
-
-
 P = TrackingParameters()
 LIMITS = record(P)
 SHARP = 1e-4 * np.eye(2)

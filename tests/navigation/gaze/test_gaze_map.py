@@ -37,10 +37,6 @@ def test_the_map_is_the_sum_of_regions_in_any_order():
     assert 0.0 <= gm.min() <= gm.max() <= 1.0
 
 
-def test_a_map_of_zeros_keeps_the_gaze():
-    assert highest_centre(np.zeros((17, 37)), GRID, (0.33, -0.2)) == (0.33, -0.2)
-
-
 def test_the_largest_plateau_wins_then_the_nearest_then_the_smaller_pan():
     gm = np.zeros((17, 37))
     gm[4:9, 2:7] = 1.0

@@ -85,12 +85,3 @@ def test_a_body_turns_to_what_its_fixed_camera_must_see(gaze, belief, track):
     assert decision.tilt == -0.4
     assert 0.3 < decision.pan <= 1.0
     assert decision.body_direction == pytest.approx(decision.pan)
-
-
-def test_a_direction_of_the_body_stays_in_the_world_while_it_turns(gaze, belief, track):
-    choose = gaze(**FIXED_CAMERA)
-    side = track((0.3, 0.6), (-0.05, -0.1), sigma=0.08, age=1.0)
-    first = choose(belief([side]))
-    turned = choose(belief([side], pose=(0.0, 0.0, 0.2), time=0.06))
-    assert turned.body_direction == first.body_direction
-    assert turned.pan == pytest.approx(first.pan - 0.2)

@@ -148,10 +148,3 @@ def test_a_remembered_side_turns_a_whole_turn_the_other_way():
     for side, beta in ((1, 3.0), (-1, 3.0 - 2 * pi)):
         phi = move_to_goal(point, ORIGIN, wrap_array(np.array(pi + 3.0)), p, side=side)
         assert wrap_array(phi - pi + 0.5 * beta) == pytest.approx(0.0, abs=1e-9)
-
-
-def test_a_remembered_side_decides_only_beyond_the_destination():
-    before, beyond = np.array([-0.3, 0.01]), np.array([0.3, 0.01])
-    for point, differs in ((before, False), (beyond, True)):
-        left, right = (move_to_goal(point, ORIGIN, 0.0, DEFAULT, side=s) for s in (1, -1))
-        assert (left != pytest.approx(float(right))) == differs

@@ -47,14 +47,6 @@ def walk(field, starts, reach, length=6.0, step=0.01):
     return arrived, least
 
 
-def test_without_active_obstacles_only_the_goal_counts():
-    u = unit(0.7)
-    for ramp in ([], [0.0, 0.0]):
-        assert blended(0.7, np.zeros((len(ramp), 2)), ramp) == pytest.approx(u)
-    opposite = unit(np.array([np.pi / 2, -np.pi / 2]))
-    assert blended(0.7, opposite, [1.0, 1.0]) == pytest.approx(u)
-
-
 def test_obstacles_count_by_the_square_of_their_nearness():
     """Two at right angles, of nearness 0.8 and 0.4: the nearer one counts four times."""
     total = blended(1.0, unit(np.array([0.0, np.pi / 2])), [0.8, 0.4])

@@ -303,9 +303,3 @@ def test_a_plan_that_follows_the_body_keeps_body_and_dcm(model, pushed, off):
     assert pendulum.vy + error.vy == pytest.approx(0.6 * robot.omega * off[1])
     assert np.add(dcm, (error.dcm_x, error.dcm_y)) == pytest.approx(off)
     assert 0.0 < dcm[1] / off[1] < 1.0
-
-
-def test_a_plan_keeps_still_while_the_ankles_suffice(model, pushed):
-    pushed.error.x = pushed.error.dcm_x = 0.9 * STABILIZER.capture_dead_zone * 0.0425
-    follow_body(pushed, model.robot)
-    assert pushed.pendulum.x == pushed.pendulum.vx == 0.0

@@ -147,16 +147,6 @@ def test_the_landing_may_change_in_the_air_until_it_is_frozen(walk):
     assert foothold(walk.gait.footholds[1]) == frozen
 
 
-def test_early_contact_leaves_the_foot_where_it_is(walk):
-    walk.start().swing_to(0.7)
-    x, height = float(walk.feet[1].x), float(walk.feet[1].height)
-    touch_down(walk.gait, walk.feet, walk.model.robot)
-    while walk.gait.completed == 0:
-        walk.tick(FORWARD)
-    assert walk.gait.footholds[1].x == pytest.approx(x)
-    assert 0.0 < walk.feet[1].height < height
-
-
 def test_a_support_that_ends_at_an_early_contact_begins_the_next_footstep(walk):
     walk.start().swing_to(0.7)
     touch_down(walk.gait, walk.feet, walk.model.robot)
@@ -215,13 +205,6 @@ def test_single_support_stretched_or_cut_in_mid_swing_keeps_the_foot_smooth(walk
         heights.append(float(walk.feet[1].height))
     assert np.abs(np.diff(heights)).max() < 0.008
     assert heights[-1] == 0.0
-
-
-def test_a_frozen_landing_keeps_its_time(walk):
-    walk.start().swing_to(0.85, STILL)
-    left = phase_of(walk.gait).ticks_left
-    assert not walk.retime(14, 100)
-    assert phase_of(walk.gait).ticks_left == left
 
 
 def test_a_double_support_under_way_changes_its_length(walk):

@@ -16,7 +16,6 @@ from walking.plan.swing import (
     minimum_jerk,
     move_foot,
     moved,
-    rest_at,
 )
 
 
@@ -93,14 +92,6 @@ def test_the_height_of_a_retimed_swing_is_smooth_and_ends_at_rest(change):
     assert np.abs(np.diff(rows[:, 1])).max() < 3.0 * np.abs(usual).max()
     np.testing.assert_allclose(speeds[1:], 0.5 * (rows[1:, 1] + rows[:-1, 1]), atol=0.01)
     assert rows[-1] == pytest.approx((0.0, 0.0, 0.0), abs=1e-9)
-
-
-def test_a_foot_that_stands_rests_on_its_foothold_at_the_height_it_has():
-    foot = np.zeros(1, FootReference)[0]
-    foot.height, foot.rate, foot.acceleration = 1.0, (1.0, 1.0, 1.0), (1.0, 1.0, 1.0)
-    rest_at(foot, Foothold(False, 0.1, -0.04, -0.2))
-    assert (foot.x, foot.y, foot.yaw, foot.height) == (0.1, -0.04, -0.2, 1.0)
-    assert foot.rate.item() == foot.acceleration.item() == (0.0, 0.0, 0.0)
 
 
 def test_the_swing_time_respects_the_peak_speed():
