@@ -124,7 +124,7 @@ class Simulation:
         self._sensor_faults = SensorFaults(scenario.fault, names)
         self._servo_faults = ServoFaults(scenario.fault, names)
         self._camera = HeadCamera(
-            scenario, self.model, self.layout, camera_model(scenario), self.seed
+            scenario, self.model, self.layout, camera_model(scenario, self.layout.sizes), self.seed
         )
         self._interrupted = False
         self._open = False

@@ -40,6 +40,7 @@ from navigation.motion.landmark_obstacles import LandmarkObstacles
 from navigation.observation import CameraModel
 from vision.detector import Detector
 from vision.self_mask import BodyPart
+from vision.sizes import Sizes
 from walking.parameters import CONTROL_PERIOD, WalkingParameters
 from walking.walker import Walker
 
@@ -58,7 +59,7 @@ def field_of_view(scenario: Scenario) -> tuple[float, float]:
     return camera.horizontal_fov, camera.vertical_fov
 
 
-def camera_model(scenario: Scenario) -> CameraModel:
+def camera_model(scenario: Scenario, sizes: Sizes) -> CameraModel:
     """Return the constants of the robot's camera for navigation."""
     humanoid, camera = load_robot(scenario.robot.model), scenario.camera
     body = humanoid.model
@@ -67,7 +68,8 @@ def camera_model(scenario: Scenario) -> CameraModel:
         *field_of_view(scenario),
         scenario.vision.pose.yaw_sigma,
         inf if camera.panoramic else camera.blind_above,
-        scenario.vision.obstacle_height,
+        sizes.top,
+        0.5 * sizes.beacon_height,
         ground_shadow(humanoid.arms, height),
     )
 
@@ -97,12 +99,13 @@ def build_robot(
     schedule = build_schedule(scenario, named_rng(seed, "command"))
     return Robot(
         walking=build_walker(scenario, walker),
-        camera=camera_model(scenario),
+        camera=camera_model(scenario, layout.sizes),
         vision=Detector(
             scenario.camera.pinhole,
             scenario.vision,
             tuple(BodyPart(*arm) for arm in humanoid.arms),
             1e-3 * scenario.camera.shutter_ms,
+            layout.sizes,
         ),
         belief=build_estimator(scenario, layout, named_rng(seed, "belief")),
         decisions=build_decisions(
@@ -144,7 +147,7 @@ def walking_parameters(humanoid: LoadedRobot, scenario: Scenario) -> WalkingPara
         value = getattr(getattr(parameters, section), margin)
         if value >= half:
             raise ScenarioError(
-                f"constants.walking.{section}.{margin}: the sole has no support area left, "
+                f"walking.{section}.{margin}: the sole has no support area left, "
                 f"got {value:g}; expected less than half the width of the sole, {half:g}"
             )
     return parameters
@@ -221,7 +224,7 @@ def build_decisions(
         planner=motion,
         gaze=gaze_planner,
         landmarks=LandmarkObstacles(
-            beacons, scenario.vision.beacon_radius, scenario.navigation.landmarks
+            beacons, layout.sizes.beacon_radius, scenario.navigation.landmarks
         ),
         footstep=limits.footstep,
         parameters=navigation,

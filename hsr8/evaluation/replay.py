@@ -143,8 +143,10 @@ def _computed(run: Run) -> Iterator[RecordedFrame]:
     schedule = build_schedule(scenario, named_rng(run.seed, "command"))
     decisions = build_decisions(scenario, layout, run.seed, schedule, drive=_drive(run.commands))
     sampler = FrameSampler(layout.scale)
-    inputs = zip(_inputs(run.frames, camera_model(scenario)), run.frames["first_plan"], strict=True)
-    for index, ((detections, measured, context), first_plan) in enumerate(inputs):
+    inputs = _inputs(run.frames, camera_model(scenario, layout.sizes))
+    for index, ((detections, measured, context), first_plan) in enumerate(
+        zip(inputs, run.frames["first_plan"], strict=True)
+    ):
         try:
             estimate = estimator.update(measured)
         except ValueError:  # the frames are not in order

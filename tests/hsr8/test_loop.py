@@ -143,10 +143,8 @@ def test_a_contact_that_goes_on_is_one_event_and_a_later_one_another():
 def test_a_margin_is_below_half_the_width_of_the_sole_of_the_robot_that_walks(key, monkeypatch):
     robot = load_robot("hsr8")
     half = robot.model.sole.half_width
-    scenario = load_scenario("walk", [f"constants.walking.{key}={half}"])
-    with pytest.raises(
-        ScenarioError, match=f"constants.walking.{key}: .* less than half the width"
-    ):
+    scenario = load_scenario("walk", [f"walking.{key}={half}"])
+    with pytest.raises(ScenarioError, match=f"walking.{key}: .* less than half the width"):
         walking_parameters(robot, scenario)
     monkeypatch.setattr(robot.model, "sole", replace(robot.model.sole, half_width=1.1 * half))
     walking_parameters(robot, scenario)

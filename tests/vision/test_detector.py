@@ -12,6 +12,7 @@ from vision.detection import Detection
 from vision.detector import Detector
 from vision.errors import VisionError
 from vision.parameters import PoseParameters, VisionParameters
+from vision.sizes import Sizes
 
 DETECTOR = Detector(CAMERA, VisionParameters())
 
@@ -229,9 +230,12 @@ def test_other_images_are_refused(image: np.ndarray) -> None:
         DETECTOR.detect(image, pose())
 
 
-def test_radii_must_span_an_interval() -> None:
-    with pytest.raises(VisionError, match="min_radius"):
-        Detector(CAMERA, VisionParameters(min_radius=0.1, max_radius=0.1))
+def test_a_radius_that_is_known_is_not_estimated() -> None:
+    known = Detector(CAMERA, VisionParameters(), sizes=Sizes(obstacle_radius=(0.09, 0.09)))
+    image = paint([at(1.2, 0.0, "blue", 0.09)], pose(tilt=-0.3))
+    (detection,) = known.detect(image, pose(tilt=-0.3))
+    assert detection.radius == pytest.approx(0.09, abs=1e-3)
+    assert detection.radius_sigma <= VisionParameters().known_radius_sigma
 
 
 PAINTS = np.array([(0.0, 0.0, 0.0), *(c.rgb for c in COLOR_CLASSES.values())])

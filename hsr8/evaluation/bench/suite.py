@@ -181,9 +181,8 @@ def _free(key: str) -> bool:
 
 
 def _within(key: str, sections: Sequence[str]) -> bool:
-    """Return whether a key, also one of ``[constants]``, belongs to one of `sections`."""
-    key = f"{key.removeprefix('constants.')}."
-    return any(key.startswith(f"{section}.") for section in sections)
+    """Return whether a key belongs to one of `sections`."""
+    return any(f"{key}.".startswith(f"{section}.") for section in sections)
 
 
 def _sha256(value: Any) -> str:

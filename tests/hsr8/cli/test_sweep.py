@@ -168,11 +168,8 @@ def test_every_value_has_a_folder_and_a_line_of_the_page(instant, tmp_path, caps
 @pytest.mark.parametrize(
     "varied",
     [
-        [f"constants.navigation.gaze.risk.{k}=0.25,0.5" for k in ("path_weight", "static_weight")]
-        + [
-            f"constants.belief.tracking.{k}=1.25,1.5"
-            for k in ("process_noise", "forget_after_time")
-        ],
+        [f"navigation.gaze.risk.{k}=0.25,0.5" for k in ("path_weight", "static_weight")]
+        + [f"belief.tracking.{k}=1.25,1.5" for k in ("process_noise", "forget_after_time")],
         ["plugin.planner=a/p.py:P,a_p.py:P"],
     ],
 )

@@ -30,8 +30,9 @@ SIGMA = PoseParameters(0.005, 0.005, 0.005, 0.005)
 def test_near_obstacles_are_found_where_they_are_expected(world, silent):
     """Of near obstacles next to the robot, whose foot its arms may hide, some are missed."""
     scenario = load_scenario("walk", [])
-    robot, camera = load_robot("hsr8"), camera_model(scenario)
+    robot = load_robot("hsr8")
     layout, _ = world(Obstacle((1.0, 0.0), 0.065, 0.3, "red"), beacons=())
+    camera = camera_model(scenario, layout.sizes)
     model = build_model(scenario, layout)
     body = KinematicBody(model, robot, layout, silent, np.random.default_rng(0))
     parameters = replace(scenario.vision, pose=SIGMA)
