@@ -8,8 +8,6 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from hsr8.robots.loaded import load_robot
-from tests.hsr8.robots.robot_parts import SHIPPED
 from walking.body.kinematics import tree_pass
 from walking.body.robot_model import dynamic_model
 from walking.body.tree import LEFT_LEG, RIGHT_LEG
@@ -56,12 +54,6 @@ def assert_same_as_pinocchio(tree, seed):
         rotation = poses[joint, :9].reshape(3, 3)
         np.testing.assert_allclose(rotation, expected.rotation, rtol=0.0, atol=1e-12)
         np.testing.assert_allclose(poses[joint, 9:], expected.translation, rtol=0.0, atol=1e-12)
-
-
-@pytest.mark.parametrize("name", SHIPPED)
-def test_the_centre_of_mass_is_that_of_pinocchio(name):
-    for seed in range(20):
-        assert_same_as_pinocchio(load_robot(name).model.tree, seed)
 
 
 @given(st.integers(0, 10**6))
