@@ -11,7 +11,19 @@ from hsr8.robots.file.description import RobotDescription, read_description
 from hsr8.robots.file.files import models_dir
 from hsr8.robots.loaded import load_robot
 
-NAMES = "alexander apollo berkeley g1 gr3 hsr8 icub jvrc1 op3 t1 talos".split()
+NAMES = [
+    "alexander",
+    "apollo",
+    "berkeley",
+    "g1",
+    "gr3",
+    "hsr8",
+    "icub",
+    "jvrc1",
+    "op3",
+    "t1",
+    "talos",
+]
 MODEL = "some_robot/robot.xml"
 
 
