@@ -9,13 +9,13 @@ from numpy.typing import NDArray
 from compilation import compiled
 from vision.tables import (
     ANY,
-    CANDIDATE,
     FAR,
     FOOT,
     HEAD,
     LEFT,
     NEAR,
     RIGHT,
+    Candidate,
     Points,
     add_rim,
     copy_side,
@@ -33,10 +33,10 @@ MIN_SPAN = 1e-3  # added to the span of a side for its weight [1]
 def candidates_of(
     blobs: Rows, points: Points, beacon: Bools, camera_height: float, p: np.record
 ) -> Rows:
-    """Return the candidates of an image, obstacles first, records of type `CANDIDATE`.
+    """Return the candidates of an image, obstacles first, records of type `Candidate`.
 
     Args:
-        blobs: records of type `BLOB`.
+        blobs: records of type `Blob`.
         points: points of their rims.
         beacon: whether each colour class is one of beacons, by label.
         camera_height: above the floor [m].
@@ -47,7 +47,7 @@ def candidates_of(
         count += not beacon[blobs[i].label]
         for j in range(len(blobs)):
             count += i != j and _stacked(blobs[i], blobs[j], beacon)
-    candidates = np.zeros(count, CANDIDATE)
+    candidates = np.zeros(count, Candidate)
     count = 0
     for k in range(len(blobs)):
         if not beacon[blobs[k].label]:

@@ -130,7 +130,7 @@ def guess(candidate: np.record, h: float) -> tuple[float, float]:
     """Set the first cylinder of a candidate.
 
     Args:
-        candidate: record of type `CANDIDATE`.
+        candidate: record of type `Candidate`.
         h: height of the camera [unit].
 
     Returns:

@@ -270,9 +270,9 @@ def fit(candidates: Rows, points: Points, view: np.record, p: np.record) -> None
     """Set the least-squares cylinder of each candidate.
 
     Args:
-        candidates: records of type `CANDIDATE` with at least one rim or one trusted side.
+        candidates: records of type `Candidate` with at least one rim or one trusted side.
         points: points of their rims.
-        view: record of type `VIEW`.
+        view: record of type `View`.
         p: parameters.
     """
     n = len(points[0])

@@ -12,13 +12,13 @@ from compilation import compiled
 from vision.cylinder import MIN_CLEARANCE, MIN_DISTANCE
 from vision.envelope import MAX_CELLS, MIN_COLUMNS, Grid, add_envelopes, borders
 from vision.tables import (
-    CANDIDATE,
     FAR,
     FOOT,
     HEAD,
     LEFT,
     NEAR,
     RIGHT,
+    Candidate,
     Points,
     add_rim,
     count_next_to,
@@ -44,21 +44,21 @@ def split(
     """Segment merged blobs.
 
     Args:
-        candidates: records of type `CANDIDATE`.
+        candidates: records of type `Candidate`.
         merged: indices of those that are merged blobs (n,).
-        blobs: records of type `BLOB`, traced.
+        blobs: records of type `Blob`, traced.
         runs: runs of all blobs.
         padded: labels of the image with a border of `OUTSIDE` one pixel wide (h + 2, w + 2).
-        view: record of type `VIEW`.
+        view: record of type `View`.
         p: parameters.
 
     Returns:
-        Parts, records of type `CANDIDATE`; the points of their rims; the number of parts of each
+        Parts, records of type `Candidate`; the points of their rims; the number of parts of each
         blob (n,), 0 where the envelopes have no steps.
     """
     n = len(merged)
     size = 2 * MAX_CELLS * n
-    parts = np.empty(size // MIN_COLUMNS, CANDIDATE)
+    parts = np.empty(size // MIN_COLUMNS, Candidate)
     points = np.empty(size), np.empty(size), np.empty(size, np.uint8)
     counts = np.zeros(n, np.int64)
     count = used = 0
@@ -101,7 +101,7 @@ def _set_sides(
     """Set the sides of a part from the ends of its rim; return whether one of them is visible.
 
     Args:
-        part: record of type `CANDIDATE`, of which the points of the rim are set.
+        part: record of type `Candidate`, of which the points of the rim are set.
         rim: `FOOT` or `HEAD`.
         blob: blob of the part.
         first: first point of the envelope.
@@ -134,7 +134,7 @@ def _set_rim(
     """Set the rim of a part whose sides are set; return whether enough of it is visible.
 
     Args:
-        part: record of type `CANDIDATE`.
+        part: record of type `Candidate`.
         rim: `FOOT` or `HEAD`.
         first: first point of the envelope.
         grid: columns of the envelope.
