@@ -1,5 +1,7 @@
 """Tables of one image: blobs with their edges, and candidates of cylinders."""
 
+from math import sqrt
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -18,6 +20,7 @@ LEFT, RIGHT = range(2)  # sides
 FOOT, HEAD = range(2)  # rims of a blob
 NEAR, FAR = 1.0, -1.0  # half of the circle of a rim
 MAX_RIMS = 3  # a beacon shows three
+HALF_WIDTH = sqrt(3.0)  # of a uniform distribution [standard deviations]
 
 SIDE = record_type(
     azimuth=float,
@@ -76,6 +79,7 @@ CANDIDATE = record_type(
     rims=(RIM, MAX_RIMS),
     rim_count=int,
     height=float,
+    height_sigma=float,
     prior=(float, 2),
     cylinder=(float, 3),
     covariance=(float, 3, 3),
@@ -85,8 +89,9 @@ CANDIDATE = record_type(
 """Candidate of one cylinder, and its fit.
 
 Upper and lower blob, the same for an obstacle. Whether it is partly occluded, and whether it is
-reported. Left and right side; rims from low to high, and their number; height [unit]; known or
-typical radius and its standard deviation [unit]. Fit: azimuth of the axis from the heading of the
+reported. Left and right side; rims from low to high, and their number; maximum height and standard
+deviation of its uniform prior, 0 if it is known [unit]; known or typical radius and its standard
+deviation [unit]. Fit: azimuth of the axis from the heading of the
 camera [rad], horizontal distance from the camera to the axis [m] and radius [m]; their covariance;
 sum of squared normalized residuals of the edges [1]; fraction of outliers among the points of the
 rims [1]."""
@@ -104,8 +109,15 @@ def copy_side(side: np.record, other: np.record) -> None:
 def set_obstacle(candidate: np.record, p: np.record) -> None:
     """Set height and typical radius of a candidate without rims to those of an obstacle."""
     candidate.height = p.obstacle_height / p.unit
+    candidate.height_sigma = p.height_sigma / p.unit
     candidate.prior[0], candidate.prior[1] = p.radius / p.unit, p.radius_sigma / p.unit
     candidate.rim_count = 0
+
+
+@compiled
+def mean_height(candidate: np.record) -> float:
+    """Return the mean of the prior of a candidate's height [unit]."""
+    return float(candidate.height - HALF_WIDTH * candidate.height_sigma)
 
 
 @compiled

@@ -142,7 +142,7 @@ def sizes_of(world: World) -> Sizes:
         radii.append(world.circle.radius)
     low, high = SIZES.obstacle_height
     return Sizes(
-        obstacle_height=(low * world.scale, high * world.scale),
+        obstacle_height=world.height or (low * world.scale, high * world.scale),
         obstacle_radius=(min(radii), max(radii)),
         beacon_height=SIZES.beacon_height * world.scale,
         beacon_radius=SIZES.beacon_radius * world.scale,
