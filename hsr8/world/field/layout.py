@@ -149,6 +149,14 @@ def sizes_of(world: World) -> Sizes:
     )
 
 
+def beacons_of(world: World, sizes: Sizes) -> tuple[Beacon, ...]:
+    """Return the beacons of a world."""
+    if not world.beacons:
+        return ()
+    beacons = standard_beacons(world.size, sizes, world.scale)
+    return with_first_moved(beacons, world.beacon_displacement, world.size)
+
+
 def standard_beacons(
     field_size: Point, sizes: Sizes = SIZES, scale: float = 1.0
 ) -> tuple[Beacon, ...]:

@@ -5,8 +5,8 @@ from dataclasses import replace
 import pytest
 
 from hsr8.errors import ScenarioError
-from hsr8.robot_builder import camera_model
 from hsr8.scenario.loader import load_scenario
+from hsr8.simulation.robot_builder import camera_model
 from hsr8.world.field.generator import draw_layout
 
 HEIGHT = "world.height=[0.09, 0.27]"
