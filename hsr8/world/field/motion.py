@@ -178,8 +178,8 @@ class Movers:
         away: float = AWAY,
     ) -> None:
         self.motions = motions
-        circles = {k: law for k, law in enumerate(motions) if isinstance(law, Circle)}
-        paths = {k: law.path for k, law in enumerate(motions) if not isinstance(law, Circle)}
+        circles = {k: m for k, m in enumerate(motions) if isinstance(m, Circle)}
+        paths = {k: m.path for k, m in enumerate(motions) if not isinstance(m, Circle)}
         self._kinds: list[tuple[list[int], Paths | _Circles]] = []
         if circles:
             self._kinds.append((list(circles), _Circles(list(circles.values()))))
