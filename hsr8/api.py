@@ -7,15 +7,15 @@ from typing import SupportsIndex
 
 import tomlkit
 
+from hsr8.driver import run_scenario
 from hsr8.errors import UsageError
-from hsr8.evaluation.recording import run_scenario
 from hsr8.files.shell import shell_line
 from hsr8.files.writing import require_temporary
-from hsr8.plugin_decisions import GazePlugin, PlannerPlugin
-from hsr8.plugin_walker import CustomWalker
-from hsr8.recorder.run.manifest import CALL
-from hsr8.recorder.run.run import Run
-from hsr8.recorder.run.run_folder import SCENARIO, new_run_folder
+from hsr8.plugins.decisions import GazePlugin, PlannerPlugin
+from hsr8.plugins.walker import CustomWalker
+from hsr8.recording.manifest import CALL
+from hsr8.recording.run import Run
+from hsr8.recording.run_folder import SCENARIO, new_run_folder
 from hsr8.scenario.layers import Given, settings_of
 from hsr8.scenario.loader import load_scenario
 from hsr8.scenario.schema import Scenario
@@ -72,7 +72,7 @@ def run(
         command = call or (shell_line(words),)
         made = run_scenario(loaded, path, command, planner=planner, gaze=gaze, walker=walker)
         if log:
-            from hsr8.rerun_log.run_log import write_log  # noqa: PLC0415  takes 0.2 s
+            from hsr8.show.log.run_log import write_log  # noqa: PLC0415  takes 0.2 s
 
             write_log(made)
     if made.exit_reason == "interrupted":

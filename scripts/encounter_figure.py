@@ -3,8 +3,8 @@
 from dataclasses import dataclass
 from math import atan2, cos, hypot, inf, isfinite, sin
 
-from hsr8.decisions import FrameRecord
-from hsr8.render.walk_panels import INK
+from hsr8.show.walk_panels import INK
+from hsr8.simulation.decisions import FrameRecord
 from navigation.motion.collision_band import Encounter, free_intervals
 
 import numpy as np

@@ -21,8 +21,8 @@ from concurrent.futures import ProcessPoolExecutor
 from dataclasses import dataclass
 from pathlib import Path
 
-from hsr8.loop import Simulation
 from hsr8.scenario.loader import load_scenario
+from hsr8.simulation.loop import Simulation
 
 import numpy as np
 from study import STAND_INS

@@ -6,10 +6,10 @@ from math import atan2
 import numpy as np
 import pytest
 
-from hsr8.robot_builder import build_model, camera_model
 from hsr8.robots.loaded import load_robot
 from hsr8.robots.model.normal_form import HEAD_CAMERA
 from hsr8.scenario.loader import load_scenario
+from hsr8.simulation.robot_builder import build_model, camera_model
 from hsr8.world.body.kinematic import KinematicBody
 from hsr8.world.camera.analytic import project
 from hsr8.world.camera.rendered import RenderedCamera
