@@ -81,11 +81,10 @@ def test_a_change_that_is_too_late_is_made_in_part_and_stays_feasible(
     slow, fast = strides_of((0.1, 0.0, 0.0)), strides_of(FAST)
     admission.on_reference(slow)
     admission.admit(slow)
-    right = float(slow.right.y)
+    right, timing = float(slow.right.y), admission.gait.clock.timing.item()
     fraction = admission.admit(fast)
     assert 0.0 < fraction < 1.0
-    timing = admission.gait.clock.timing
-    assert admission.walk.admission.between.item() == timing.item()  # of both plans
+    assert admission.gait.clock.timing.item() == timing  # that of both plans
     moved = right + fraction * (float(fast.right.y) - right)
     assert admission.live.following.right.y == pytest.approx(moved)
     assert admission.feasible()
