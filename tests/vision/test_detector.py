@@ -187,6 +187,17 @@ def test_an_error_of_the_tilt_is_within_its_uncertainty() -> None:
         assert_located(detection, obstacle, sigmas=3.0)
 
 
+def test_a_detection_is_as_certain_as_required() -> None:
+    view, limit, counts = pose(tilt=-0.25), 0.003, set()
+    image = paint([at(0.9, 8.0, "red")], view)
+    for sigma in (0.0, 0.02):
+        parameters = replace(uncertain(sigma), max_relative_sigma=limit)
+        detections = Detector(CAMERA, parameters).detect(image, view)
+        assert all(d.covariance[0, 0] <= (limit * d.distance) ** 2 for d in detections)
+        counts.add(len(detections))
+    assert counts == {0, 1}
+
+
 @pytest.mark.parametrize("unknown", [{"tilt_sigma": 1e7}, {"height_sigma": 1e8}])
 def test_an_infinite_uncertainty_gives_no_detection(unknown) -> None:
     view = pose(tilt=-0.1)
