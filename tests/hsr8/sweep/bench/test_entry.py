@@ -1,12 +1,13 @@
 import json
 import re
+from dataclasses import replace
 
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
 from hsr8.errors import UsageError
-from hsr8.sweep.bench.entry import Entry, entry_page, read_entry
+from hsr8.sweep.bench.entry import REFERENCE, Entry, entry_page, read_entry
 
 OUTCOMES = st.lists(
     st.sampled_from(["success", "timeout", "collision", "fall", "crashed", "refused"])
@@ -113,6 +114,17 @@ def test_the_page_of_an_entry_has_a_line_per_family(make_entry):
     assert row_of("all", lines)[1] == "6"
     assert "All settings are those of the standard." in lines
     assert "    hsr8 bench --quick --name default" in lines
+
+
+def test_the_default_is_shown_on_the_same_worlds(make_entry):
+    default = read_entry(REFERENCE)
+    few = {family: [runs[0], runs[2]] for family, runs in default.runs.items()}
+    lines = entry_page(replace(default, runs=few)).splitlines()
+    for name in (*few, "all"):
+        assert row_of(f"{name},", lines)[1:] == row_of(name, lines)[1:]
+    unknown = {family: [run | {"seed": 5}] for family, (run, *_) in default.runs.items()}
+    for other in (make_entry(), replace(default, runs=unknown)):
+        assert ", default |" not in entry_page(other)
 
 
 def test_settings_of_an_entry_are_listed(make_entry):
