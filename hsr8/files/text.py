@@ -1,7 +1,8 @@
-"""Text files in UTF-8, TOML and the lines of its keys."""
+"""Text: files in UTF-8, TOML with the lines of its keys, words and lines for a shell."""
 
 import errno
 import os
+import shlex
 import tomllib
 from collections.abc import Iterable, Iterator
 from pathlib import Path
@@ -75,9 +76,9 @@ def lines_of(text: str, paths: Iterable[KeyPath]) -> dict[KeyPath, int]:
         begins.setdefault(path, line)
     lines = {}
     for path in paths:
-        around = (begins.get(path[:k]) for k in range(len(path), 0, -1))
-        if line := next(filter(None, around), None):
-            lines[path] = line
+        around = [path[:k] for k in range(len(path), 0, -1) if path[:k] in begins]
+        if around:
+            lines[path] = begins[around[0]]
     return lines
 
 
@@ -123,3 +124,17 @@ def _paths(value: Any, path: KeyPath) -> Iterator[KeyPath]:
     for key, inner in pairs:
         yield (*path, key)
         yield from _paths(inner, (*path, key))
+
+
+def shell_word(word: str) -> str:
+    """Return a word as a shell reads it: quoted, or as ``$'...'`` with escaped bytes."""
+    if word.isprintable():
+        return shlex.quote(word)
+    plain = bytes(b for b in range(32, 127) if b not in b"\\'")
+    escaped = (chr(b) if b in plain else f"\\x{b:02x}" for b in os.fsencode(word))
+    return f"$'{''.join(escaped)}'"
+
+
+def shell_line(words: Iterable[object]) -> str:
+    """Return a command line."""
+    return " ".join(shell_word(str(word)) for word in words)

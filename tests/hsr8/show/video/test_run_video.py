@@ -8,7 +8,7 @@ import pytest
 from hsr8.cli.main import entry
 from hsr8.errors import UsageError
 from hsr8.recording import run_folder
-from hsr8.recording.run_reader import open_run
+from hsr8.recording.run import open_run
 from hsr8.show.video.run_images import shown_frames
 from hsr8.show.video.run_video import VideoOptions, instants, render_run
 
