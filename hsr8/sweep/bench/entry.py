@@ -153,22 +153,24 @@ def read_entry(path: Path) -> Entry:
 
 
 def reference_for(entry: Entry) -> Entry | None:
-    """Return the shipped entry of the default on the worlds of `entry`.
+    """Return the shipped entry of the default on the worlds of `entry`, in families that it has.
 
-    None if it is of another suite or lacks one of these worlds, which have the same certified time.
+    None if it is of another suite or has no family with all worlds of `entry`. Equal worlds have
+    the same certified time.
     """
     reference = read_entry(REFERENCE)
     if (reference.suite, reference.suite_version) != (entry.suite, entry.suite_version):
         return None
-    known = {(family, run["seed"]): run for family, runs in reference.runs.items() for run in runs}
-    runs: dict[str, list[RunResult]] = {}
+    runs = {}
     for family, theirs in entry.runs.items():
-        runs[family] = [known.get((family, run["seed"]), {}) for run in theirs]
-        for one, default in zip(theirs, runs[family], strict=True):
-            time = one["certified_time_s"]  # None of a crashed run
-            if not default or (time is not None and time != default["certified_time_s"]):
-                return None
-    return replace(reference, runs=runs)
+        known = {run["seed"]: run for run in reference.runs.get(family, ())}
+        defaults = [known[run["seed"]] for run in theirs if run["seed"] in known]
+        times = [[run["certified_time_s"] for run in part] for part in (theirs, defaults)]
+        if len(defaults) == len(theirs) and all(
+            None in pair or pair[0] == pair[1] for pair in zip(*times, strict=True)
+        ):
+            runs[family] = defaults
+    return replace(reference, runs=runs) if runs else None
 
 
 def row(result: RunResult) -> RunResult:
@@ -193,6 +195,8 @@ def entry_page(entry: Entry) -> str:
     head = ("family", "runs", "success", "95 % interval", *SCORES)
     reference = reference_for(entry)
     defaults = {} if reference is None else reference.scores()
+    if len(defaults) <= len(entry.runs):  # a family is missing in the sum
+        defaults.pop(ALL, None)
     rows = []
     for name, part in entry.scores().items():
         rows.append((name, *_cells(part)))

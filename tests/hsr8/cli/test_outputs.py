@@ -23,10 +23,8 @@ FAST = ("--body", "kinematic", "--camera", "analytic")
 
 
 @pytest.fixture
-def run(tmp_path):
-    words = ["run", "quick", "--duration", "0.5", "--quiet", *FAST, "--out", str(tmp_path / "runs")]
-    entry(words)
-    return open_run(tmp_path / "runs" / "quick")
+def run(quick_run):
+    return quick_run
 
 
 @pytest.mark.parametrize(

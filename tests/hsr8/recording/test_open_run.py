@@ -12,11 +12,8 @@ COMMANDS = [["info"], ["diff", "SAME"], ["verify"]]
 
 
 @pytest.fixture(scope="module")
-def recorded(tmp_path_factory):
-    out = tmp_path_factory.mktemp("runs")
-    words = ["run", "quick", "--body", "kinematic", "--camera", "analytic", "--duration", "1"]
-    entry([*words, "--quiet", "--out", str(out)])
-    return open_run(out).path
+def recorded(quick_runs):
+    return open_run(quick_runs).path
 
 
 def output(command, run, capsys):

@@ -55,12 +55,9 @@ def test_a_run_without_records_is_a_usage_error():
         instants(np.zeros(0), VideoOptions())
 
 
-@pytest.fixture(scope="module")
-def run(tmp_path_factory):
-    out = tmp_path_factory.mktemp("runs")
-    options = ["--body", "kinematic", "--camera", "analytic", "--duration", "1"]
-    entry(["run", "quick", *options, "--quiet", "--out", str(out)])
-    return open_run(out)
+@pytest.fixture
+def run(quick_run):
+    return quick_run
 
 
 @pytest.mark.gl
