@@ -225,6 +225,7 @@ class Placing:
     applied: Twist  # velocity that the footsteps follow
     moved_x: float  # shift of the landing by a capture step [m]
     moved_y: float  # [m]
+    shift: Planar  # of the present landing against the plan [m]
 
 
 # Body

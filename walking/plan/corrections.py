@@ -7,7 +7,7 @@ one foot and closes it with the other one; only the mean over both is the comman
 from math import exp
 
 from compilation import compiled
-from walking.data import Corrections, Pose
+from walking.data import Corrections, Planar, Pose
 from walking.model import Model
 from walking.parameters import CONTROL_PERIOD
 from walking.plane import Point, Vector, clamp, rotate_back, within
@@ -30,6 +30,20 @@ def cycle_begins(corrections: Corrections, support: int) -> bool:
     begins: bool = support == corrections.first and support != corrections.support
     corrections.support = support
     return begins
+
+
+@compiled
+def landed_shift(corrections: Corrections, shift: Planar, support: int) -> Point:
+    """Return the shift of a foot that landed in this tick [m], zero in other ticks.
+
+    Args:
+        corrections: of the last tick.
+        shift: shift of the last landing by balance [m].
+        support: present support foot.
+    """
+    if corrections.support in (NO_FOOT, support):
+        return 0.0, 0.0
+    return shift.x, shift.y
 
 
 @compiled
@@ -79,6 +93,7 @@ def speed_correction(
     corrections: Corrections,
     pose: Vector,
     planned: Vector,
+    shift: Point,
     begins: bool,
     disturbed: bool,
     robot: Model,
@@ -86,7 +101,9 @@ def speed_correction(
     """Return the correction of (vx, vy) [m/s, m/s] against slip and short landings of the feet.
 
     Mean of the planned minus the measured velocity, updated once per gait cycle. Planned footsteps
-    follow any change of the command, so it does not show as slip. Displacements are summed in the
+    follow any change of the command, so it does not show as slip. The plan follows the landings,
+    too: their shifts by balance do not count as planned, so small ones in every cycle, of a robot
+    with compliant joints, do not change the mean velocity. Displacements are summed in the
     present heading: a robot turns in one of two footsteps, so its heading at the begin of a cycle
     differs from the mean.
 
@@ -95,6 +112,7 @@ def speed_correction(
         pose: pose by odometry, heading unwrapped [m, m, rad].
         planned: centre of mass and heading in the plan frame [m, m, rad]; a robot that turns on the
             spot turns about it.
+        shift: shift of a foot that landed in this tick by balance [m].
         begins: whether a gait cycle begins.
         disturbed: whether balance changes the footsteps.
         robot: constants.
@@ -103,7 +121,9 @@ def speed_correction(
     if c.posed:
         planned_x, planned_y = _displacement(c.planned, planned)
         x, y = _displacement(c.pose, pose)
-        c.slip.x, c.slip.y = c.slip.x + planned_x - x, c.slip.y + planned_y - y
+        shift_x, shift_y = rotate_back(planned[2], *shift)
+        c.slip.x += planned_x - shift_x - x
+        c.slip.y += planned_y - shift_y - y
         c.ticks += 1
     c.posed = True
     c.pose.x, c.pose.y, c.pose.yaw = pose
@@ -151,6 +171,8 @@ def correct_offset(
         robot: constants.
     """
     c, p = corrections, robot.stabilizer
+    if disturbed:
+        c.errors = DISCARDED
     if begins:
         if c.errors > 0:
             x = c.goal.x - p.com_offset_gain * c.error_sum.x / c.errors
@@ -158,9 +180,7 @@ def correct_offset(
             c.goal.x, c.goal.y = clamp(x, p.max_com_offset), clamp(y, p.max_com_offset)
         c.error_sum.x = c.error_sum.y = 0.0
         c.errors = 0
-    if disturbed:
-        c.errors = DISCARDED
-    elif c.errors >= 0 and pressed:
+    if c.errors >= 0 and pressed:
         x, y = error
         c.error_sum.x, c.error_sum.y = c.error_sum.x + x, c.error_sum.y + y
         c.errors += 1
