@@ -13,7 +13,6 @@ or a `GazeDecision`, see `docs/python.md`; `docs/data.md` describes the tables o
 from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
-from hsr8 import arithmetic as arithmetic  # sets the environment, before NumPy is imported
 from hsr8.errors import (
     Hsr8Error,
     ModelError,
@@ -23,15 +22,16 @@ from hsr8.errors import (
     SimulationDiverged,
     UsageError,
 )
-from hsr8.gl import choose_backend
+from hsr8.process import arithmetic as arithmetic  # sets the environment, before NumPy is imported
+from hsr8.process.gl import choose_backend
 from hsr8.version import VERSION
 
 if TYPE_CHECKING:
     from hsr8.api import run
-    from hsr8.loop import Simulation
-    from hsr8.recorder.run.run import Run
-    from hsr8.recorder.run.run_reader import open_run, runs
+    from hsr8.recording.run import Run
+    from hsr8.recording.run_reader import open_run, runs
     from hsr8.scenario.loader import load_scenario
+    from hsr8.simulation.loop import Simulation
     from navigation.belief.belief import Belief
     from navigation.decision import GazeDecision, MotionDecision
 
@@ -60,12 +60,12 @@ _PLACES = {
     "Belief": "navigation.belief.belief",
     "GazeDecision": "navigation.decision",
     "MotionDecision": "navigation.decision",
-    "Run": "hsr8.recorder.run.run",
-    "Simulation": "hsr8.loop",
+    "Run": "hsr8.recording.run",
+    "Simulation": "hsr8.simulation.loop",
     "load_scenario": "hsr8.scenario.loader",
-    "open_run": "hsr8.recorder.run.run_reader",
+    "open_run": "hsr8.recording.run_reader",
     "run": "hsr8.api",
-    "runs": "hsr8.recorder.run.run_reader",
+    "runs": "hsr8.recording.run_reader",
 }
 
 choose_backend()

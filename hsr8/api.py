@@ -1,20 +1,22 @@
 """Runs from Python, with an optional custom planner, gaze controller or walker."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from contextlib import ExitStack
 from pathlib import Path
-from typing import Any, SupportsIndex
+from typing import SupportsIndex
 
+import tomlkit
+
+from hsr8.driver import run_scenario
 from hsr8.errors import UsageError
-from hsr8.evaluation.recording import run_scenario
 from hsr8.files.shell import shell_line
 from hsr8.files.writing import require_temporary
-from hsr8.plugin_decisions import GazePlugin, PlannerPlugin
-from hsr8.plugin_walker import CustomWalker
-from hsr8.recorder.run.manifest import CALL
-from hsr8.recorder.run.run import Run
-from hsr8.recorder.run.run_folder import SCENARIO, new_run_folder
-from hsr8.scenario.layers import as_words
+from hsr8.plugins.decisions import GazePlugin, PlannerPlugin
+from hsr8.plugins.walker import CustomWalker
+from hsr8.recording.manifest import CALL
+from hsr8.recording.run import Run
+from hsr8.recording.run_folder import SCENARIO, new_run_folder
+from hsr8.scenario.layers import Given, settings_of
 from hsr8.scenario.loader import load_scenario
 from hsr8.scenario.schema import Scenario
 
@@ -23,7 +25,7 @@ def run(
     scenario: str | Path | Scenario,
     *,
     seed: SupportsIndex | None = None,
-    settings: Sequence[str] | Mapping[str, Any] = (),
+    settings: Given = (),
     out: str | Path | None = None,
     log: bool = False,
     planner: PlannerPlugin | None = None,
@@ -65,17 +67,27 @@ def run(
             path = stack.enter_context(new_run_folder(Path(out), loaded.name, loaded.seed))
         source = path and path / SCENARIO if isinstance(scenario, Scenario) else scenario
         words = ["hsr8", "run", str(source), "--seed", str(loaded.seed)]
-        words += ["--set", *as_words(settings)] if settings else []
+        words += ["--set", *_words(settings)] if settings else []
         call = _call({"planner": planner, "gaze": gaze, "walker": walker})
         command = call or (shell_line(words),)
         made = run_scenario(loaded, path, command, planner=planner, gaze=gaze, walker=walker)
         if log:
-            from hsr8.rerun_log.run_log import write_log  # noqa: PLC0415  takes 0.2 s
+            from hsr8.show.log.run_log import write_log  # noqa: PLC0415  takes 0.2 s
 
             write_log(made)
     if made.exit_reason == "interrupted":
         raise KeyboardInterrupt  # also ends a loop over runs
     return made
+
+
+def _words(settings: Given) -> list[str]:
+    """Return settings as ``key=value``."""
+    if isinstance(settings, str):
+        return [settings]
+    if not isinstance(settings, Mapping):
+        return list(settings)
+    pairs = [(".".join(s.key), tomlkit.item([s.value])) for s in settings_of(settings)]
+    return [f"{key}={value.as_string()[1:-1]}" for key, value in pairs]
 
 
 def _call(plugins: Mapping[str, object]) -> tuple[str, ...]:

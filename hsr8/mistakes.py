@@ -121,11 +121,11 @@ def form(value: object) -> str:
     return NAME if isinstance(value, str) else type(value).__name__
 
 
-def known_keys(kind: Any) -> list[str]:
-    """Return the keys that a table of a file may have."""
+def listed_keys(kind: Any) -> list[str]:
+    """Return the keys of a table of a file that messages list: those with a text."""
     if isinstance(kind, type) and issubclass(kind, BaseModel):
         return list(kind.model_fields)
-    return list(texts(kind))  # all others are constants
+    return list(texts(kind))
 
 
 def _text(details: ErrorDetails, path: Path, kind: Any, data: Any, more_keys: Iterable[str]) -> str:
@@ -194,17 +194,17 @@ def _tags(annotation: Any, tag: str) -> list[str]:
 def _unknown(path: Path, kind: Any, data: Any, more_keys: Iterable[str]) -> str:
     """Text about an unknown key: where it belongs, or a similar one, and the known ones."""
     key, table = str(path[-1]), _table(path, kind, data)
-    known = [*known_keys(table), *(more_keys if len(path) == 1 else ())]
-    hint = _misplaced(path, kind) or suggestion(key, known)
+    listed = [*listed_keys(table), *(more_keys if len(path) == 1 else ())]
+    hint = _misplaced(path, kind) or suggestion(key, [*listed, *hints(table)])
     if not hint and (elsewhere := _elsewhere(key, kind)):
         hint = f"; did you mean '{dotted(elsewhere)}'?"
-    return f"unknown key{hint}; expected one of {', '.join(known)}"
+    return f"unknown key{hint}; expected one of {', '.join(listed)}"
 
 
 def _misplaced(path: Path, kind: Any) -> str:
     """Remedy for a key of the uppermost table that is within another one; empty for other keys."""
     key = str(path[-1])
-    if len(path) == 1 or key not in known_keys(kind) or hints(chosen(hints(kind)[key])[0]):
+    if len(path) == 1 or key not in hints(kind) or hints(chosen(hints(kind)[key])[0]):
         return ""
     return f"; {key!r} is a key of the whole file: move it above the first [table]"
 
@@ -213,10 +213,10 @@ def _elsewhere(key: str, kind: Any) -> Path:
     """Uppermost path of a key with this name; empty without one."""
     tables: list[tuple[Path, Any]] = [((), kind)]
     for path, table in tables:  # grows during the search
-        if key in known_keys(table):
+        if key in hints(table):
             return (*path, key)
-        for name in known_keys(table):
-            inner, _ = chosen(hints(table)[name])
+        for name, hint in hints(table).items():
+            inner, _ = chosen(hint)
             if hints(inner):
                 tables.append(((*path, name), inner))
     return ()

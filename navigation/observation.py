@@ -88,6 +88,7 @@ class CameraModel:
             this error; their covariances include it.
         blind_above: rate of the camera above which its images show nothing [rad/s].
         top: height of the obstacles, whose tops are seen from above; 0: only the foot counts [m].
+        seam: height at which the two colours of a beacon meet [m].
         shadow: distance from the camera up to which the robot's own body hides the floor, in equal
             steps of the bearing in R, from 0 to the left (n,) [m].
     """
@@ -97,6 +98,7 @@ class CameraModel:
     yaw_sigma: float = 0.0
     blind_above: float = inf
     top: float = 0.0
+    seam: float = 0.30
     shadow: Array = field(default_factory=partial(np.zeros, 1))
 
 

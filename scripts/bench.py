@@ -20,8 +20,8 @@ from statistics import median
 
 from hsr8.cli.main import COLLECT_AFTER
 from hsr8.files import atomic
-from hsr8.loop import Simulation
 from hsr8.scenario.loader import load_scenario
+from hsr8.simulation.loop import Simulation
 
 from loop_bench import Bench
 

@@ -14,10 +14,10 @@ from functools import cached_property
 from pathlib import Path
 from typing import Any
 
-from hsr8.evaluation.sweep.folder import SweepFolder
-from hsr8.evaluation.sweep.seeds import parse_seeds
 from hsr8.robots.file.description import read_description
 from hsr8.robots.file.locate import find_description, installed_model
+from hsr8.sweep.folder import SweepFolder
+from hsr8.sweep.seeds import parse_seeds
 
 DEFINITION = Path(__file__).with_suffix("").with_name("benchmarks.toml")
 NOTHING_RAN, LOST, INTERRUPTED = 2, 3, 130  # exit codes of a sweep

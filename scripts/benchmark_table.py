@@ -5,7 +5,7 @@ from math import hypot
 from statistics import median
 from typing import Any
 
-from hsr8.evaluation.statistics import Proportion, compare_successes, spl
+from hsr8.measure.statistics import Proportion, compare_successes, spl
 
 Run = dict[str, Any]
 NUMBERS = (

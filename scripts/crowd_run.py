@@ -6,9 +6,9 @@ from dataclasses import dataclass
 from functools import cache
 from unittest.mock import patch
 
-from hsr8.loop import Simulation
-from hsr8.record import TickRecord
 from hsr8.scenario.loader import load_scenario
+from hsr8.simulation.loop import Simulation
+from hsr8.simulation.record import TickRecord
 from hsr8.world.field.layout import Layout
 from navigation.motion import rollout
 from navigation.motion.safety_filter import RolloutStart, SafetyFilter

@@ -3,8 +3,8 @@
 from dataclasses import dataclass
 from math import atan2, cos, hypot, inf, isfinite, sin
 
-from hsr8.decisions import FrameRecord
-from hsr8.render.walk_panels import INK
+from hsr8.show.walk_panels import INK
+from hsr8.simulation.decisions import FrameRecord
 from navigation.motion.collision_band import Encounter, free_intervals
 
 import numpy as np
@@ -31,7 +31,7 @@ from study import STAND_INS
 Array = NDArray[np.float64]
 
 PAPER = "navigation.profile=paper"
-WITHOUT = ("constants.navigation.planner.paper.min_speed=1.0",)  # no obstacle is a mover
+WITHOUT = ("navigation.planner.paper.min_speed=1.0",)  # no obstacle is a mover
 CASES = {
     "a": ("fig4a", "(a) outside the band: another speed", {"brake", "accelerate"}, 27.0),
     "b": ("fig4b", "(b) inside the band: escape", {"escape"}, 24.0),

@@ -4,8 +4,8 @@ from collections.abc import Sequence
 from math import cos, pi, sin, tan
 from typing import Any
 
-from hsr8.render.walk_figure import STYLE as WALK_STYLE
-from hsr8.render.walk_panels import BLUE, GREEN, ORANGE, PURPLE, VERMILION
+from hsr8.show.walk_figure import STYLE as WALK_STYLE
+from hsr8.show.walk_panels import BLUE, GREEN, ORANGE, PURPLE, VERMILION
 
 import numpy as np
 from matplotlib import rc_context

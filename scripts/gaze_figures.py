@@ -3,8 +3,8 @@
 from dataclasses import dataclass
 from math import cos, degrees, sin
 
-from hsr8.decisions import FrameRecord
-from hsr8.render.walk_panels import INK
+from hsr8.show.walk_panels import INK
+from hsr8.simulation.decisions import FrameRecord
 from navigation.gaze.scene import GazeScene
 from navigation.parameters.navigation import NavigationParameters
 from navigation.partial_evaluation import SamplePoints

@@ -14,14 +14,14 @@ import tempfile
 from contextlib import closing
 from pathlib import Path
 
-from hsr8.evaluation.recording import Recording
-from hsr8.gl import require_gl
-from hsr8.loop import Simulation
-from hsr8.record import Tick
-from hsr8.recorder.recorder import Recorder
-from hsr8.recorder.run.run_folder import RunFolder
+from hsr8.driver import Recording
+from hsr8.process.gl import require_gl
+from hsr8.recording.recorder import Recorder
+from hsr8.recording.run_folder import RunFolder
 from hsr8.robots.model.normal_form import HEAD_CAMERA
 from hsr8.scenario.schema import Scenario
+from hsr8.simulation.loop import Simulation
+from hsr8.simulation.record import Tick
 from hsr8.world.body.physics import place_robot
 from hsr8.world.camera.image_noise import ImageNoise
 from hsr8.world.camera.offscreen import Offscreen

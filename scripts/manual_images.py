@@ -15,15 +15,15 @@ from pathlib import Path
 from tempfile import TemporaryDirectory
 
 import hsr8
-from hsr8.decisions import FrameRecord
-from hsr8.loop import Simulation
-from hsr8.record import TickRecord
-from hsr8.recorder.palette import of_label
-from hsr8.render.plan_view import PlanView
-from hsr8.render.run_images import RunImages
-from hsr8.render.walk_panels import BLUE, GREEN, INK, ORANGE, PURPLE
+from hsr8.recording.palette import of_label
 from hsr8.robots.loaded import load_robot
 from hsr8.scenario.loader import load_scenario
+from hsr8.show.plan_view import PlanView
+from hsr8.show.video.run_images import RunImages
+from hsr8.show.walk_panels import BLUE, GREEN, INK, ORANGE, PURPLE
+from hsr8.simulation.decisions import FrameRecord
+from hsr8.simulation.loop import Simulation
+from hsr8.simulation.record import TickRecord
 from hsr8.world.field.generator import draw_world
 from vision.detection import Detection
 

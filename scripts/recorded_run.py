@@ -2,11 +2,11 @@
 
 from dataclasses import dataclass, field
 
-from hsr8.decisions import FrameRecord
-from hsr8.loop import Simulation
-from hsr8.record import TickRecord
 from hsr8.scenario.loader import load_scenario
 from hsr8.scenario.schema import Scenario
+from hsr8.simulation.decisions import FrameRecord
+from hsr8.simulation.loop import Simulation
+from hsr8.simulation.record import TickRecord
 
 import numpy as np
 from numpy.typing import NDArray

@@ -6,15 +6,15 @@ from math import atan2, cos, hypot, sin
 from pathlib import Path
 from types import SimpleNamespace
 
-from hsr8.recorder.derived import walk_of
-from hsr8.recorder.run.run import Run
-from hsr8.recorder.run.run_reader import open_run
-from hsr8.recorder.table import Table
-from hsr8.render.run_images import shown_frames
-from hsr8.render.walk_panels import INK, LEFT, RIGHT, contacts, outline
+from hsr8.recording.derived import walk_of
+from hsr8.recording.run import Run
+from hsr8.recording.run_reader import open_run
+from hsr8.recording.table import Table
 from hsr8.robots.loaded import load_robot
 from hsr8.scenario.loader import load_scenario
 from hsr8.scenario.schema import Scenario
+from hsr8.show.video.run_images import shown_frames
+from hsr8.show.walk_panels import INK, LEFT, RIGHT, contacts, outline
 from hsr8.world.field.generator import draw_layout
 from hsr8.world.field.layout import Layout
 from navigation.belief.belief import Motion, Track

@@ -51,7 +51,7 @@ make_venv() {
 }
 
 gl_draws() {
-    env -u MUJOCO_GL "$venv/bin/python" -c 'from hsr8.gl import require_gl; require_gl()' \
+    env -u MUJOCO_GL "$venv/bin/python" -c 'from hsr8.process.gl import require_gl; require_gl()' \
         >/dev/null 2>&1
 }
 

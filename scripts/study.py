@@ -3,7 +3,7 @@
 import argparse
 
 from hsr8.errors import UsageError
-from hsr8.evaluation.sweep.seeds import parse_seeds
+from hsr8.sweep.seeds import parse_seeds
 
 STAND_INS = ("robot.body=kinematic", "camera.source=analytic")
 """Settings of a run without physics and images."""

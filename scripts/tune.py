@@ -21,8 +21,8 @@ from concurrent.futures import ProcessPoolExecutor
 from dataclasses import dataclass
 from pathlib import Path
 
-from hsr8.loop import Simulation
 from hsr8.scenario.loader import load_scenario
+from hsr8.simulation.loop import Simulation
 
 import numpy as np
 from study import STAND_INS
@@ -31,7 +31,7 @@ Ranges = Mapping[str, tuple[float, float, float]]
 Values = dict[str, float]
 Row = dict[str, object]
 
-PLANNERS = "constants.navigation.planner"
+PLANNERS = "navigation.planner"
 # Parameter: minimum, value by hand, maximum; drawn uniformly in the logarithm.
 BASELINES: dict[str, Ranges] = {
     "univector": {
@@ -41,11 +41,11 @@ BASELINES: dict[str, Ranges] = {
         "navigation.univector.d_e": (0.05, 0.2, 0.4),
         "navigation.univector.d_b": (0.1, 0.25, 0.6),
         "navigation.univector.k_r": (0.05, 0.3, 0.5),
-        "constants.navigation.safety_filter.moving_horizon": (1.5, 3.5, 6.0),
-        "constants.navigation.safety_filter.particle_weight": (0.1, 0.5, 2.0),
-        "constants.navigation.safety_filter.urgent_loss": (20.0, 70.0, 200.0),
-        "constants.navigation.safety_filter.collision_loss": (5.0, 20.0, 60.0),
-        "constants.navigation.safety_filter.change_loss": (0.1, 0.5, 2.0),
+        "navigation.safety_filter.moving_horizon": (1.5, 3.5, 6.0),
+        "navigation.safety_filter.particle_weight": (0.1, 0.5, 2.0),
+        "navigation.safety_filter.urgent_loss": (20.0, 70.0, 200.0),
+        "navigation.safety_filter.collision_loss": (5.0, 20.0, 60.0),
+        "navigation.safety_filter.change_loss": (0.1, 0.5, 2.0),
     },
     "n-posture": {
         "margin": (0.02, 0.05, 0.1), "gain": (1.0, 2.0, 8.0), "offset": (0.05, 0.25, 0.4),
@@ -75,12 +75,12 @@ PAPER: Ranges = {
     "navigation.univector.margin": (0.01, 0.03, 0.1),
     "navigation.univector.eta_vo": (0.1, 0.5, 1.5),
     "navigation.univector.eta_imp": (0.01, 0.05, 0.2),
-    "constants.navigation.planner.paper.d_con": (0.3, 0.8, 1.5),
-    "constants.navigation.planner.paper.d_e": (0.05, 0.15, 0.8),
-    "constants.navigation.planner.paper.d_b": (0.1, 0.3, 1.6),
-    "constants.navigation.planner.paper.k_r": (0.05, 0.3, 1.0),
-    "constants.navigation.planner.paper.omega_dist": (2.0, 12.0, 24.0),
-    "constants.navigation.planner.paper.horizon": (2.0, 6.0, 10.0),
+    "navigation.planner.paper.d_con": (0.3, 0.8, 1.5),
+    "navigation.planner.paper.d_e": (0.05, 0.15, 0.8),
+    "navigation.planner.paper.d_b": (0.1, 0.3, 1.6),
+    "navigation.planner.paper.k_r": (0.05, 0.3, 1.0),
+    "navigation.planner.paper.omega_dist": (2.0, 12.0, 24.0),
+    "navigation.planner.paper.horizon": (2.0, 6.0, 10.0),
 }
 PROFILE = ("navigation.profile=paper", "camera.source=omnidirectional")
 

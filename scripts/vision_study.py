@@ -14,10 +14,10 @@ from math import atan2, hypot
 
 os.environ.setdefault("MUJOCO_GL", "egl")
 
-from hsr8.loop import Simulation
-from hsr8.record import TickRecord
 from hsr8.robots.model.normal_form import HEAD_CAMERA
 from hsr8.scenario.loader import load_scenario
+from hsr8.simulation.loop import Simulation
+from hsr8.simulation.record import TickRecord
 from hsr8.world.model.assembly import FIELD
 
 import mujoco

@@ -6,8 +6,8 @@ python scripts/write_data_reference.py
 from collections.abc import Iterator
 from pathlib import Path
 
-from hsr8.recorder.columns import Column, Row
-from hsr8.recorder.rows import TABLES
+from hsr8.recording.columns import Column, Row
+from hsr8.recording.rows import TABLES
 
 PAGE = Path(__file__).resolve().parents[1] / "docs" / "data.md"
 TYPES = {"double": "float64", "string": "text", "binary": "bytes", "struct": "objects"}

@@ -5,7 +5,7 @@ python scripts/write_metric_reference.py
 
 from pathlib import Path
 
-from hsr8.evaluation.registry import SECTIONS
+from hsr8.measure.registry import SECTIONS
 
 PAGE = Path(__file__).resolve().parents[1] / "docs" / "metrics.md"
 

@@ -7,7 +7,7 @@ import pytest
 from hypothesis import settings
 
 from hsr8.errors import RenderingUnavailable
-from hsr8.gl import choose_backend, require_gl
+from hsr8.process.gl import choose_backend, require_gl
 
 choose_backend()  # before any test imports MuJoCo
 gc.set_threshold(50_000)  # the default takes a tenth of the time of the suite

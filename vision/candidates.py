@@ -111,7 +111,7 @@ def _set_beacon(
     middle, height = 0.5 * p.beacon_height, float(p.beacon_height / p.unit)
     candidate.height = height
     candidate.prior[0] = p.beacon_radius / p.unit
-    candidate.prior[1] = p.beacon_radius_sigma / p.unit
+    candidate.prior[1] = p.known_radius_sigma / p.unit
     candidate.rim_count = 0
     add_rim(candidate, lower.rims[FOOT], 0, points, 0.0, NEAR)
     half = NEAR if camera_height > middle else FAR

@@ -18,11 +18,13 @@ from vision.errors import VisionError
 from vision.location import locate
 from vision.parameters import VisionParameters
 from vision.self_mask import BodyPart, apply_self_mask
+from vision.sizes import Sizes
 from vision.tables import OUTSIDE
 from vision.view import view_of
 
 Rows = NDArray[np.record]
 
+SIZES = Sizes()
 FIELDS = ("upper", "lower", "occluded", "cylinder", "covariance")  # that detections are made of
 
 
@@ -31,13 +33,13 @@ class Detector:
 
     Args:
         camera: intrinsics.
-        parameters: sizes, error models and thresholds.
+        parameters: error models and thresholds.
         self_mask: parts of the robot that the camera may see.
         shutter: exposure time, for the error of edges by motion blur [s].
+        sizes: sizes of the obstacles and beacons.
 
     Raises:
-        VisionError: min_radius is not below max_radius, or the file of the colour table is
-            invalid.
+        VisionError: the file of the colour table is invalid.
     """
 
     def __init__(
@@ -46,13 +48,10 @@ class Detector:
         parameters: VisionParameters,
         self_mask: Sequence[BodyPart] = (),
         shutter: float = 0.0,
+        sizes: Sizes = SIZES,
     ) -> None:
-        if parameters.min_radius >= parameters.max_radius:
-            raise VisionError(
-                f"min_radius: not below max_radius, got {parameters.min_radius}; "
-                f"expected less than {parameters.max_radius}"
-            )
         self._camera = camera
+        self._sizes = sizes
         self._parameters = parameters
         self._self_mask = tuple(self_mask)
         self._shutter = shutter
@@ -62,7 +61,7 @@ class Detector:
         self._beacon = np.array([False, *(c.kind == "beacon" for c in classes)])
         areas = np.where(self._beacon, parameters.min_beacon_area, parameters.min_area)
         self._min_area = areas[1:].astype(np.int32)
-        self._record = parameter_record(parameters)
+        self._record = parameter_record(parameters, sizes)
         self._padded = np.full((camera.height + 2, camera.width + 2), OUTSIDE, dtype=np.uint8)
 
     def detect(self, image: NDArray[np.uint8], pose: CameraPose) -> tuple[Detection, ...]:
@@ -92,16 +91,16 @@ class Detector:
 
     def _detections(self, candidates: Rows, blobs: Rows, view: Rows) -> Iterator[Detection]:
         """Yield the detections of the reported candidates that are near and certain enough."""
-        p, classes = self._parameters, self._table.classes
+        p, sizes, classes = self._parameters, self._sizes, self._table.classes
         camera = (*view["position"][0, :2].tolist(), float(view["heading"][0]))
         boxes, labels, cuts = (blobs[name].tolist() for name in ("box", "label", "cut"))
         columns = (candidates[name][candidates["reported"]].tolist() for name in FIELDS)
         for i, j, occluded, cylinder, covariance in zip(*columns, strict=True):
             beacon = i != j
             radius, variance = cylinder[2], covariance[2][2]
-            if not beacon and radius > p.max_radius + 2.0 * sqrt(variance):
+            if not beacon and radius > sizes.obstacle_radius[1] + 2.0 * sqrt(variance):
                 # An obstacle merged with another object; it is somewhere in the blob.
-                excess = radius - p.radius_prior[0]
+                excess = radius - sizes.radius_prior[0]
                 spread = (excess / cylinder[1]) ** 2, excess * excess, excess * excess
                 for k in range(3):
                     covariance[k][k] += spread[k]
@@ -132,10 +131,20 @@ class Detector:
             )
 
 
-def parameter_record(parameters: VisionParameters) -> Rows:
-    """Return the numbers of the parameters, those of the segmentation included (1,).
+def parameter_record(parameters: VisionParameters, sizes: Sizes = SIZES) -> Rows:
+    """Return the numbers of the parameters, those of the segmentation included, and sizes (1,).
 
     `radius` and `radius_sigma` are the prior of an obstacle's radius.
     """
-    radius, sigma = parameters.radius_prior
-    return record(parameters, radius=radius, radius_sigma=sigma, **asdict(parameters.split))
+    radius, sigma = sizes.radius_prior
+    return record(
+        parameters,
+        obstacle_height=sizes.top,
+        min_radius=sizes.obstacle_radius[0],
+        max_radius=sizes.obstacle_radius[1],
+        beacon_height=sizes.beacon_height,
+        beacon_radius=sizes.beacon_radius,
+        radius=radius,
+        radius_sigma=max(sigma, parameters.known_radius_sigma),
+        **asdict(parameters.split),
+    )

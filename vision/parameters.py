@@ -1,7 +1,6 @@
 """Parameters of the detector."""
 
 from dataclasses import dataclass, field
-from math import sqrt
 from typing import Annotated
 
 from annotated_types import Interval, doc
@@ -35,7 +34,7 @@ class SplitParameters:
 
 @dataclass(frozen=True)
 class VisionParameters:
-    """Sizes of obstacles and beacons, error models and thresholds."""
+    """Error models and thresholds; the sizes of obstacles and beacons are those of the world."""
 
     color_table: Annotated[
         str,
@@ -43,17 +42,6 @@ class VisionParameters:
             "File of a colour table made by `hsr8 color-table`; empty: the built-in colour classes."
         ),
     ] = ""
-    obstacle_height: Annotated[
-        float, Interval(ge=0.001, le=100.0), "m", doc("Height of every obstacle [m].")
-    ] = 0.30
-    min_radius: Annotated[
-        float, Interval(ge=0.001, le=100.0), "m", doc("Minimum radius of an obstacle [m].")
-    ] = 0.05
-    max_radius: Annotated[
-        float, Interval(ge=0.001, le=100.0), "m", doc("Maximum radius of an obstacle [m].")
-    ] = 0.12
-    beacon_height: Annotated[float, "m"] = 0.60  # its two colours meet in the middle
-    beacon_radius: Annotated[float, "m"] = 0.05
     max_obstacle_range: Annotated[
         float,
         Interval(ge=0.001, le=100.0),
@@ -76,7 +64,7 @@ class VisionParameters:
     covariance_inflation: float = 4.0  # minimum inflation for a blob that no cylinder explains [1]
     max_occlusion_fraction: float = 0.1  # of a rim next to another colour: more is occluded [1]
     max_relative_sigma: float = 0.35  # maximum standard deviation of a distance / distance [1]
-    beacon_radius_sigma: Annotated[float, "m"] = 0.0005  # standard deviation of a beacon's radius
+    known_radius_sigma: Annotated[float, "m"] = 0.0005  # standard deviation of a known radius
     min_beacon_seam_fraction: float = 0.6  # minimum width of the seam / width of the upper colour
     beacon_side_tolerance: float = 4.0  # difference of the two colours' sides [sigma]
     beacon_misfit_factor: float = 5.0  # max_misfit of a beacon relative to that of an obstacle [1]
@@ -85,9 +73,3 @@ class VisionParameters:
     pose: Annotated[PoseParameters, doc("Uncertainty of the camera pose.")] = field(
         default_factory=PoseParameters
     )
-
-    @property
-    def radius_prior(self) -> tuple[float, float]:
-        """Mean and standard deviation of the uniform prior of an obstacle's radius [m]."""
-        low, high = self.min_radius, self.max_radius
-        return 0.5 * (low + high), (high - low) / sqrt(12.0)

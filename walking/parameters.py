@@ -2,7 +2,7 @@
 
 The defaults were tuned for HSR-VIII in full physics with ``scripts/walk_study.py``. Each has a
 dimension, by which `walking.constants.parameters_for` scales it to another robot. Fields with
-bounds and a docstring are public keys of a scenario; the others are constants.
+bounds and a docstring are public keys of a scenario; the others are for studies.
 """
 
 from dataclasses import dataclass, field

@@ -7,21 +7,21 @@ from hsr8.cli.command_line import command_words, settings
 from hsr8.cli.options import Bench, Run
 from hsr8.cli.sweep import INTERRUPTED, folder_name, report_lost_runs, require_no_seed
 from hsr8.errors import Hsr8Error, UsageError
-from hsr8.evaluation.bench.entry import FILE, Entry, entry_page, row
-from hsr8.evaluation.bench.suite import (
+from hsr8.files import atomic
+from hsr8.files.shell import shell_line
+from hsr8.process.signals import like_ctrl_c
+from hsr8.sweep.bench.entry import FILE, Entry, entry_page, row
+from hsr8.sweep.bench.suite import (
     SHIPPED,
     changed_settings,
     checked_name,
     read_suite,
     scenario_hash,
 )
-from hsr8.evaluation.signals import like_ctrl_c
-from hsr8.evaluation.sweep.folder import REPORT
-from hsr8.evaluation.sweep.runs import Execution, run_sweeps
-from hsr8.evaluation.sweep.seeds import parse_seeds
-from hsr8.evaluation.sweep.summary import summarize
-from hsr8.files import atomic
-from hsr8.files.shell import shell_line
+from hsr8.sweep.folder import REPORT
+from hsr8.sweep.runs import Execution, run_sweeps
+from hsr8.sweep.seeds import parse_seeds
+from hsr8.sweep.summary import summarize
 
 DEFAULT = "default"  # name of an entry without settings
 

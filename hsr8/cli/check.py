@@ -11,14 +11,14 @@ from hsr8.cli.options import Check
 from hsr8.cli.output_file import require_file_name, writing
 from hsr8.files import atomic
 from hsr8.files.shell import shell_line
-from hsr8.plugin_file import inspect_plugins
-from hsr8.render.image import write_png
-from hsr8.render.plan_view import PlanView
-from hsr8.robot_builder import field_of_view
+from hsr8.plugins.file import inspect_plugins
 from hsr8.scenario.loader import load_scenario
 from hsr8.scenario.schema import Scenario
 from hsr8.scenario.section import Section
 from hsr8.scenario.track import Track
+from hsr8.show.image import write_png
+from hsr8.show.plan_view import PlanView
+from hsr8.simulation.robot_builder import field_of_view
 from hsr8.world.field.certificate import min_clearance, straight_length
 from hsr8.world.field.generator import FairWorld, draw_world
 from hsr8.world.field.layout import Obstacle

@@ -3,12 +3,12 @@
 from hsr8.cli.options import BenchCompare, Compare
 from hsr8.cli.output_file import require_file_name, writing
 from hsr8.errors import UsageError, escaped_lines
-from hsr8.evaluation.bench.comparison import compare_entries
-from hsr8.evaluation.bench.entry import read_entry
-from hsr8.evaluation.comparison import compare, open_side
-from hsr8.evaluation.comparison_page import draw, latex, page, to_json, write_csv
 from hsr8.files import atomic
 from hsr8.files.shell import shell_line
+from hsr8.sweep.bench.comparison import compare_entries
+from hsr8.sweep.bench.entry import read_entry
+from hsr8.sweep.comparison import compare, open_side
+from hsr8.sweep.comparison_page import draw, latex, page, to_json, write_csv
 
 
 def main(options: Compare | BenchCompare) -> int:

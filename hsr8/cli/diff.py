@@ -9,12 +9,12 @@ from rich.table import Table
 
 from hsr8.cli.options import Diff
 from hsr8.errors import escaped
-from hsr8.evaluation import run_difference
-from hsr8.evaluation.run_difference import RunDifference
 from hsr8.files import atomic
-from hsr8.recorder.rows import TABLES
-from hsr8.recorder.run.run import Run
-from hsr8.recorder.run.run_reader import open_run
+from hsr8.recording import run_difference
+from hsr8.recording.rows import TABLES
+from hsr8.recording.run import Run
+from hsr8.recording.run_difference import RunDifference
+from hsr8.recording.run_reader import open_run
 
 DIFFERENT = 1
 MAX_VALUE_LENGTH = 24  # in the table [characters]

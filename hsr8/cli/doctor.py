@@ -12,16 +12,16 @@ from time import perf_counter
 from hsr8.cli.options import Doctor
 from hsr8.errors import Hsr8Error
 from hsr8.files import atomic
-from hsr8.gl import APT_LINE, BACKENDS, REQUESTED, VULKAN_LINE, is_software
-from hsr8.recorder.run.manifest import versions
-from hsr8.render import viewer
+from hsr8.process.gl import APT_LINE, BACKENDS, REQUESTED, VULKAN_LINE, is_software
+from hsr8.recording.manifest import versions
 from hsr8.robots.file.files import models_dir
+from hsr8.show import viewer
 from hsr8.version import VERSION
 
 PROBE_LIMIT = 60.0  # an OpenGL that takes longer hangs [s]
 VULKAN_FOLDERS = ("/usr/share", "/usr/local/share", "/etc")
 MIN_DISK = 1.0  # [GB]
-PROBE = "from hsr8.gl import require_gl; print(require_gl())"
+PROBE = "from hsr8.process.gl import require_gl; print(require_gl())"
 
 
 @dataclass(frozen=True, slots=True)

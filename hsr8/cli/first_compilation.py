@@ -13,13 +13,13 @@ from contextlib import contextmanager
 import numpy as np
 
 from compilation.function import CompiledFunction
-from hsr8.compilation_watch import CompilationWatch
 from hsr8.errors import RenderingUnavailable
-from hsr8.gl import require_gl
-from hsr8.loop import Simulation
-from hsr8.parent_watch import with_parent_watch
-from hsr8.plugin_walker import RobotInfo
+from hsr8.plugins.walker import RobotInfo
+from hsr8.process.compilation_watch import CompilationWatch
+from hsr8.process.gl import require_gl
+from hsr8.process.parent_watch import with_parent_watch
 from hsr8.scenario.loader import load_scenario
+from hsr8.simulation.loop import Simulation
 from navigation.angles import wrap
 from walking.command import VelocityCommand
 from walking.observer import BodyEstimate

@@ -8,12 +8,12 @@ from rich.console import Console
 from hsr8.cli import report, tables
 from hsr8.cli.options import Info
 from hsr8.errors import UsageError, escaped
-from hsr8.evaluation.registry import METRICS, Shown, shown_in
 from hsr8.files import atomic
-from hsr8.recorder.run.manifest import RUNNING, other_versions
-from hsr8.recorder.run.run import Run
-from hsr8.recorder.run.run_reader import open_run
-from hsr8.recorder.run.verdict import Criterion, exit_code
+from hsr8.measure.registry import METRICS, Shown, shown_in
+from hsr8.recording.manifest import RUNNING, other_versions
+from hsr8.recording.run import Run
+from hsr8.recording.run_reader import open_run
+from hsr8.recording.verdict import Criterion, exit_code
 
 PLAIN = (  # first rows of the table
     *("success", "exit_reason", "time_to_goal_s", "path_length_m", "collisions", "falls"),

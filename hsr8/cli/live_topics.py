@@ -5,13 +5,13 @@ from contextlib import ExitStack
 from pathlib import Path
 
 from hsr8.cli.options import Run
-from hsr8.drive import Drive
 from hsr8.export.topics import Setup
 from hsr8.export.urdf import MESHES, urdf_of
 from hsr8.robots.loaded import load_robot
 from hsr8.ros.live import LiveTopics
 from hsr8.ros.process import Network
 from hsr8.scenario.schema import Scenario
+from hsr8.simulation.drive import Drive
 
 DESCRIPTION = "robot.urdf"  # file in the folder of the run
 

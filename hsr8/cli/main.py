@@ -15,7 +15,7 @@ import tyro
 
 from hsr8.cli.options import BenchCompare, Command, Robot, RobotAction
 from hsr8.errors import Hsr8Error, UsageError
-from hsr8.evaluation.crash import crash_report
+from hsr8.recording.crash import crash_report
 from hsr8.suggestion import suggestion
 from hsr8.version import VERSION
 

@@ -2,7 +2,7 @@
 
 import time
 
-from hsr8.record import Tick
+from hsr8.simulation.record import Tick
 
 TOLERANCE = 0.1  # delay that is not caught up with [s]
 

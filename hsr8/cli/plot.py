@@ -6,7 +6,7 @@ from hsr8.cli.options import Plot
 from hsr8.cli.output_file import require_file_name, writing
 from hsr8.errors import UsageError
 from hsr8.files import atomic
-from hsr8.recorder.run.run_reader import open_run
+from hsr8.recording.run_reader import open_run
 
 SUFFIXES = (".png", ".svg", ".pdf")
 
@@ -27,7 +27,7 @@ def main(options: Plot) -> int:
         )
     print(f"plotting    {run.folder}", file=sys.stderr, flush=True)
     try:
-        from hsr8.render.walk_figure import draw, save  # noqa: PLC0415  takes seconds
+        from hsr8.show.walk_figure import draw, save  # noqa: PLC0415  takes seconds
     except OSError as error:
         raise UsageError(
             "MPLCONFIGDIR: Matplotlib can write neither to the home nor to a temporary folder; "

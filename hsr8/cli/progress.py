@@ -8,7 +8,7 @@ from rich.console import Console
 from rich.live import Live
 from rich.text import Text
 
-from hsr8.record import Event, Tick, TickRecord
+from hsr8.simulation.record import Event, Tick, TickRecord
 
 REFRESH = 0.1  # wall time between two updates of the live line [s]
 PLAIN_PERIOD = 10.0  # simulated time between two lines without a terminal [s]

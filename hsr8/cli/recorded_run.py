@@ -12,23 +12,23 @@ from hsr8.cli.first_compilation import two_processes
 from hsr8.cli.options import Run
 from hsr8.cli.pace import Pace
 from hsr8.cli.progress import Progress
-from hsr8.drive import Drive
+from hsr8.driver import run_scenario
 from hsr8.errors import Hsr8Error
-from hsr8.evaluation.crash import crash_report
-from hsr8.evaluation.recording import run_scenario
-from hsr8.evaluation.signals import like_ctrl_c
 from hsr8.files import atomic
 from hsr8.files.shell import shell_word
 from hsr8.files.writing import require_temporary
-from hsr8.gl import require_gl
-from hsr8.record import Tick
-from hsr8.recorder.run.run import Run as RecordedRun
-from hsr8.recorder.run.run_folder import VIDEO, new_run_folder
-from hsr8.recorder.run.verdict import exit_code
+from hsr8.process.gl import require_gl
+from hsr8.process.signals import like_ctrl_c
+from hsr8.recording.crash import crash_report
+from hsr8.recording.run import Run as RecordedRun
+from hsr8.recording.run_folder import VIDEO, new_run_folder
+from hsr8.recording.verdict import exit_code
 from hsr8.scenario.schema import Scenario
+from hsr8.simulation.drive import Drive
+from hsr8.simulation.record import Tick
 
 if TYPE_CHECKING:
-    from hsr8.render.viewer import LiveView
+    from hsr8.show.viewer import LiveView
 
 BAG = "bag"  # folder in that of the run
 
@@ -118,7 +118,7 @@ def _write_outputs(options: Run, run: RecordedRun) -> list[Hsr8Error]:
 
 def _write_log(run: RecordedRun, _: Run) -> None:
     # Imported late: runs without a log start 0.2 s earlier.
-    from hsr8.rerun_log.run_log import write_log  # noqa: PLC0415
+    from hsr8.show.log.run_log import write_log  # noqa: PLC0415
 
     write_log(run)
 
@@ -141,7 +141,7 @@ def _write_video(run: RecordedRun, options: Run) -> None:
     # Imported late: runs without a video start 0.08 s earlier.
     from hsr8.cli.output_file import writing  # noqa: PLC0415
     from hsr8.cli.render import drawing  # noqa: PLC0415
-    from hsr8.render.run_video import VideoOptions, render_run  # noqa: PLC0415
+    from hsr8.show.video.run_video import VideoOptions, render_run  # noqa: PLC0415
 
     file, silent = run.folder / VIDEO, options.quiet or options.json
     with writing("--video", file), drawing(Console(stderr=True, quiet=silent)) as show:
@@ -156,7 +156,7 @@ def _view(options: Run) -> "Iterator[LiveView | None]":
     if options.view is None:
         yield None
         return
-    from hsr8.render.viewer import live_view  # noqa: PLC0415
+    from hsr8.show.viewer import live_view  # noqa: PLC0415
 
     with like_ctrl_c(), live_view(options.view) as view:
         if view.page:

@@ -11,11 +11,11 @@ from hsr8.cli.options import Render
 from hsr8.cli.output_file import parse_size, require_file_name, writing
 from hsr8.errors import UsageError
 from hsr8.files import atomic
-from hsr8.gl import is_software, require_gl
-from hsr8.recorder.run import run_folder
-from hsr8.recorder.run.run_reader import open_run
-from hsr8.render.run_video import RenderedVideo, VideoOptions, render_run
-from hsr8.render.video import FORMATS
+from hsr8.process.gl import is_software, require_gl
+from hsr8.recording import run_folder
+from hsr8.recording.run_reader import open_run
+from hsr8.show.video.run_video import RenderedVideo, VideoOptions, render_run
+from hsr8.show.video.video import FORMATS
 
 SUFFIXES = (*FORMATS, ".png")
 

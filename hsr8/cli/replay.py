@@ -6,14 +6,14 @@ from pathlib import Path
 from hsr8.cli.options import Replay
 from hsr8.cli.output_file import parse_size, require_file_name, writing
 from hsr8.errors import UsageError
-from hsr8.evaluation.signals import like_ctrl_c
 from hsr8.files import atomic
 from hsr8.files.shell import shell_word
-from hsr8.recorder.run.manifest import versions
-from hsr8.recorder.run.run import Run
-from hsr8.recorder.run.run_reader import open_run
-from hsr8.render import viewer
-from hsr8.render.viewer import live_view
+from hsr8.process.signals import like_ctrl_c
+from hsr8.recording.manifest import versions
+from hsr8.recording.run import Run
+from hsr8.recording.run_reader import open_run
+from hsr8.show import viewer
+from hsr8.show.viewer import live_view
 
 
 def main(options: Replay) -> int:
@@ -59,7 +59,7 @@ def _made(run: Run, *, full: bool) -> Path:
     """Write the log of a run that has none."""
     run.scenario()  # reports a scenario that cannot be read
     print("writing the log", file=sys.stderr, flush=True)
-    from hsr8.rerun_log.run_log import write_log  # noqa: PLC0415  takes seconds
+    from hsr8.show.log.run_log import write_log  # noqa: PLC0415  takes seconds
 
     return write_log(run, full=full)
 

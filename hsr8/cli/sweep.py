@@ -14,16 +14,16 @@ from rich.table import Table
 from hsr8.cli.command_line import command_words, flat, option_tables, run_options, settings
 from hsr8.cli.options import Sweep
 from hsr8.errors import Hsr8Error, UsageError
-from hsr8.evaluation.signals import like_ctrl_c
-from hsr8.evaluation.sweep.folder import REPORT
-from hsr8.evaluation.sweep.report import headline, report_of_values
-from hsr8.evaluation.sweep.runs import Execution, run_sweeps
-from hsr8.evaluation.sweep.seeds import parse_seeds, parse_values
-from hsr8.evaluation.sweep.summary import Summary, summarize
 from hsr8.files import atomic
 from hsr8.files.shell import shell_line
+from hsr8.process.signals import like_ctrl_c
 from hsr8.scenario.loader import load_scenario
 from hsr8.scenario.schema import Scenario
+from hsr8.sweep.folder import REPORT
+from hsr8.sweep.report import headline, report_of_values
+from hsr8.sweep.runs import Execution, run_sweeps
+from hsr8.sweep.seeds import parse_seeds, parse_values
+from hsr8.sweep.summary import Summary, summarize
 
 MAX_NAME = 120  # of a folder [characters]
 INTERRUPTED = 130

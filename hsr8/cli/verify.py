@@ -6,13 +6,13 @@ from typing import TYPE_CHECKING
 from hsr8.cli.options import Verify
 from hsr8.errors import UsageError
 from hsr8.files import atomic
-from hsr8.recorder.run.manifest import other_versions
-from hsr8.recorder.run.run import Run
-from hsr8.recorder.run.run_reader import open_run
+from hsr8.recording.manifest import other_versions
+from hsr8.recording.run import Run
+from hsr8.recording.run_reader import open_run
 from hsr8.robots.file.locate import digest
 
 if TYPE_CHECKING:
-    from hsr8.evaluation.replay import Replayed
+    from hsr8.recording.verification import Recomputed
 
 DIFFERENT = 1
 
@@ -22,9 +22,9 @@ def main(options: Verify) -> int:
     run = open_run(options.run, trust=options.trust)
     if not options.json:
         print(f"run         {run.folder}", flush=True)
-    from hsr8.evaluation.replay import replay  # noqa: PLC0415  takes seconds
+    from hsr8.recording.verification import recompute  # noqa: PLC0415  takes seconds
 
-    stages = replay(run)
+    stages = recompute(run)
     if not any(stage.count for stage in stages):
         raise UsageError(f"{run.folder}: nothing to recompute: the run ended in its first second")
     equal = all(stage.equal for stage in stages)
@@ -55,7 +55,7 @@ def _effect(name: str) -> str:
     return "the last bits differ" if name == "arithmetic" else "results may differ"
 
 
-def _verdict(stage: "Replayed") -> str:
+def _verdict(stage: "Recomputed") -> str:
     if stage.equal:
         return f"equal, {stage.count} {stage.unit}, bit for bit"
     unit = stage.unit.removesuffix("s")

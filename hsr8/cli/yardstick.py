@@ -5,9 +5,9 @@ from time import perf_counter
 import mujoco
 import numpy as np
 
-from hsr8.robot_builder import build_model
 from hsr8.robots.loaded import load_robot
 from hsr8.scenario.loader import load_scenario
+from hsr8.simulation.robot_builder import build_model
 from hsr8.world.body.physics import place_robot
 from hsr8.world.field.generator import draw_layout
 

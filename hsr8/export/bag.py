@@ -10,7 +10,7 @@ from hsr8.export.cdr import Messages
 from hsr8.export.topics import START, TOPICS, Setup, Translator
 from hsr8.export.transforms import odom_in_map
 from hsr8.export.urdf import MESHES, urdf_of
-from hsr8.recorder.run.run import Run
+from hsr8.recording.run import Run
 from hsr8.robots.loaded import load_robot
 
 READ = ("ticks", "frames", "records", "images")  # tables in the order that a translator needs

@@ -16,10 +16,10 @@ import pyarrow as pa
 import pyarrow.csv as pc
 from numpy.typing import NDArray
 
-from hsr8.recorder.columns import shape_of
-from hsr8.recorder.rows import TABLES
-from hsr8.recorder.run.run import Run
-from hsr8.recorder.table import Items, Table
+from hsr8.recording.columns import shape_of
+from hsr8.recording.rows import TABLES
+from hsr8.recording.run import Run
+from hsr8.recording.table import Items, Table
 
 COLUMNS = "columns.csv"
 IMAGES = "images"  # folder

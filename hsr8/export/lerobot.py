@@ -20,8 +20,8 @@ from numpy.typing import NDArray
 
 from hsr8.errors import UsageError
 from hsr8.files import atomic
-from hsr8.recorder.run.run import Run
-from hsr8.recorder.table import Table
+from hsr8.recording.run import Run
+from hsr8.recording.table import Table
 
 Array = NDArray[np.float32]
 Image = NDArray[np.uint8]

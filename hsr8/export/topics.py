@@ -25,7 +25,7 @@ from hsr8.export.transforms import (
     moving_transforms,
     odom_in_map,
 )
-from hsr8.recorder.palette import of_label
+from hsr8.recording.palette import of_label
 from hsr8.robots.loaded import LoadedRobot
 from hsr8.robots.shown import stature
 from vision.camera import PinholeCamera
@@ -34,7 +34,7 @@ Array = NDArray[np.float64]
 Stream = Iterator[Contents | None]
 """Fields of the message of each row; None for no message."""
 Rows = Mapping[str, Any]
-"""Columns of rows, a `hsr8.recorder.table.Table` or the like; column ``time`` is always there."""
+"""Columns of rows, a `hsr8.recording.table.Table` or the like; column ``time`` is always there."""
 
 START = "start"
 """Source with one row: time, and pose of odom in the map before the first frame, ``start``."""

@@ -8,8 +8,8 @@ from gymnasium import spaces
 from numpy.typing import NDArray
 
 from hsr8.errors import UsageError
-from hsr8.plugin_decisions import Limits
-from hsr8.plugin_method import numbers, shown
+from hsr8.plugins.decisions import Limits
+from hsr8.plugins.method import numbers, shown
 
 Array = NDArray[np.float64]
 Part = Literal["motion", "gaze"]

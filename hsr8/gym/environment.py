@@ -9,17 +9,17 @@ import gymnasium
 import numpy as np
 from numpy.typing import NDArray
 
-from hsr8 import arithmetic
 from hsr8.errors import UsageError
 from hsr8.gym.action import SIZES, ActionMap, Part, clipped
 from hsr8.gym.episode import FAILURES, Episode
 from hsr8.gym.observation import MAX_TRACKS, Observation, Observer, require_names
 from hsr8.gym.outside_view import OutsideView
 from hsr8.gym.reward import WEIGHTS, Reward
-from hsr8.robot_builder import decision_limits, require_planner
+from hsr8.process import arithmetic
 from hsr8.robots.loaded import load_robot
 from hsr8.scenario.loader import load_scenario
 from hsr8.scenario.schema import MAX_SEED, Scenario
+from hsr8.simulation.robot_builder import decision_limits, require_planner
 
 RENDER_MODES = ("rgb_array",)
 TERMINAL = ("goal", *FAILURES)  # exit reasons; a run that ends by another one is truncated

@@ -2,13 +2,13 @@
 
 from contextlib import ExitStack
 
-from hsr8.decisions import Situation
-from hsr8.evaluation.recording import Recording
-from hsr8.loop import Simulation
-from hsr8.recorder.run.manifest import CALL
-from hsr8.recorder.run.run import Run
-from hsr8.recorder.run.run_folder import RunFolder
+from hsr8.driver import Recording
+from hsr8.recording.manifest import CALL
+from hsr8.recording.run import Run
+from hsr8.recording.run_folder import RunFolder
 from hsr8.scenario.schema import Scenario
+from hsr8.simulation.decisions import Situation
+from hsr8.simulation.loop import Simulation
 from hsr8.world.truth.truth import Truth
 
 FAILURES = ("contact", "fall", "diverged")

@@ -2,11 +2,11 @@
 
 import numpy as np
 
-from hsr8.loop import Simulation
-from hsr8.render.follow import FollowCamera
-from hsr8.render.scene_renderer import Image, SceneRenderer
 from hsr8.robots.scale import DEFAULT_STATURE
 from hsr8.robots.shown import stature
+from hsr8.show.follow import FollowCamera
+from hsr8.show.scene_renderer import Image, SceneRenderer
+from hsr8.simulation.loop import Simulation
 from hsr8.world.model.assembly import Optics
 from hsr8.world.truth.truth import Truth
 

@@ -12,8 +12,8 @@ from numpy.typing import NDArray
 from hsr8.errors import UsageError
 from hsr8.gym.action import ActionMap, Part, clipped
 from hsr8.gym.observation import MAX_TRACKS, Observation, Observer
-from hsr8.plugin_decisions import GazePlugin, Limits, PlannerPlugin
-from hsr8.plugin_method import shown
+from hsr8.plugins.decisions import GazePlugin, Limits, PlannerPlugin
+from hsr8.plugins.method import shown
 from navigation.belief.belief import Belief
 from navigation.decision import GazeDecision, MotionDecision, Task
 

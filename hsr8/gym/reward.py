@@ -7,7 +7,7 @@ from math import hypot
 import numpy as np
 from numpy.typing import NDArray
 
-from hsr8.decisions import Situation
+from hsr8.simulation.decisions import Situation
 from hsr8.world.field.layout import Layout
 from hsr8.world.truth.truth import Truth
 from navigation.belief.belief import Belief

@@ -9,19 +9,19 @@ from functools import partial
 from importlib.util import find_spec
 from typing import Any, Self
 
-from hsr8.decisions import DriveCommand
-from hsr8.drive import TIMEOUT, Drive
 from hsr8.errors import UsageError
 from hsr8.export.bag import require_rosbags
 from hsr8.export.topics import PIXELS, START, TOPICS, Setup
-from hsr8.record import Tick, TickRecord
-from hsr8.recorder.columns import Column
-from hsr8.recorder.recorded import FrameSampler
-from hsr8.recorder.rows import TABLES
+from hsr8.recording.columns import Column
+from hsr8.recording.recorded import FrameSampler
+from hsr8.recording.rows import TABLES
 from hsr8.robots.loaded import LoadedRobot
 from hsr8.ros.inputs import Command
 from hsr8.ros.outbox import Outbox
 from hsr8.ros.process import Network, serve
+from hsr8.simulation.decisions import DriveCommand
+from hsr8.simulation.drive import TIMEOUT, Drive
+from hsr8.simulation.record import Tick, TickRecord
 
 BACKLOG = 400  # ticks that wait for the publishing process; further ones are dropped
 STARTUP, LEAVING = 60.0, 5.0  # wall-clock limits of the start and the end of the process [s]

@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 
 from hsr8.export.bag import require_rosbags
 from hsr8.export.topics import PIXELS, TOPICS, Rows, Setup, Topic, Translator
-from hsr8.recorder.recorded import jpeg_of
+from hsr8.recording.recorded import jpeg_of
 from hsr8.ros.graph import PUBLISHER, SUBSCRIPTION, Endpoint, attachment, node_token
 from hsr8.ros.inputs import DRIVEN, INPUTS, Command, Input
 

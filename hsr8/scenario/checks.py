@@ -46,9 +46,6 @@ def _parameters(scenario: Scenario) -> Iterator[Mistake]:
                 ("robot", "speed", axis),
                 f"must be at most walking.limits.{axis} = {limit:g}, got {given:g}",
             )
-    low, high = scenario.vision.min_radius, scenario.vision.max_radius
-    if low >= high:
-        yield Mistake(("vision", "min_radius"), f"must be below max_radius = {high:g}, got {low:g}")
     for section, lower, upper in (
         ("mission", "r_goal", "r_release"),
         ("evaluation", "d_nm", "d_fm"),

@@ -11,8 +11,6 @@ from dataclasses import dataclass
 from pathlib import Path as FilePath
 from typing import Any
 
-import tomlkit
-
 from hsr8.errors import ScenarioError
 from hsr8.files.key_lines import lines_of
 from hsr8.files.text import TomlError, parse_toml, read_text
@@ -28,6 +26,8 @@ MAX_SHOWN = 60  # characters of a setting in a message
 ROBOT_SUFFIX = ".toml"  # of the file of a robot, which no name has
 
 Table = dict[str, Any]
+Given = str | Sequence[str] | Mapping[str, Any]
+"""Settings: ``key=value``, several of these, or values by dotted key."""
 
 
 def built_in_names() -> list[str]:
@@ -35,27 +35,87 @@ def built_in_names() -> list[str]:
     return sorted(path.stem for path in BUILT_IN.glob("*.toml"))
 
 
-def as_words(overrides: Sequence[str] | Mapping[str, Any]) -> tuple[str, ...]:
-    """Return overrides as ``key=value``.
+@dataclass(frozen=True, slots=True)
+class Setting:
+    """Value of one key, which takes precedence over those of files.
+
+    Attributes:
+        key: parts of the dotted key.
+        value: value as TOML has it.
+        source: place of a mistake: option, key and value.
+    """
+
+    key: tuple[str, ...]
+    value: Any
+    source: str
+
+    def table(self, data: Table) -> Table:
+        """Return the nested table of the value; lists are copied with one entry changed.
+
+        Args:
+            data: tables that it changes.
+
+        Raises:
+            ScenarioError: an index is outside its list.
+        """
+        value = self.value
+        for k in range(len(self.key) - 1, 0, -1):
+            value = _put(self.key[k], value, _at(data, self.key[:k]), self.source)
+        return {self.key[0]: value}
+
+
+def settings_of(given: Given, flag: str = "--set") -> list[Setting]:
+    """Return settings from ``key=value``, where text needs no quotes, or from a mapping.
+
+    Args:
+        given: words, or values by dotted key.
+        flag: option that gives the words, for messages.
 
     Raises:
-        ScenarioError: a value cannot be written in TOML.
+        ScenarioError: a word is not of that form, or a value has another type than those of TOML.
     """
-    if isinstance(overrides, str):  # also a sequence of strings
-        return (overrides,)
-    if not isinstance(overrides, Mapping):
-        return tuple(overrides)
-    words = []
-    for key, value in overrides.items():
-        plain = value.tolist() if hasattr(value, "tolist") else value  # NumPy
-        try:
-            text = tomlkit.item([plain]).as_string()  # in a list, tables are inline
-        except ValueError:
-            raise ScenarioError(
-                f"setting {key}: expected a TOML value, got {type(value).__name__}"
-            ) from None
-        words.append(f"{key}={text[1:-1]}")
-    return tuple(words)
+    if isinstance(given, Mapping):
+        return [_setting(key, _plain(value, key), "settings") for key, value in given.items()]
+    return [_parsed(word, flag) for word in ([given] if isinstance(given, str) else given)]
+
+
+def _parsed(word: str, flag: str) -> Setting:
+    """Return the setting of ``key=value``."""
+    shown = word if len(word) <= MAX_SHOWN else f"{word[:MAX_SHOWN]}..."
+    source = f"{flag} {shown}"
+    key, equals, text = word.partition("=")
+    if not equals:
+        raise ScenarioError(f"{source}: expected key=value, for example {flag} camera.period_ms=80")
+    try:
+        parsed = tomllib.loads(f"value = {text}")
+    except (ValueError, RecursionError):
+        parsed = {"value": text.strip()}
+    return _setting(key, parsed["value"] if len(parsed) == 1 else text, source)
+
+
+def _setting(dotted: str, value: Any, source: str) -> Setting:
+    key = tuple(dotted.strip().split("."))
+    if not all(key):
+        raise ScenarioError(
+            f"{source}: wrong key, got {dotted!r}; expected a dotted key, such as camera.period_ms"
+        )
+    if key == ("extends",):
+        raise ScenarioError(f"{source}: extends is allowed in files only")
+    return Setting(key, value, source)
+
+
+def _plain(value: Any, key: str) -> Any:
+    """Return a value of Python or NumPy as TOML has it."""
+    value = value.tolist() if hasattr(value, "tolist") else value
+    if isinstance(value, Mapping):
+        return {str(k): _plain(v, key) for k, v in value.items()}
+    if isinstance(value, list | tuple):
+        return [_plain(v, key) for v in value]
+    if not isinstance(value, bool | int | float | str):
+        raise ScenarioError(
+            f"settings: {key}: wrong type, got {type(value).__name__}; expected a TOML value"
+        )
+    return value
 
 
 @dataclass
@@ -217,40 +277,6 @@ def _parent(name: object, source: str, folder: FilePath, files: tuple[FilePath, 
         chain = " -> ".join(str(f) for f in (*files, parent))
         raise ScenarioError(f"{source}: scenarios extend each other in a loop: {chain}")
     return parent
-
-
-def source_of(flag: str, override: str) -> str:
-    """Return an option and its value, shortened, as the place of a mistake."""
-    short = override if len(override) <= MAX_SHOWN else f"{override[:MAX_SHOWN]}..."
-    return f"{flag} {short}"
-
-
-def parsed_override(override: str, data: Table, flag: str) -> Table:
-    """Return the nested table of ``a.b=value``; lists are copied with one entry changed.
-
-    Args:
-        override: dotted key and TOML value.
-        data: tables that it changes.
-        flag: option that gives it, for messages.
-
-    Raises:
-        ScenarioError: it is not of that form, or an index is outside its list.
-    """
-    source = source_of(flag, override)
-    key, equals, text = override.partition("=")
-    parts = key.strip().split(".")
-    if not equals or not all(parts):
-        raise ScenarioError(f"{source}: expected key=value, for example {flag} camera.period_ms=80")
-    if parts == ["extends"]:
-        raise ScenarioError(f"{source}: extends is allowed in files only")
-    try:
-        parsed = tomllib.loads(f"value = {text}")
-    except (ValueError, RecursionError):
-        parsed = {"value": text.strip()}
-    value = parsed["value"] if len(parsed) == 1 else text
-    for k in range(len(parts) - 1, 0, -1):
-        value = _put(parts[k], value, _at(data, parts[:k]), source)
-    return {parts[0]: value}
 
 
 def _put(part: str, value: Any, old: Any, source: str) -> Any:

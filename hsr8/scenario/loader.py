@@ -1,7 +1,7 @@
 """Scenarios: reading, completion for their robot, validation and output."""
 
 import json
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from itertools import islice
 from pathlib import Path as FilePath
@@ -15,17 +15,16 @@ from hsr8.keys import Path, depth
 from hsr8.mistakes import MAX_LISTED, Mistake, dotted, mistakes_of
 from hsr8.robots.scale import DEFAULT_ROBOT, RobotDefaults, RobotScale
 from hsr8.scenario.checks import check
-from hsr8.scenario.constants import CONSTANTS, misplaced, placed, separated, with_constants
 from hsr8.scenario.layers import (
     BUILT_IN,
+    Given,
     Layer,
+    Setting,
     Table,
-    as_words,
     find_scenario,
     layered,
-    parsed_override,
     read_layers,
-    source_of,
+    settings_of,
 )
 from hsr8.scenario.plugin import KINDS
 from hsr8.scenario.reference import FILE_KEYS
@@ -41,10 +40,12 @@ from hsr8.scenario.scaling import (
 from hsr8.scenario.schema import Scenario
 from hsr8.scenario.track_file import legible, read_tracks
 
+FORMER = "constants"  # former table of the keys without a text
+
 
 def load_scenario(
     name_or_path: str,
-    overrides: Sequence[str] | Mapping[str, Any] = (),
+    overrides: Given = (),
     seed: int | None = None,
     options: Mapping[str, Mapping[str, Any]] | None = None,
     more: Mapping[str, Sequence[str]] | None = None,
@@ -72,11 +73,11 @@ def load_scenario(
         ScenarioError: the file or an override is wrong; the message lists every mistake with its
             line and the allowed values.
     """
-    words = [("--set", word) for word in as_words(overrides)]
-    words += [(source, word) for source, given in (more or {}).items() for word in given]
+    settings = settings_of(overrides)
+    settings += [s for source, given in (more or {}).items() for s in settings_of(given, source)]
     layers = read_layers(find_scenario(name_or_path))
     layers += [Layer(dict(table), option) for option, table in (options or {}).items()]
-    return _scenario(name_or_path, layers, words, seed, trust=trust)
+    return _scenario(name_or_path, layers, settings, seed, trust=trust)
 
 
 def loads(text: str, name: str = "scenario") -> Scenario:
@@ -114,21 +115,20 @@ def _note_untrusted(scenario: Scenario, draft: "_Draft", trust: bool | None) -> 
 def dump(scenario: Scenario) -> str:
     """Return a scenario as TOML text; `loads` of it gives an equal scenario.
 
-    All settings are written, and the constants that differ from their defaults; those of another
-    robot than HSR-VIII all are, so that nothing is left to scale.
+    All values are written, so that nothing is left to scale.
     """
     return tomlkit.dumps(legible(tables(scenario)))
 
 
 def tables(scenario: Scenario) -> Table:
     """Return the tables that `dump` writes."""
-    return separated(json.loads(scenario.model_dump_json(exclude_none=True)))
+    return dict(json.loads(scenario.model_dump_json(exclude_none=True)))
 
 
 def _scenario(
     name: str,
     layers: Sequence[Layer],
-    words: Sequence[tuple[str, str]] = (),
+    settings: Sequence[Setting] = (),
     seed: int | None = None,
     *,
     trust: bool | None,
@@ -138,7 +138,7 @@ def _scenario(
     Args:
         name: name in messages.
         layers: files and tables of options in ascending precedence.
-        words: options and their overrides ``key=value``, which take precedence.
+        settings: single values, which take precedence.
         seed: seed that takes precedence over all others.
         trust: see `load_scenario`.
 
@@ -146,7 +146,7 @@ def _scenario(
         ScenarioError: it is wrong.
     """
     try:
-        draft = _draft(name, layers, words)
+        draft = _draft(name, layers, settings)
         if seed is not None:
             draft.add(Layer({"seed": seed}, "--seed"))
         scenario = draft.finish(name)
@@ -156,7 +156,7 @@ def _scenario(
     return scenario
 
 
-def _draft(name: str, layers: Sequence[Layer], words: Sequence[tuple[str, str]]) -> "_Draft":
+def _draft(name: str, layers: Sequence[Layer], settings: Sequence[Setting]) -> "_Draft":
     """Return the merged tables; the built-in ones and all defaults are those of the robot.
 
     A complete scenario needs nothing from its robot, which may be missing.
@@ -164,8 +164,7 @@ def _draft(name: str, layers: Sequence[Layer], words: Sequence[tuple[str, str]])
     Raises:
         ScenarioError: an override is wrong, or the robot is.
     """
-    given = [Layer(parsed_override(word, {}, flag), source_of(flag, word)) for flag, word in words]
-    given = [*layers, *given]
+    given = [*layers, *(Layer(setting.table({}), setting.source) for setting in settings)]
     model, draft = _robot_of(given), _Draft()
     built_in = [layer for layer in layers if layer.built_in]  # they extend built-in ones only
     for layer in built_in:
@@ -176,11 +175,11 @@ def _draft(name: str, layers: Sequence[Layer], words: Sequence[tuple[str, str]])
         draft.data = scaled(draft.data, defaults.scale.factor)
     for layer in layers[len(built_in) :]:
         draft.add(layer)
-    for flag, word in words:
-        draft.add(Layer(parsed_override(word, draft.data, flag), source_of(flag, word)))
-    if not (built_in or model == DEFAULT_ROBOT or draft.misplaced_keys() or draft.complete):
+    for setting in settings:
+        draft.add(Layer(setting.table(draft.data), setting.source))
+    if not (built_in or model == DEFAULT_ROBOT or draft.complete):
         defaults = _defaults(model, name, given)
-    draft.data, draft.scale = under(draft.data, placed(defaults.table)), defaults.scale
+    draft.data, draft.scale = under(draft.data, defaults.table), defaults.scale
     return draft
 
 
@@ -225,10 +224,6 @@ class _Draft:
         """Whether all quantities are given."""
         return is_complete(self._tables())
 
-    def misplaced_keys(self) -> list[Mistake]:
-        """Return the keys of the libraries that are not where they belong."""
-        return _first(misplaced(self.data))
-
     def add(self, layer: Layer) -> None:
         """Merge a layer over the present tables."""
         self.data = merged(self.data, layer.located())
@@ -246,7 +241,7 @@ class _Draft:
         return scenario
 
     def _validated(self) -> tuple[Scenario | None, list[Mistake]]:
-        if problems := self.misplaced_keys():
+        if problems := _first(_former(self.data)):
             return None, problems
         data = self._tables()
         if self.scale != RobotScale():
@@ -261,8 +256,8 @@ class _Draft:
         return scenario, _first(check(scenario))
 
     def _tables(self) -> Table:
-        """Tables with the constants in their sections."""
-        return with_constants(under(self.data, followers(self.data)))
+        """Tables with the defaults that follow given keys."""
+        return under(self.data, followers(self.data))
 
     def error(self, name: str, problems: Sequence[Mistake]) -> ScenarioError:
         """Return the error that lists the first problems with their places."""
@@ -270,16 +265,10 @@ class _Draft:
         if len(problems) > MAX_LISTED:
             count, problems = f"the first {MAX_LISTED} mistakes", problems[:MAX_LISTED]
         lines = [f"{count} in scenario {name!r}"]
-        paths = [self._path(problem.path) for problem in problems]
+        paths = [problem.path for problem in problems]
         for source, path, problem in zip(self.sources(paths), paths, problems, strict=True):
             lines.append(f"  {source}{dotted(path) or 'scenario'}: {problem.text}")
         return ScenarioError("\n".join(lines))
-
-    def _path(self, path: Path) -> Path:
-        """Path of a key as given, which may be a constant."""
-        if depth(self.data, path) < len(path) <= depth(self.data.get(CONSTANTS), path):
-            return (CONSTANTS, *path)
-        return path
 
     def layer(self, path: Path) -> Layer | None:
         """Return the layer that gives the longest part of `path`, the last one of several."""
@@ -297,6 +286,16 @@ class _Draft:
             within = [path for path, of in zip(paths, layers, strict=True) if of is layer]
             sources |= {path: f"{source}: " for path, source in layer.locations(within).items()}
         return [sources[path] for path in paths]
+
+
+def _former(data: Table) -> Iterator[Mistake]:
+    """Yield the keys of the former table ``[constants]``, with their present place."""
+    tables: list[tuple[Path, Any]] = [((FORMER,), data.get(FORMER))]
+    for path, value in tables:  # grows
+        if isinstance(value, dict):
+            tables += [((*path, key), inner) for key, inner in value.items()]
+        elif len(path) > 1:
+            yield Mistake(path, f"former key; expected {dotted(path[1:])}")
 
 
 def _first(problems: Iterable[Mistake]) -> list[Mistake]:

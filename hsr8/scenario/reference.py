@@ -1,7 +1,7 @@
 """Public keys of a scenario file: JSON Schema, and the reference page made from it.
 
 A parameter of walking, vision, belief or navigation is a public key if its annotation has a text,
-see `hsr8.keys`; all others are constants.
+see `hsr8.keys`; all others are for studies and documented in the code alone.
 """
 
 from collections.abc import Iterator
@@ -25,12 +25,6 @@ FILE_KEYS: Node = {  # of files alone, not of a scenario
         "type": "string",
         "description": "Scenario to start from: a built-in name or a file in the same folder.",
     },
-    "constants": {
-        "type": "object",
-        "description": "Constants of the libraries by dotted name; for studies.",
-        "properties": {name: {"type": "object"} for name in LIBRARIES},
-        "additionalProperties": False,
-    },
 }
 
 
@@ -42,7 +36,7 @@ def public_keys() -> dict[str, str]:
 
 @cache
 def parameters() -> dict[str, str]:
-    """Return the text of every parameter of the libraries, empty for constants, by dotted name."""
+    """Return the text of every parameter of the libraries by its dotted name; most are empty."""
     libraries = ((Scenario.model_fields[name].annotation, name) for name in LIBRARIES)
     return {key: text for kind, name in libraries for key, text in _within(kind, name)}
 
@@ -67,7 +61,7 @@ def json_schema() -> Node:
         for key, text in texts(section).items():
             properties[key]["description"] = text
     for name in LIBRARIES:
-        _remove_constants(schema["$defs"], schema["properties"][name], name)
+        _keep_public(schema["$defs"], schema["properties"][name], name)
     schema["properties"].update(FILE_KEYS)
     return schema
 
@@ -87,16 +81,17 @@ def _sections_in(annotation: Any) -> Iterator[type]:
         yield from _sections_in(hint)
 
 
-def _remove_constants(definitions: Node, node: Node, path: str) -> bool:
-    """Remove keys that are not public from a table; return whether any remain."""
+def _keep_public(definitions: Node, node: Node, path: str) -> bool:
+    """Remove the keys of a table that are not public, but stay allowed; return if any are left."""
     if "$ref" not in node:
         return path in public_keys()
     node.pop("default", None)
     name = node["$ref"].rpartition("/")[2]
     properties = definitions[name]["properties"]
     for key, inner in list(properties.items()):
-        if not _remove_constants(definitions, inner, f"{path}.{key}"):
+        if not _keep_public(definitions, inner, f"{path}.{key}"):
             del properties[key]
+            definitions[name]["additionalProperties"] = True
     if not properties:
         del definitions[name]
     return bool(properties)

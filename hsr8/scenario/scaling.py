@@ -14,7 +14,6 @@ from hsr8.scenario.schema import Navigation, Scenario
 from hsr8.scenario.section import Section
 from hsr8.scenario.sensors import IDEAL
 from navigation.parameters.navigation import NavigationParameters
-from vision.parameters import VisionParameters
 
 Table = dict[str, Any]
 Factor = Callable[[str], float]
@@ -42,28 +41,13 @@ def expand_presets(data: Mapping[str, Any]) -> Table:
 def followers(data: Mapping[str, Any]) -> Table:
     """Return the defaults that follow given keys of a scenario's tables.
 
-    Navigation takes the radius of the robot, vision the sizes of the obstacles and the beacons, and
-    the gaze the height of the beacons.
+    Navigation takes the radius of the robot.
     """
-    defaults: Table = {}
-    radius = _number(data, "robot", "radius")
-    if radius is not None:
-        defaults["navigation"] = {"univector": {"s_robot": radius}}
-    scale = _number(data, "world", "scale")
-    if scale is not None:
-        vision = VisionParameters()
-        sizes = ("obstacle_height", "beacon_height", "beacon_radius")
-        defaults["vision"] = {size: scale * getattr(vision, size) for size in sizes}
-        risk = {"beacon_height": defaults["vision"]["beacon_height"]}
-        defaults.setdefault("navigation", {})["gaze"] = {"risk": risk}
-    return defaults
-
-
-def _number(data: Mapping[str, Any], section: str, key: str) -> float | None:
-    """Value of a key; None without a number."""
-    table = data.get(section)
-    value = table.get(key) if isinstance(table, dict) else None
-    return None if isinstance(value, bool) or not isinstance(value, int | float) else value
+    table = data.get("robot")
+    radius = table.get("radius") if isinstance(table, dict) else None
+    if isinstance(radius, bool) or not isinstance(radius, int | float):
+        return {}
+    return {"navigation": {"univector": {"s_robot": radius}}}
 
 
 def under(given: Table, defaults: Table) -> Table:
@@ -93,17 +77,12 @@ def merged(base: Table, over: Table) -> Table:
 
 def scaled(tables: Mapping[str, Any], factor: Factor) -> Table:
     """Return the tables of a scenario for another robot."""
-    table: Table = _scaled(dict(tables), Scenario, factor)
-    if "constants" in table:
-        table["constants"] = _scaled(table["constants"], Scenario, factor)
+    table: Table = _scaled(tables, Scenario, factor)
     return table
 
 
 def with_scaled_defaults(tables: Mapping[str, Any], factor: Factor) -> Table:
-    """Return the tables of a scenario with the scaled default of every missing quantity.
-
-    Constants are expected in the tables of their libraries.
-    """
+    """Return the tables of a scenario with the scaled default of every missing quantity."""
     table = dict(tables)
     navigation = table.get("navigation", {})
     if isinstance(navigation, dict):

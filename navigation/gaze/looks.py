@@ -156,7 +156,7 @@ def beacon_looks(looks: Rows, beacons: Array, pose: Array, value: float, p: np.r
             continue
         look = looks[count]
         look.x, look.y, look.urgency, look.rate = x, y, 1.0, 0.0
-        look.top, look.foot_value, look.tall = 0.5 * p.beacon_height, 0.0, True
+        look.top, look.foot_value, look.tall = p.seam, 0.0, True
         count += 1
     for i in range(count):
         looks[i].weight = value / count

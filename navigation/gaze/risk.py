@@ -85,7 +85,7 @@ class RiskGaze(GazePolicy[RiskMemory]):
             "beacon_range": evaluation.beacon_range,
         }
         self._undetected_limits = risk_limits(gaze.undetected, gaze.risk)
-        self._limits: tuple[tuple[float, float], Rows] | None = None  # of the latest camera
+        self._limits: tuple[tuple[float, float, float], Rows] | None = None  # of the latest camera
 
     def begin(self) -> RiskMemory:
         return RiskMemory()
@@ -161,10 +161,11 @@ class RiskGaze(GazePolicy[RiskMemory]):
     def _limits_of(self, view: CameraView) -> Rows:
         """Return the parameters of the looks for a camera, kept until the camera changes."""
         top = view.model.top if view.model.top < view.position[2] else 0.0
-        camera = (top, self._parameters.gaze.max_pan + 0.5 * view.horizontal_fov)
+        reach = self._parameters.gaze.max_pan + 0.5 * view.horizontal_fov
+        camera = (top, view.model.seam, reach)
         if self._limits is None or self._limits[0] != camera:
-            numbers = self._numbers | {"obstacle_height": top, "reach": camera[1]}
-            self._limits = camera, record(self._parameters.gaze.risk, **numbers)
+            numbers = dict(zip(("obstacle_height", "seam", "reach"), camera, strict=True))
+            self._limits = camera, record(self._parameters.gaze.risk, **self._numbers, **numbers)
         return self._limits[1]
 
 

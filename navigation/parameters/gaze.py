@@ -1,6 +1,6 @@
 """Parameters of the gaze: partial evaluations, gaze map, votes, timing.
 
-Public keys of a scenario have bounds and a docstring; all other fields are constants.
+Public keys of a scenario have bounds and a docstring; all other fields are for studies.
 """
 
 from dataclasses import dataclass, field
@@ -101,7 +101,6 @@ class RiskParameters:
     # time without a beacon that counts like psi_sf = 1: the covariance does not show every error
     beacon_time: Annotated[float, "s"] = 10.0
     t_heading: float = 0.06  # heading uncertainty at which psi_sf is one [rad]
-    beacon_height: Annotated[float, "m"] = 0.60  # of a beacon, whose colours meet halfway up
     disc_edge: Annotated[float, "m"] = 0.14  # distance from an obstacle that it does not hide
     border: float = 0.05  # distance from the border of the image [rad]
 

@@ -1,6 +1,6 @@
 """Parameters of the motion: univector field, safety filter, velocity mapping.
 
-Public keys of a scenario have bounds and a docstring; all other fields are constants.
+Public keys of a scenario have bounds and a docstring; all other fields are for studies.
 """
 
 from dataclasses import dataclass

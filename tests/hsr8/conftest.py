@@ -8,12 +8,12 @@ import numpy as np
 import pyarrow as pa
 import pytest
 
-from hsr8.decisions import Decision, DecisionContext, FrameRecord
-from hsr8.record import TickRecord
-from hsr8.recorder.recorded import FrameSampler
-from hsr8.recorder.rows import TABLES
-from hsr8.recorder.table import Table
+from hsr8.recording.recorded import FrameSampler
+from hsr8.recording.rows import TABLES
+from hsr8.recording.table import Table
 from hsr8.robots.loaded import load_robot
+from hsr8.simulation.decisions import Decision, DecisionContext, FrameRecord
+from hsr8.simulation.record import TickRecord
 from hsr8.world.field.layout import Beacon, Layout, Obstacle
 from hsr8.world.field.motion import Shuttle
 from hsr8.world.model.assembly import Optics, assemble

@@ -6,10 +6,10 @@ import pytest
 
 import hsr8
 from hsr8.errors import RenderingUnavailable, ScenarioError, UsageError
-from hsr8.evaluation.replay import replay
-from hsr8.recorder.rows import TABLES
-from hsr8.recorder.run.run_reader import open_run
-from hsr8.recorder.table_difference import first_cell
+from hsr8.recording.rows import TABLES
+from hsr8.recording.run_reader import open_run
+from hsr8.recording.table_difference import first_cell
+from hsr8.recording.verification import recompute
 from navigation.belief.belief import Belief
 from navigation.decision import GazeDecision, MotionDecision
 
@@ -50,7 +50,7 @@ def test_a_run_in_memory_is_that_on_disk(tmp_path, monkeypatch):
         assert [*one] == [*other] == [column.name for column in row.columns]
         assert first_cell(one, other, ignored=("walking_time",)) is None
         assert len(one) == len(other)
-    assert all(stage.equal for stage in replay(kept))
+    assert all(stage.equal for stage in recompute(kept))
     assert kept.unit("records.zmp") == "m"
 
 
@@ -126,7 +126,7 @@ def test_without_opengl_no_folder_is_left(tmp_path, monkeypatch):
     def none():
         raise RenderingUnavailable("no OpenGL")
 
-    monkeypatch.setattr("hsr8.evaluation.recording.require_gl", none)
+    monkeypatch.setattr("hsr8.driver.require_gl", none)
     with pytest.raises(RenderingUnavailable):
         hsr8.run("quick", out=tmp_path)
     assert list(tmp_path.iterdir()) == []

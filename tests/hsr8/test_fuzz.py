@@ -10,9 +10,9 @@ from hypothesis import strategies as st
 
 from hsr8.cli.main import entry
 from hsr8.errors import ScenarioError, UsageError
-from hsr8.loop import Simulation
 from hsr8.scenario.layers import BUILT_IN, built_in_names
 from hsr8.scenario.loader import load_scenario, loads
+from hsr8.simulation.loop import Simulation
 from tests.hsr8.bad_input import keys, mutated, near, value, written
 from vision.color import load_table
 from vision.errors import VisionError

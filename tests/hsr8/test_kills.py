@@ -9,7 +9,7 @@ import time
 
 import pytest
 
-from hsr8.recorder.run.run_reader import open_run
+from hsr8.recording.run_reader import open_run
 from walking.parameters import CONTROL_PERIOD
 
 COUNT = struct.Struct("<q")
@@ -19,7 +19,7 @@ WAIT = 300.0  # wall time until the first tick, with compilation [s]
 PROGRAM = """
 import mmap, struct, sys
 from hsr8.cli.main import entry
-from hsr8.recorder.recorder import Recorder
+from hsr8.recording.recorder import Recorder
 
 with open(sys.argv[1], "r+b") as file:
     ticks = mmap.mmap(file.fileno(), 8)

@@ -3,7 +3,7 @@ import re
 from write_metric_reference import PAGE, page
 
 import hsr8
-from hsr8.evaluation.registry import SECTIONS
+from hsr8.measure.registry import SECTIONS
 
 
 def test_the_page_is_fresh():

@@ -5,8 +5,8 @@ from pathlib import Path
 
 import pytest
 
-from hsr8.loop import Simulation
 from hsr8.scenario.loader import load_scenario
+from hsr8.simulation.loop import Simulation
 
 # `scaled_model` is a script; scripts are not a package.
 sys.path.insert(0, str(Path(__file__).parents[2] / "scripts"))

@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
-from hsr8.loop import Simulation
 from hsr8.scenario.loader import load_scenario
+from hsr8.simulation.loop import Simulation
 
 STAND_INS = ['robot.body="kinematic"', 'camera.source="analytic"']
 

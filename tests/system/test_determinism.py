@@ -3,8 +3,8 @@
 import pytest
 
 import hsr8
-from hsr8.loop import Simulation
 from hsr8.scenario.loader import load_scenario
+from hsr8.simulation.loop import Simulation
 
 STAND_INS_BY_KEY = {"robot.body": "kinematic", "camera.source": "analytic"}
 STAND_INS = [f'{key}="{value}"' for key, value in STAND_INS_BY_KEY.items()]

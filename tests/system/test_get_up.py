@@ -6,9 +6,9 @@ import mujoco
 import numpy as np
 import pytest
 
-from hsr8.robot_builder import build_body, build_model
 from hsr8.robots.loaded import load_robot
 from hsr8.scenario.loader import load_scenario
+from hsr8.simulation.robot_builder import build_body, build_model
 from hsr8.world.field.generator import draw_layout
 from hsr8.world.model.index import ModelIndex
 from walking.get_up import GetUp, Outcome

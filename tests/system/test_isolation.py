@@ -2,8 +2,8 @@
 
 import pytest
 
-from hsr8.loop import Simulation
 from hsr8.scenario.loader import load_scenario
+from hsr8.simulation.loop import Simulation
 from hsr8.world.body.kinematic import KinematicBody
 from hsr8.world.body.physics import PhysicsBody
 

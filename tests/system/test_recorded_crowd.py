@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 import hsr8
-from hsr8.evaluation.replay import replay
+from hsr8.recording.verification import recompute
 from hsr8.scenario.layers import BUILT_IN
 from hsr8.scenario.track_file import recorded_tracks
 
@@ -52,7 +52,7 @@ def test_the_recorded_positions_are_those_of_the_file(run):
 
 
 def test_a_run_is_verified_and_repeated_without_the_file(run, tmp_path):
-    assert all(stage.equal for stage in replay(run))
+    assert all(stage.equal for stage in recompute(run))
     copy = tmp_path / "scenario.toml"
     shutil.copy(run.scenario_file, copy)
     hsr8.run(copy, seed=3, out=tmp_path)

@@ -44,7 +44,7 @@ PART_SIDE_SIGMA = 0.012  # of its axis, across the line of sight [m]
 PART_RADIUS_SIGMA = 0.010  # [m]
 OBSTACLE_COLORS = tuple(c.name for c in COLOR_CLASSES.values() if c.kind == "obstacle")
 MAX_HIDDEN_WHOLE = 0.04  # hidden fraction of the width up to which an object counts as whole
-FALSE_RADIUS, FALSE_HEIGHT = 0.08, 0.30  # of false detections [m]
+FALSE_RADIUS = 0.08  # of false detections [m]
 FALSE_RANGE = (0.3, 2.5)  # distance of false detections [m]
 
 Box = tuple[float, float, float, float, bool]
@@ -77,6 +77,7 @@ class AnalyticCamera:
     ) -> None:
         self._camera = camera
         self._scale = layout.scale
+        self._height = layout.sizes.top  # of false detections [m]
         self._rng = rng
         self._fault_rng = rng.spawn(1)[0]
         self._panoramic = settings.panoramic
@@ -161,7 +162,7 @@ class AnalyticCamera:
         detections = []
         for _ in range(int(rng.poisson(mean)) if mean else 0):
             color = OBSTACLE_COLORS[rng.integers(len(OBSTACLE_COLORS))]
-            radius, height = FALSE_RADIUS * self._scale, FALSE_HEIGHT * self._scale
+            radius, height = FALSE_RADIUS * self._scale, self._height
             cylinder = Obstacle((0.0, 0.0), radius, height, color)
             distance = self._scale * rng.uniform(*FALSE_RANGE)
             polar = (distance, ahead + rng.uniform(-self._half_fov, self._half_fov))

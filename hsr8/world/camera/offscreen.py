@@ -4,7 +4,7 @@ import mujoco
 import numpy as np
 from numpy.typing import NDArray
 
-from hsr8.gl import flush, require_gl
+from hsr8.process.gl import flush, require_gl
 
 Image = NDArray[np.uint8]
 

@@ -16,10 +16,10 @@ from hsr8.world.field.circle_crossing import draw_crossing
 from hsr8.world.field.encounter import NominalWalk, course_to, passage_through, starts_near
 from hsr8.world.field.lane import Lane, apart_at_all_times, distance, motion_law
 from hsr8.world.field.layout import (
-    OBSTACLE_HEIGHT,
     Beacon,
     Layout,
     Obstacle,
+    sizes_of,
     standard_beacons,
     with_first_moved,
 )
@@ -99,6 +99,7 @@ class Attempt:
     def __init__(self, scenario: Scenario, rng: np.random.Generator) -> None:
         self._scenario = scenario
         self._world = scenario.world
+        self._sizes = sizes_of(scenario.world)
         self._rng = rng
         self.tried = 0
         self._fair = FairDistances.of(scenario)
@@ -139,12 +140,15 @@ class Attempt:
             waypoints=np.array(points, dtype=float).reshape(-1, 2),
             goal_heading=self._goal_heading(),
             endless=self._is_endless(),
+            sizes=self._sizes,
             scale=world.scale,
         )
 
-    def _cylinder(self, position: Point, radius: float, color: str) -> Obstacle:
-        """Return a static obstacle."""
-        return Obstacle(position, radius, OBSTACLE_HEIGHT * self._world.scale, color)
+    def _cylinder(
+        self, position: Point, radius: float, color: str, motion: MotionLaw | None = None
+    ) -> Obstacle:
+        """Return an obstacle, with a motion a mover."""
+        return Obstacle(position, radius, self._sizes.top, color, motion)
 
     def _placed(self, mover: Mover, start: Point | None) -> list[Lane]:
         """Return the movers of a section; those of a recording begin at a drawn time."""
@@ -168,15 +172,15 @@ class Attempt:
 
     def _lane(self, motion: MotionLaw, radius: float, color: str) -> Lane:
         """Return a mover with its lane."""
-        return Lane.of(motion, radius, color, self._world.scale, self._scenario.time_scale)
+        mover = self._cylinder(motion.position(0.0), radius, color, motion)
+        return Lane.of(mover, self._world.scale, self._scenario.time_scale)
 
     def _beacons(self) -> tuple[Beacon, ...]:
         world = self._world
         if not world.beacons:
             return ()
-        return with_first_moved(
-            standard_beacons(world.size, world.scale), world.beacon_displacement, world.size
-        )
+        beacons = standard_beacons(world.size, self._sizes, world.scale)
+        return with_first_moved(beacons, world.beacon_displacement, world.size)
 
     def _given_points(self) -> list[Point] | None:
         mission = self._scenario.mission

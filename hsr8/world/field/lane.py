@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from hsr8.scenario.track import SPACING, Track
 from hsr8.scenario.world import CircleMover, LineMover, ShuttleMover
-from hsr8.world.field.layout import OBSTACLE_HEIGHT, Obstacle
+from hsr8.world.field.layout import Obstacle
 from hsr8.world.field.motion import (
     Circle,
     Line,
@@ -49,23 +49,19 @@ class Lane:
     @classmethod
     def of(
         cls,
-        motion: MotionLaw,
-        radius: float,
-        color: str,
+        obstacle: Obstacle,
         scale: float = 1.0,
         time_scale: float = 1.0,
     ) -> "Lane":
         """Return the lane of a mover.
 
         Args:
-            motion: motion of the mover.
-            radius: radius of the mover [m].
-            color: color of the mover.
+            obstacle: the mover.
             scale: scale of the world [1].
             time_scale: time scale of the world [1].
         """
-        height = OBSTACLE_HEIGHT * scale
-        obstacle = Obstacle(motion.position(0.0), radius, height, color, motion)
+        motion = obstacle.motion
+        assert motion is not None
         if isinstance(motion, Shuttle):
             path = np.linspace(motion.start, motion.end, SAMPLES)
             return cls(obstacle, path, path[[0, -1]])

@@ -9,15 +9,14 @@ from numpy.typing import NDArray
 
 from hsr8.scenario.fault import Bump, Fault, MoverAppears
 from hsr8.scenario.track import AWAY
-from hsr8.world.field.motion import Appearing, MotionLaw, Movers, Point
+from hsr8.scenario.world import World
+from hsr8.world.field.motion import ALWAYS, SAME_TIME, Interval, MotionLaw, Movers, Point
+from vision.sizes import Sizes
 
 Array = NDArray[np.float64]
 
-# In a world of scale 1:
-OBSTACLE_HEIGHT = 0.30  # [m]
-BEACON_RADIUS = 0.05  # [m]
-BEACON_HEIGHT = 0.60  # [m]
-BEACON_OFFSET = 0.3  # distance of the beacons from the border of the field [m]
+SIZES = Sizes()  # in a world of scale 1
+BEACON_OFFSET = 0.3  # of the beacons from the border of the field, at that scale [m]
 BEACON_COLORS = ("yellow", "cyan", "magenta")
 
 
@@ -32,6 +31,7 @@ class Obstacle:
         color: name of the colour class.
         motion: motion law of a mover; None of a static obstacle.
         yields: whether a mover waits for the robot.
+        present: begin and end of its presence, outside of which a mover is far away [s].
     """
 
     position: Point
@@ -40,6 +40,7 @@ class Obstacle:
     color: str
     motion: MotionLaw | None = None
     yields: bool = False
+    present: Interval = ALWAYS
 
 
 @dataclass(frozen=True, slots=True)
@@ -77,8 +78,8 @@ class Beacon:
     position: Point
     top: str
     bottom: str
-    radius: float = BEACON_RADIUS
-    height: float = BEACON_HEIGHT
+    radius: float = SIZES.beacon_radius
+    height: float = SIZES.beacon_height
     known: Point | None = None
 
     @property
@@ -100,6 +101,7 @@ class Layout:
         goal_heading: required heading at the last waypoint [rad]; None for any.
         endless: the first waypoint follows the last one.
         bumps: low discs on the floor (faults).
+        sizes: sizes of obstacles and beacons, which the robot knows.
         scale: size of drawings and distances relative to those for HSR-VIII [1].
         reactions: reactions of the movers.
     """
@@ -112,6 +114,7 @@ class Layout:
     goal_heading: float | None
     endless: bool
     bumps: tuple[Bump, ...] = ()
+    sizes: Sizes = SIZES
     scale: float = 1.0
     reactions: Reactions = Reactions()
 
@@ -127,15 +130,32 @@ class Layout:
 
     def motion(self) -> Movers:
         """Return the motion laws of all movers."""
-        return Movers(tuple(o.motion for o in self.obstacles if o.motion is not None))
+        movers = [(o.motion, o.present) for o in self.obstacles if o.motion is not None]
+        return Movers([m for m, _ in movers], [p for _, p in movers], AWAY * self.scale)
 
 
-def standard_beacons(field_size: Point, scale: float = 1.0) -> tuple[Beacon, ...]:
+def sizes_of(world: World) -> Sizes:
+    """Return the sizes of the obstacles and beacons that a world may have."""
+    placed = (*world.obstacle, *world.wall, *world.mover)
+    radii = [*world.radius, *(cylinder.radius for cylinder in placed)]
+    if world.circle.n:
+        radii.append(world.circle.radius)
+    low, high = SIZES.obstacle_height
+    return Sizes(
+        obstacle_height=(low * world.scale, high * world.scale),
+        obstacle_radius=(min(radii), max(radii)),
+        beacon_height=SIZES.beacon_height * world.scale,
+        beacon_radius=SIZES.beacon_radius * world.scale,
+    )
+
+
+def standard_beacons(
+    field_size: Point, sizes: Sizes = SIZES, scale: float = 1.0
+) -> tuple[Beacon, ...]:
     """Return six beacons around a field, one for every ordered pair of the beacon colours.
 
-    They are on the rectangle `BEACON_OFFSET` outside the border, 60 deg apart as seen from its
-    centre, so that neighbours never have the same two colours. Sizes and that offset are
-    multiplied by `scale`.
+    They are on the rectangle `BEACON_OFFSET` times `scale` outside the border, 60 deg apart as seen
+    from its centre, so that neighbours never have the same two colours.
     """
     half = 0.5 * np.asarray(field_size, dtype=float) + BEACON_OFFSET * scale
     y, c, m = BEACON_COLORS
@@ -152,8 +172,8 @@ def standard_beacons(field_size: Point, scale: float = 1.0) -> tuple[Beacon, ...
                 (x + 0.0, y_ + 0.0),
                 top,
                 bottom,
-                radius=BEACON_RADIUS * scale,
-                height=BEACON_HEIGHT * scale,
+                radius=sizes.beacon_radius,
+                height=sizes.beacon_height,
             )
         )
     return tuple(beacons)
@@ -187,11 +207,11 @@ def with_faults(layout: Layout, faults: Sequence[Fault]) -> Layout:
     for fault in faults:
         if isinstance(fault, MoverAppears):
             mover = obstacles[first + fault.mover]
-            assert mover.motion is not None
             end = inf if fault.end is None else fault.end
-            motion = Appearing(mover.motion, fault.begin, end, AWAY * layout.scale)
-            obstacles[first + fault.mover] = replace(
-                mover, position=motion.position(0.0), motion=motion
-            )
+            x, y = mover.position
+            if fault.begin > SAME_TIME:
+                x += AWAY * layout.scale
+            present = (fault.begin, end)
+            obstacles[first + fault.mover] = replace(mover, position=(x, y), present=present)
     bumps = tuple(fault for fault in faults if isinstance(fault, Bump))
     return replace(layout, obstacles=tuple(obstacles), bumps=bumps) if faults else layout

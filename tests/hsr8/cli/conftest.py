@@ -48,7 +48,7 @@ def instant(monkeypatch, tmp_path):
 
     def use(outcomes=None):
         executor = Instant(outcomes or {})
-        monkeypatch.setattr("hsr8.evaluation.sweep.runs.open_pool", lambda name, workers: executor)
+        monkeypatch.setattr("hsr8.sweep.runs.open_pool", lambda name, workers: executor)
         return executor
 
     return use

@@ -6,8 +6,8 @@ from pathlib import Path
 import pytest
 
 from hsr8.cli.main import entry
-from hsr8.evaluation.bench.entry import read_entry
-from hsr8.evaluation.sweep.folder import SweepFolder
+from hsr8.sweep.bench.entry import read_entry
+from hsr8.sweep.folder import SweepFolder
 
 SUITE = """
 name = "tiny"

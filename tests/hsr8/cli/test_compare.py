@@ -3,7 +3,7 @@ import json
 import pytest
 
 from hsr8.cli.main import entry
-from hsr8.recorder.run.run_reader import open_run
+from hsr8.recording.run_reader import open_run
 
 FAST = ["run", "quick", "--body", "kinematic", "--camera", "analytic", "--quiet"]
 

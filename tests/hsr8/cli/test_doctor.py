@@ -6,7 +6,7 @@ import pytest
 
 from hsr8.cli import doctor, yardstick
 from hsr8.cli.main import entry
-from hsr8.gl import APT_LINE, VULKAN_LINE
+from hsr8.process.gl import APT_LINE, VULKAN_LINE
 from hsr8.robots.file import files
 
 

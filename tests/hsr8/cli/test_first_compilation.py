@@ -7,8 +7,8 @@ from compilation import compiled
 from hsr8.cli import first_compilation
 from hsr8.cli.first_compilation import NOT_KEPT, TEXT, compile_all, two_processes
 from hsr8.cli.main import entry
-from hsr8.compilation_watch import CompilationWatch
-from hsr8.gl import BACKENDS
+from hsr8.process.compilation_watch import CompilationWatch
+from hsr8.process.gl import BACKENDS
 
 SOURCE = "def doubled(x): return x + x"
 

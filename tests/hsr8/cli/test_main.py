@@ -11,7 +11,7 @@ import pytest
 
 from hsr8.cli.main import ACTIONS, COMMANDS, entry
 from hsr8.errors import Hsr8Error, SimulationDiverged, UsageError
-from hsr8.evaluation.crash import InternalError, crash_report
+from hsr8.recording.crash import InternalError, crash_report
 
 HEAVY = (
     "mujoco",

@@ -10,7 +10,7 @@ import pytest
 
 from hsr8.cli.first_compilation import TEXT
 from hsr8.cli.main import entry
-from hsr8.recorder.run.run_folder import RunFolder
+from hsr8.recording.run_folder import RunFolder
 from hsr8.scenario.loader import load_scenario
 
 LINES = [

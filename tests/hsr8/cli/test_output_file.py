@@ -5,7 +5,7 @@ import pytest
 
 from hsr8.cli.output_file import parse_size, require_file_name, writing
 from hsr8.errors import UsageError
-from hsr8.evaluation.signals import like_ctrl_c
+from hsr8.process.signals import like_ctrl_c
 
 
 def test_a_file_that_cannot_be_written_is_reported_with_its_option(tmp_path):

@@ -11,13 +11,13 @@ import pytest
 from hsr8.api import run as api_run
 from hsr8.cli.main import entry
 from hsr8.errors import RenderingUnavailable
-from hsr8.loop import Simulation
-from hsr8.recorder.run import run_folder
-from hsr8.recorder.run.run_folder import RunFolder
-from hsr8.recorder.run.run_reader import open_run
-from hsr8.rerun_log.run_log import RunLog, write_log
+from hsr8.recording import run_folder
+from hsr8.recording.run_folder import RunFolder
+from hsr8.recording.run_reader import open_run
 from hsr8.robots.file.locate import find_description
 from hsr8.robots.loaded import load_robot
+from hsr8.show.log.run_log import RunLog, write_log
+from hsr8.simulation.loop import Simulation
 
 FAST = ("--body", "kinematic", "--camera", "analytic")
 
@@ -45,7 +45,7 @@ def run(tmp_path):
 def test_a_link_in_place_of_an_output_is_replaced(
     run, tmp_path, monkeypatch, command, name, target
 ):
-    monkeypatch.setattr("hsr8.render.viewer.screenshot", lambda *_: b"png")
+    monkeypatch.setattr("hsr8.show.viewer.screenshot", lambda *_: b"png")
     outside = tmp_path / "outside"
     outside.mkdir()
     (outside / "kept").write_text("as it was")
@@ -83,7 +83,7 @@ def test_an_unwritable_folder_is_reported_before_any_work(tmp_path, monkeypatch,
     def never(*_, **__):
         raise AssertionError("the simulation was built")
 
-    monkeypatch.setattr("hsr8.evaluation.recording.Simulation", never)
+    monkeypatch.setattr("hsr8.driver.Simulation", never)
     (tmp_path / "closed").mkdir(mode=0o500)
     if python:
         with pytest.raises(Exception, match=r"cannot write the run folder .*Permission denied"):
@@ -229,8 +229,8 @@ def test_a_camera_that_fails_leaves_no_open_file(tmp_path, monkeypatch):
     def failing(*_):
         raise RenderingUnavailable("no OpenGL")
 
-    monkeypatch.setattr("hsr8.loop.HeadCamera.open", failing)
-    monkeypatch.setattr("hsr8.evaluation.recording.require_gl", lambda: "none")
+    monkeypatch.setattr("hsr8.simulation.loop.HeadCamera.open", failing)
+    monkeypatch.setattr("hsr8.driver.require_gl", lambda: "none")
     with pytest.raises(RenderingUnavailable) as error:  # whose frames hold the recorder
         api_run("quick", out=tmp_path)
     assert error.traceback

@@ -2,7 +2,7 @@ import io
 from types import SimpleNamespace
 
 from hsr8.cli.progress import Progress
-from hsr8.record import Event
+from hsr8.simulation.record import Event
 
 COLLISION = Event(3.0, "collision", "l_sole touches obstacle 1")
 

@@ -4,7 +4,7 @@ import pytest
 
 from hsr8.cli.main import entry
 from hsr8.errors import RenderingUnavailable
-from hsr8.recorder.run.run_reader import open_run
+from hsr8.recording.run_reader import open_run
 
 
 @pytest.fixture(scope="module")

@@ -2,8 +2,8 @@ import pytest
 from rerun.chunk import RrdReader
 
 from hsr8.cli.main import entry
-from hsr8.recorder.run import run_folder
-from hsr8.recorder.run.run_reader import open_run
+from hsr8.recording import run_folder
+from hsr8.recording.run_reader import open_run
 
 
 @pytest.fixture
@@ -15,7 +15,7 @@ def run(tmp_path):
 
 def test_without_a_display_alternatives_are_printed(run, capsys, monkeypatch):
     (run / run_folder.LOG).touch()
-    monkeypatch.setattr("hsr8.render.viewer.has_display", lambda: False)
+    monkeypatch.setattr("hsr8.show.viewer.has_display", lambda: False)
     assert entry(["replay", str(run)]) == 2
     printed = capsys.readouterr().err
     assert "--screenshot" in printed
@@ -30,7 +30,7 @@ def test_the_screenshot_shows_the_middle_of_the_run_by_default(run, monkeypatch,
         return b"PNG"
 
     (run / run_folder.LOG).touch()
-    monkeypatch.setattr("hsr8.render.viewer.screenshot", screenshot)
+    monkeypatch.setattr("hsr8.show.viewer.screenshot", screenshot)
     picture = run / "log.png"
     assert entry(["replay", str(run), "--screenshot", str(picture)]) == 0
     assert entry(["replay", str(run), "--screenshot", str(picture), "--time", "0.1"]) == 0
@@ -40,7 +40,7 @@ def test_the_screenshot_shows_the_middle_of_the_run_by_default(run, monkeypatch,
 
 
 def test_a_missing_log_is_made_from_the_tables(run, monkeypatch, capsys):
-    monkeypatch.setattr("hsr8.render.viewer.screenshot", lambda *_: b"PNG")
+    monkeypatch.setattr("hsr8.show.viewer.screenshot", lambda *_: b"PNG")
     assert not (run / run_folder.LOG).exists()
     assert entry(["replay", str(run), "--screenshot", str(run / "log.png")]) == 0
     entities = {str(chunk.entity_path) for chunk in RrdReader(str(run / run_folder.LOG)).stream()}
@@ -50,7 +50,7 @@ def test_a_missing_log_is_made_from_the_tables(run, monkeypatch, capsys):
 @pytest.mark.parametrize("time", ["nan", "inf", "-inf", "1e300", "-1", "1.01"])
 def test_a_time_outside_the_run_is_refused_before_drawing(run, monkeypatch, capsys, time):
     (run / run_folder.LOG).touch()
-    monkeypatch.setattr("hsr8.render.viewer.screenshot", lambda *_: pytest.fail("was drawn"))
+    monkeypatch.setattr("hsr8.show.viewer.screenshot", lambda *_: pytest.fail("was drawn"))
     picture = str(run / "log.png")
     assert entry(["replay", str(run), "--screenshot", picture, f"--time={time}"]) == 2
     printed = capsys.readouterr().err

@@ -7,7 +7,7 @@ import pytest
 from rich.console import Console
 
 from hsr8.cli import info, report
-from hsr8.recorder.run.verdict import Criterion, reason_of
+from hsr8.recording.verdict import Criterion, reason_of
 
 GOOD = {
     "success": True,

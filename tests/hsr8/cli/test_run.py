@@ -8,9 +8,9 @@ import pytest
 
 from hsr8.cli.main import entry
 from hsr8.errors import SimulationDiverged
-from hsr8.loop import Simulation
-from hsr8.recorder.run.run_reader import open_run
+from hsr8.recording.run_reader import open_run
 from hsr8.scenario.loader import dump
+from hsr8.simulation.loop import Simulation
 
 FAST = ["run", "quick", "--body", "kinematic", "--camera", "analytic", "--duration", "1"]
 
@@ -95,7 +95,7 @@ def test_ctrl_c_during_setup_leaves_a_whole_folder(tmp_path, monkeypatch, capsys
         os.kill(os.getpid(), signal.SIGINT)
         return dump(scenario)
 
-    monkeypatch.setattr("hsr8.recorder.run.run_folder.dump", interrupted)
+    monkeypatch.setattr("hsr8.recording.run_folder.dump", interrupted)
     assert _run(tmp_path, "--quiet") == 130
     run = open_run(tmp_path)
     assert run.manifest["exit_reason"] == run.metrics["exit_reason"] == "interrupted"

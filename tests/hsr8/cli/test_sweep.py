@@ -10,9 +10,9 @@ import pytest
 from hsr8.cli.main import entry
 from hsr8.cli.options import Sweep
 from hsr8.cli.sweep import _combinations
-from hsr8.evaluation.sweep.folder import SweepFolder
-from hsr8.loop import Simulation
 from hsr8.scenario.loader import load_scenario
+from hsr8.simulation.loop import Simulation
+from hsr8.sweep.folder import SweepFolder
 from tests.hsr8.cli.conftest import Instant
 
 TINY = ["--body", "kinematic", "--camera", "analytic"]
@@ -128,7 +128,7 @@ def test_processes_with_the_same_line_share_the_runs(instant, capsys):
     def start():
         monkeypatch = pytest.MonkeyPatch()
         with monkeypatch.context() as patch:
-            patch.setattr("hsr8.evaluation.sweep.runs.open_pool", lambda *_: other)
+            patch.setattr("hsr8.sweep.runs.open_pool", lambda *_: other)
             patch.setattr("os.getpid", os.getppid)
             assert entry([*FAST, "--seeds", "0:4"]) == 0
 
@@ -168,11 +168,8 @@ def test_every_value_has_a_folder_and_a_line_of_the_page(instant, tmp_path, caps
 @pytest.mark.parametrize(
     "varied",
     [
-        [f"constants.navigation.gaze.risk.{k}=0.25,0.5" for k in ("path_weight", "static_weight")]
-        + [
-            f"constants.belief.tracking.{k}=1.25,1.5"
-            for k in ("process_noise", "forget_after_time")
-        ],
+        [f"navigation.gaze.risk.{k}=0.25,0.5" for k in ("path_weight", "static_weight")]
+        + [f"belief.tracking.{k}=1.25,1.5" for k in ("process_noise", "forget_after_time")],
         ["plugin.planner=a/p.py:P,a_p.py:P"],
     ],
 )
@@ -212,7 +209,7 @@ def test_progress_and_table_are_printed(instant, capsys):
 def test_the_examples_of_the_documentation_work(instant, monkeypatch, capsys):
     """Every command of it, in order, on runs that end at once; then its Python."""
     page = (Path(__file__).parents[3] / "docs" / "sweeps.md").read_text()
-    monkeypatch.setattr("hsr8.evaluation.sweep.runs.require_gl", lambda: "none")
+    monkeypatch.setattr("hsr8.sweep.runs.require_gl", lambda: "none")
     monkeypatch.setattr("os.fsync", lambda _: None)  # many runs
     instant()
     commands = re.findall(r"^(hsr8 (?:sweep|compare) .*)$", page, re.M)

@@ -1,4 +1,5 @@
 import json
+import re
 import shutil
 
 import numpy as np
@@ -6,7 +7,7 @@ import pytest
 
 from hsr8.cli.main import entry
 from hsr8.errors import SimulationDiverged
-from hsr8.recorder.run.run_reader import open_run
+from hsr8.recording.run_reader import open_run
 from hsr8.robots.file.locate import find_description
 from hsr8.world.body.kinematic import KinematicBody
 from walking.engine import PlanDiverged, WalkingEngine
@@ -137,8 +138,10 @@ def test_a_changed_setpoint_or_hash_is_found(run, rewrite, capsys, table, column
 
 
 def test_a_changed_scenario_changes_the_belief(run, capsys):
-    with (run / "scenario.toml").open("a") as scenario:
-        scenario.write("\n[constants.belief.localization]\ndrift = 0.0004\n")
+    file = run / "scenario.toml"
+    text, changes = re.subn(r"(?m)^drift = .*$", "drift = 0.0004", file.read_text())
+    assert changes == 1
+    file.write_text(text)
     assert entry(["verify", str(run)]) == 1
     assert "of frame 1" in capsys.readouterr().out
 

@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 from hsr8.cli.main import entry
-from hsr8.recorder.rows import TABLES
-from hsr8.recorder.table import Items
+from hsr8.recording.rows import TABLES
+from hsr8.recording.table import Items
 
 
 @pytest.fixture(scope="module")

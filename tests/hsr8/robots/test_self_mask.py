@@ -7,10 +7,10 @@ import mujoco
 import numpy as np
 import pytest
 
-from hsr8.loop import Simulation
 from hsr8.robots.model.normal_form import HEAD_CAMERA
 from hsr8.robots.model.posed_shapes import BEARINGS, ground_shadow
 from hsr8.scenario.loader import load_scenario
+from hsr8.simulation.loop import Simulation
 from vision.self_mask import BodyPart, apply_self_mask
 from vision.view import view_of
 from walking.state import HeadCameraPose

@@ -15,18 +15,18 @@ import pytest
 
 from hsr8.cli.main import entry
 from hsr8.cli.pace import Pace
-from hsr8.drive import TIMEOUT, Drive
+from hsr8.driver import run_scenario
 from hsr8.errors import UsageError
-from hsr8.evaluation.recording import run_scenario
-from hsr8.evaluation.replay import replay
 from hsr8.export.topics import TOPICS, Setup
-from hsr8.recorder.run.run_reader import open_run
+from hsr8.recording.run_reader import open_run
+from hsr8.recording.verification import recompute
 from hsr8.robots.loaded import load_robot
 from hsr8.ros.graph import SUBSCRIPTION, Endpoint
 from hsr8.ros.inputs import INPUTS
 from hsr8.ros.live import LiveTopics
 from hsr8.ros.process import Network
 from hsr8.scenario.loader import load_scenario
+from hsr8.simulation.drive import TIMEOUT, Drive
 
 pytest.importorskip("rosbags")
 pytest.importorskip("zenoh")
@@ -164,7 +164,7 @@ def test_a_client_lists_echoes_and_drives(settings, capsys):
     assert np.allclose(velocities[1], [0.1, 0.0, 0.2])
     assert run.records["command"][-1] == pytest.approx([0.1, 0.0, 0.2])
     assert run.records["head_target"][-1][0] == pytest.approx(0.4)
-    assert [stage.equal for stage in replay(run)] == [True] * 3
+    assert [stage.equal for stage in recompute(run)] == [True] * 3
     assert capsys.readouterr().err.count("ros: ") == 1
 
 
@@ -263,7 +263,7 @@ def test_malformed_messages_and_silence_warn_once(capsys):
     late = run.records["time"] > run.commands["time"][-1] + TIMEOUT + 0.05
     assert not run.records["command"][late].any()
     assert run.exit_reason == "timeout"
-    assert [stage.equal for stage in replay(run)] == [True] * 3
+    assert [stage.equal for stage in recompute(run)] == [True] * 3
     lines = capsys.readouterr().err.splitlines()
     for text in ("/cmd_vel: message refused", "/head/command: message refused", "robot stops"):
         assert sum(text in line for line in lines) == 1

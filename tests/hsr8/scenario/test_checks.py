@@ -10,7 +10,6 @@ COURSE = 'mission = {kind = "course"}\n'
     ("text", "expected"),
     [
         (COURSE + "[robot.speed]\nvx = 0.9", "walking.limits.vx"),
-        (COURSE + "[vision]\nmin_radius = 0.2", "must be below max_radius = 0.12"),
         (
             COURSE + "[belief.local_map]\ncell = 0.005",
             "must be at least size / 1000 = 0.006, got 0.005",

@@ -86,7 +86,7 @@ def test_values_of_a_user_are_literal_and_others_scaled(defaults, tmp_path):
     file = tmp_path / "mine.toml"
     file.write_text(
         'extends = "corridor"\n[world]\nlane = [0.5, 0.6]\n[robot]\nmodel = "big"\n'
-        "[constants.navigation.mission]\nr_release = 0.11\n"
+        "[navigation.mission]\nr_release = 0.11\n"
     )
     scenario = load_scenario(
         str(file),
@@ -107,8 +107,6 @@ def test_values_of_a_user_are_literal_and_others_scaled(defaults, tmp_path):
     assert scenario.robot.speed.wz == pytest.approx(0.4)
     assert scenario.belief.tracking.forget_time == pytest.approx(25.0 * 2.0 / 1.5)
     assert scenario.world.scale == 2.0
-    assert scenario.vision.beacon_height == 1.2
-    assert scenario.navigation.gaze.risk.beacon_height == 1.2
 
 
 def test_defaults_in_lists_and_optional_tables_are_scaled(defaults):
@@ -156,21 +154,12 @@ def test_the_camera_of_a_robot_takes_precedence_over_a_preset(monkeypatch):
 @pytest.mark.parametrize("name", ["course", "fig4b", "corridor", "push", "paper"])
 @pytest.mark.parametrize("more", [[], ["navigation.profile=paper", "world.scale=1.0"]])
 def test_a_dump_is_complete_and_never_scaled_again(defaults, monkeypatch, name, more):
-    scenario = load_scenario(name, [*BIG, *more, "constants.navigation.evaluation.omega_o=20.0"])
+    scenario = load_scenario(name, [*BIG, *more, "navigation.evaluation.omega_o=20.0"])
     text = dump(scenario)
     assert scenario.navigation.evaluation.omega_o == 20.0  # the default for HSR-VIII
     monkeypatch.undo()  # the robot is unknown here
     assert loads(text) == scenario
     assert dump(loads(text)) == text
-
-
-def test_the_dump_of_hsr_viii_keeps_constants_that_follow_the_scale_of_the_world():
-    words = ["world.scale=2.0", "constants.vision.beacon_height=0.6"]
-    scenario = load_scenario("course", words)
-    assert scenario.vision.obstacle_height == 0.6
-    assert scenario.vision.beacon_radius == 0.1
-    assert scenario.vision.beacon_height == 0.6
-    assert loads(dump(scenario)) == scenario
 
 
 def test_a_dump_with_a_missing_key_is_completed_for_its_robot(defaults):

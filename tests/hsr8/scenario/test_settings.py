@@ -1,4 +1,4 @@
-"""Settings and constants of a scenario: single keys over those of its file."""
+"""Settings of a scenario: single keys over those of its file."""
 
 from math import atan, degrees, tan
 
@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 from hsr8.errors import ScenarioError
-from hsr8.scenario.constants import constant_names
 from hsr8.scenario.loader import dump, load_scenario, loads
+from hsr8.scenario.reference import parameters
 
 
 def test_overrides_change_single_keys():
@@ -56,10 +56,14 @@ def test_overrides_are_strings_or_a_mapping():
     assert load_scenario("course", "world.n_moving=3") == load_scenario(
         "course", ["world.n_moving=3"]
     )
-    with pytest.raises(
-        ScenarioError, match=r"setting world\.n_moving: expected a TOML value, got NoneType"
-    ):
+    with pytest.raises(ScenarioError, match=r"settings: world\.n_moving: wrong type, got NoneType"):
         load_scenario("course", {"world.n_moving": None})
+
+
+def test_values_of_a_mapping_are_not_parsed():
+    assert load_scenario("course", {"description": "3 # walks"}).description == "3 # walks"
+    with pytest.raises(ScenarioError, match=r'settings: duration: wrong value, got "3\.0"'):
+        load_scenario("course", {"duration": "3.0"})
 
 
 @pytest.mark.parametrize(
@@ -67,7 +71,7 @@ def test_overrides_are_strings_or_a_mapping():
     [
         ("camera.perod_ms=80", "did you mean 'period_ms'"),
         ("camera.period_ms", "expected key=value"),
-        ("=3", "expected key=value"),
+        ("=3", "expected a dotted key"),
         ("extends=course", "extends is allowed in files only"),
         ("command.stretch.9.vx=1.0", "expected an index from 0 to 4, got '9'"),
         ("duration=1\nseed=3", "expected a number"),
@@ -109,57 +113,42 @@ def test_mistakes_in_varied_values_name_the_option():
 LOOK_TIME = "navigation.gaze.risk.look_time"
 
 
-@pytest.mark.parametrize("profile", ["extended", "paper"])
-def test_a_constant_is_changed_and_written_where_it_differs_from_the_profile(profile):
-    usual = load_scenario("course", [f"navigation.profile={profile}"])
-    assert "[constants" not in dump(usual)
-    changes = {f"constants.{LOOK_TIME}": 2.25, "constants.navigation.gaze.undetected.reach": 0.5}
-    changed = load_scenario("course", {"navigation.profile": profile, **changes})
-    assert changed.navigation.gaze.risk.look_time == 2.25
-    assert changed.navigation.gaze.undetected.reach == 0.5
-    assert changed.navigation.univector == usual.navigation.univector
-    text = dump(changed)
-    assert "[constants.navigation.gaze.undetected]\nreach = 0.5" in text.replace(
-        "look_time = 2.25\n", ""
-    )
-    assert loads(text) == changed
-
-
 @pytest.mark.parametrize(
     ("text", "wanted"),
     [
         (
-            "[navigation.gaze.risk]\nlook_time = 2.0",
-            f"3: {LOOK_TIME}: a constant, not a setting; for studies, constants.{LOOK_TIME}",
+            f'{LOOK_TIME} = "two"',
+            f'2: {LOOK_TIME}: wrong value, got "two"; expected a number',
         ),
         (
-            '[constants]\nnavigation.gaze.mode = "steps"',
-            "3: constants.navigation.gaze.mode: a setting, not a constant; "
-            "expected navigation.gaze.mode",
+            f"constants.{LOOK_TIME} = 2.0",
+            f"2: constants.{LOOK_TIME}: former key; expected {LOOK_TIME}",
         ),
-        (
-            "[constants]\nnavigation.gaze.risk.look_tim = 2.0",
-            f"3: constants.navigation.gaze.risk.look_tim: unknown constant; did you mean "
-            f"'{LOOK_TIME}'?",
-        ),
-        (
-            f'[constants]\n{LOOK_TIME} = "two"',
-            f'3: constants.{LOOK_TIME}: wrong value, got "two"; expected a number',
-        ),
-        ("[constants]\ncamera.width = 3", "3: constants.camera.width: unknown constant"),
-        ("constants = 3", "2: constants: must be a table"),
     ],
 )
-def test_a_wrong_constant_is_refused_with_its_line(text, wanted):
+def test_a_wrong_value_for_studies_is_refused_with_its_line(text, wanted):
     with pytest.raises(ScenarioError) as error:
         loads('mission = {kind = "course"}\n' + text, "file.toml")
     assert str(error.value).splitlines()[1:] == [f"  file.toml:{wanted}"]
 
 
-def test_every_constant_can_be_given_and_comes_back():
-    scenario = load_scenario("course")
-    for name in constant_names():
+def test_a_similar_key_for_studies_is_proposed():
+    with pytest.raises(ScenarioError, match="unknown key; did you mean 'look_time'"):
+        load_scenario("course", [f"{LOOK_TIME[:-1]}=2.0"])
+    with pytest.raises(ScenarioError, match=f"unknown key; did you mean '{LOOK_TIME}'"):
+        load_scenario("course", ["navigation.look_time=2.0"])
+
+
+@pytest.mark.parametrize("profile", ["extended", "paper"])
+def test_every_parameter_can_be_given_and_comes_back(profile):
+    scenario = load_scenario("course", [f"navigation.profile={profile}"])
+    values = {}
+    for name in parameters():
         value = scenario
         for part in name.split("."):
             value = getattr(value, part)
-        assert load_scenario("course", {f"constants.{name}": value}) == scenario
+        values[name] = value
+    assert load_scenario("course", values) == scenario
+    changed = load_scenario("course", values | {LOOK_TIME: 2.25})
+    assert changed.navigation.gaze.risk.look_time == 2.25
+    assert loads(dump(changed)) == changed != scenario

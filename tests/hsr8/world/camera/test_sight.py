@@ -6,10 +6,10 @@ from math import atan2
 import numpy as np
 import pytest
 
-from hsr8.robot_builder import build_model, camera_model
 from hsr8.robots.loaded import load_robot
 from hsr8.robots.model.normal_form import HEAD_CAMERA
 from hsr8.scenario.loader import load_scenario
+from hsr8.simulation.robot_builder import build_model, camera_model
 from hsr8.world.body.kinematic import KinematicBody
 from hsr8.world.camera.analytic import project
 from hsr8.world.camera.rendered import RenderedCamera
@@ -30,8 +30,9 @@ SIGMA = PoseParameters(0.005, 0.005, 0.005, 0.005)
 def test_near_obstacles_are_found_where_they_are_expected(world, silent):
     """Of near obstacles next to the robot, whose foot its arms may hide, some are missed."""
     scenario = load_scenario("walk", [])
-    robot, camera = load_robot("hsr8"), camera_model(scenario)
+    robot = load_robot("hsr8")
     layout, _ = world(Obstacle((1.0, 0.0), 0.065, 0.3, "red"), beacons=())
+    camera = camera_model(scenario, layout.sizes)
     model = build_model(scenario, layout)
     body = KinematicBody(model, robot, layout, silent, np.random.default_rng(0))
     parameters = replace(scenario.vision, pose=SIGMA)

@@ -5,6 +5,7 @@ from hypothesis import strategies as st
 
 from hsr8.scenario.world import LineMover
 from hsr8.world.field.lane import Lane, apart_at_all_times, distance, motion_law
+from hsr8.world.field.layout import Obstacle
 from hsr8.world.field.motion import Circle, Line, Shuttle
 
 LAWS = (
@@ -16,10 +17,14 @@ LAWS = (
 points = st.lists(st.tuples(st.floats(-3, 3), st.floats(-3, 3)), min_size=1, max_size=6)
 
 
+def lane_of(motion):
+    return Lane.of(Obstacle(motion.position(0.0), 0.1, 0.3, "red", motion))
+
+
 @pytest.mark.parametrize("motion", LAWS, ids=lambda motion: type(motion).__name__)
 @given(time=st.floats(0.0, 60.0))
 def test_a_mover_is_always_on_its_lane(motion, time):
-    lane = Lane.of(motion, 0.1, "red")
+    lane = lane_of(motion)
     spacing = np.hypot(*np.diff(lane.path, axis=0).T).max()
     assert distance(np.array([motion.position(time)]), lane.path)[0] <= 0.5 * spacing + 1e-9
     assert lane.obstacle.position == motion.position(0.0)
@@ -41,9 +46,9 @@ def test_a_heading_of_a_right_angle_is_one():
 
 
 def test_movers_that_never_meet_may_cross_lanes():
-    first = Lane.of(Line((-1.0, 0.0), (0.1, 0.0)), 0.1, "red")
-    meets = Lane.of(Line((0.0, -1.0), (0.0, 0.1)), 0.1, "blue")
-    later = Lane.of(Line((0.0, -2.0), (0.0, 0.1)), 0.1, "blue")
+    first = lane_of(Line((-1.0, 0.0), (0.1, 0.0)))
+    meets = lane_of(Line((0.0, -1.0), (0.0, 0.1)))
+    later = lane_of(Line((0.0, -2.0), (0.0, 0.1)))
     assert not apart_at_all_times(first, meets, 0.2)
     assert apart_at_all_times(first, later, 0.2)
     assert apart_at_all_times(later, first, 0.2)

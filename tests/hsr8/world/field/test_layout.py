@@ -3,6 +3,8 @@ import itertools
 import numpy as np
 import pytest
 
+from hsr8.scenario.loader import load_scenario
+from hsr8.world.field.generator import draw_layout
 from hsr8.world.field.layout import (
     BEACON_COLORS,
     BEACON_OFFSET,
@@ -31,6 +33,18 @@ def test_beacons_of_the_same_two_colors_are_far_apart():
     for beacon in standard_beacons((5.0, 5.0)):
         twin = by_name[f"{beacon.bottom}/{beacon.top}"]
         assert np.linalg.norm(twin - beacon.position) > 5.0
+
+
+def test_the_robot_knows_bounds_of_all_sizes_in_the_world():
+    placed = {"world.obstacle": [{"position": [1.0, 1.0], "radius": 0.3}], "world.scale": 2.0}
+    layout = draw_layout(load_scenario("quick", placed), 1)
+    sizes = layout.sizes
+    assert sizes.obstacle_radius == (0.05, 0.3)
+    for obstacle in layout.obstacles:
+        low, high = sizes.obstacle_height
+        assert low <= obstacle.height <= high
+        assert sizes.obstacle_radius[0] <= obstacle.radius <= sizes.obstacle_radius[1]
+    assert {(b.radius, b.height) for b in layout.beacons} == {(0.1, 1.2)}
 
 
 @pytest.mark.parametrize("size", [(5.0, 5.0), (8.0, 3.0), (3.0, 8.0)])

@@ -18,6 +18,7 @@ FAST = {"walking": {"limits": dict.fromkeys(("vx", "vx_backward", "vy", "wz"), 9
 LENGTHS = {
     *("position", "radius", "height", "start", "end", "centre", "track", "side", "offset", "away"),
     *("field_size", "waypoints", "known", "points", "robot_radius"),
+    *("obstacle_height", "obstacle_radius", "beacon_height", "beacon_radius"),
 }
 TIMES = {"time_scale", "depart", "times", "begin", "linger", "first", "period"}
 SPEEDS = {"speed", "rate", "rates"}

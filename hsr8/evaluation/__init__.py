@@ -1,1 +1,0 @@
-"""Evaluation: metrics of a run and its criteria."""

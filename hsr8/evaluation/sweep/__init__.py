@@ -1,1 +1,0 @@
-"""Sweeps: one scenario over many seeds, one process per run."""

@@ -1,0 +1,1 @@
+"""User-defined planners, gazes and walkers: their files, checked inputs and outputs."""

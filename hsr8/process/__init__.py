@@ -1,0 +1,1 @@
+"""The process: portable arithmetic, OpenGL, signals, its parent, compilation at first use."""

@@ -1,1 +1,0 @@
-"""Recorder: tables of a run, run folder and Rerun log."""

@@ -1,1 +1,0 @@
-"""Writing and reading of run folders."""

@@ -1,0 +1,1 @@
+"""Tables of a run, in a folder or in memory: writing, reading, verification, differences."""

@@ -1,1 +1,0 @@
-"""Images and videos of recorded runs, and the Rerun viewer."""

@@ -1,1 +1,0 @@
-"""Writing and reading of the Rerun log, one layer per subject."""

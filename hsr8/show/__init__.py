@@ -1,0 +1,1 @@
+"""Images, videos and plots of recorded runs, and the Rerun viewer."""

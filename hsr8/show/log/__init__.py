@@ -1,0 +1,1 @@
+"""Rerun log of a run, one layer per subject."""

@@ -1,0 +1,1 @@
+"""Dashboards of a run, as videos or images."""

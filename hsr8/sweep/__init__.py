@@ -1,0 +1,1 @@
+"""Sweeps: one scenario over many seeds, one process per run; comparisons and the benchmark."""

@@ -1,0 +1,120 @@
+import json
+import re
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from hsr8.errors import UsageError
+from hsr8.sweep.bench.entry import Entry, entry_page, read_entry
+
+OUTCOMES = st.lists(
+    st.sampled_from(["success", "timeout", "collision", "fall", "crashed", "refused"])
+)
+
+
+@given(
+    course=OUTCOMES,
+    crowd=OUTCOMES,
+    name=st.text(),
+    settings=st.dictionaries(st.text(), st.tuples(st.text(), st.text()), max_size=3),
+)
+def test_the_file_holds_the_whole_entry(make_entry, course, crowd, name, settings):
+    entry = make_entry(name, course, crowd, settings=settings)
+    assert Entry.from_json(json.loads(entry.text())) == entry
+    assert json.loads(entry.text()) == json.loads(json.dumps(entry.to_json()))
+
+
+def test_an_entry_is_read_from_its_folder_or_its_file(make_entry, tmp_path):
+    (tmp_path / "bench.json").write_text(make_entry().text())
+    assert read_entry(tmp_path) == read_entry(tmp_path / "bench.json") == make_entry()
+
+
+def test_an_unfinished_entry_is_refused_with_the_next_step(tmp_path):
+    (tmp_path / "course").mkdir()
+    (tmp_path / "course" / "sweep.json").write_text("{}")
+    with pytest.raises(UsageError, match=r"not finished, got results of course; continue it with"):
+        read_entry(tmp_path)
+
+
+def test_all_is_the_score_of_all_families(make_entry):
+    scores = make_entry(course=("success", "timeout"), crowd=("collision",)).scores()
+    assert list(scores) == ["course", "crowd", "all"]
+    assert [part.runs for part in scores.values()] == [2, 1, 3]
+    assert scores["all"].success.count == 1
+
+
+@pytest.mark.parametrize(
+    ("change", "message"),
+    [
+        (lambda value: value.update(format=2), "format: wrong value, got 2; expected 1"),
+        (lambda value: value.pop("versions"), "versions: missing; expected a value"),
+        (
+            lambda value: value.update(suite_version="1"),
+            'suite_version: wrong value, got "1"; expected a whole number',
+        ),
+        (lambda value: value.update(settings={"a": ["b"]}), "settings.a"),
+        (
+            lambda value: value["runs"]["course"][0].update(outcome="good"),
+            'outcome: wrong value, got "good"; expected',
+        ),
+        (
+            lambda value: value["runs"]["course"][0].update(path_length_m="far"),
+            'path_length_m: wrong value, got "far"; expected a number',
+        ),
+        (lambda value: value["runs"]["course"][0].update(time_to_goal_s=0.0), "got 0.0"),
+        (lambda value: value["runs"]["course"][0].pop("falls"), "falls: missing; expected a value"),
+        (lambda value: value.update(runs=[1]), "runs: wrong value, got \\[1\\]; expected a table"),
+    ],
+)
+def test_other_files_are_refused(make_entry, tmp_path, change, message):
+    value = json.loads(make_entry().text())
+    change(value)
+    file = tmp_path / "bench.json"
+    file.write_text(json.dumps(value))
+    with pytest.raises(UsageError, match=message):
+        read_entry(file)
+
+
+@pytest.mark.parametrize(
+    ("text", "reason"),
+    [
+        ("{}", "format: missing; expected a value"),
+        ("[]", "format: missing; expected a value"),
+        ('{"format": 9}', "format: wrong value, got 9; expected 1"),
+        ('{"format": 1}', "name: missing; expected a value"),
+        ("", "invalid JSON: Expecting value: line 1 column 1 (char 0)"),
+        (None, "cannot be read: No such file or directory"),
+    ],
+)
+def test_the_file_and_the_mistake_are_named(tmp_path, text, reason):
+    file = tmp_path / "bench.json"
+    if text is not None:
+        file.write_text(text)
+    with pytest.raises(UsageError) as error:
+        read_entry(tmp_path)
+    assert str(error.value) == (
+        f"{file}: not an entry of hsr8 bench: {reason}; "
+        "expected a folder of hsr8 bench or its bench.json"
+    )
+
+
+def row_of(name, lines):
+    """Cells of the line of a table that begins with `name`."""
+    (line,) = [line for line in lines if line.startswith(f"| {name} ")]
+    return [cell.strip() for cell in re.split(r"(?<!\\)\|", line.strip("| "))]
+
+
+def test_the_page_of_an_entry_has_a_line_per_family(make_entry):
+    lines = entry_page(make_entry(course=("success", "timeout"))).splitlines()
+    cells = row_of("course", lines)
+    assert cells[:3] == ["course", "2", "50.0 %"]
+    assert cells[4:] == ["0.0", "50.0", "0.0", "0.400", "0.375", "0.200", "0.50", "80.0"]
+    assert row_of("all", lines)[1] == "6"
+    assert "All settings are those of the standard." in lines
+    assert "    hsr8 bench --quick --name default" in lines
+
+
+def test_settings_of_an_entry_are_listed(make_entry):
+    entry = make_entry("mine", settings={"robot.body": ('"kinematic"', '"full"')})
+    assert '| `robot.body` | "kinematic" | "full" |' in entry_page(entry)
