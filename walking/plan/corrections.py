@@ -13,7 +13,7 @@ from walking.parameters import CONTROL_PERIOD
 from walking.plane import Point, Vector, clamp, rotate_back, within
 
 NO_FOOT = -1
-DISCARDED = -1  # number of errors of a discarded cycle
+DISCARDED = -1  # number of errors or ticks of a discarded cycle
 
 
 @compiled
@@ -83,8 +83,8 @@ def heading_rate(corrections: Corrections, ahead: float, renew: bool, robot: Mod
 @compiled
 def end_corrections(corrections: Corrections) -> None:
     """Discard the correction of the speed and the present cycle of the CoM offset."""
-    corrections.errors = DISCARDED
-    corrections.posed = corrections.whole = False
+    corrections.errors = corrections.ticks = DISCARDED
+    corrections.posed = False
     corrections.speed.x = corrections.speed.y = 0.0
 
 
@@ -95,15 +95,15 @@ def speed_correction(
     planned: Vector,
     shift: Point,
     begins: bool,
-    disturbed: bool,
     robot: Model,
 ) -> Point:
     """Return the correction of (vx, vy) [m/s, m/s] against slip and short landings of the feet.
 
     Mean of the planned minus the measured velocity, updated once per gait cycle. Planned footsteps
     follow any change of the command, so it does not show as slip. The plan follows the landings,
-    too: their shifts by balance do not count as planned, so small ones in every cycle, of a robot
-    with compliant joints, do not change the mean velocity. Displacements are summed in the
+    too: their shifts by balance do not count as planned, so those of every cycle, of a robot with
+    compliant joints, do not change the mean velocity. A push changes the correction little, since
+    its change per cycle is limited. Displacements are summed in the
     present heading: a robot turns in one of two footsteps, so its heading at the begin of a cycle
     differs from the mean.
 
@@ -114,11 +114,10 @@ def speed_correction(
             spot turns about it.
         shift: shift of a foot that landed in this tick by balance [m].
         begins: whether a gait cycle begins.
-        disturbed: whether balance changes the footsteps.
         robot: constants.
     """
     c = corrections
-    if c.posed:
+    if c.posed and c.ticks >= 0:
         planned_x, planned_y = _displacement(c.planned, planned)
         x, y = _displacement(c.pose, pose)
         shift_x, shift_y = rotate_back(planned[2], *shift)
@@ -128,15 +127,14 @@ def speed_correction(
     c.posed = True
     c.pose.x, c.pose.y, c.pose.yaw = pose
     c.planned.x, c.planned.y, c.planned.yaw = planned
-    c.whole = c.whole and not disturbed
     if begins:
-        if c.whole:
+        if c.ticks > 0:
             p, time = robot.stabilizer, c.ticks * CONTROL_PERIOD
-            x = c.speed.x + p.speed_gain * (c.slip.x / time - c.speed.x)
-            y = c.speed.y + p.speed_gain * (c.slip.y / time - c.speed.y)
-            limit = p.max_speed_correction
+            limit, change = p.max_speed_correction, p.max_speed_change
+            x = c.speed.x + clamp(p.speed_gain * (c.slip.x / time - c.speed.x), change)
+            y = c.speed.y + clamp(p.speed_gain * (c.slip.y / time - c.speed.y), change)
             c.speed.x, c.speed.y = clamp(x, limit), clamp(y, limit)
-        c.whole, c.ticks = True, 0
+        c.ticks = 0
         c.slip.x = c.slip.y = 0.0
     return c.speed.x, c.speed.y
 

@@ -78,7 +78,7 @@ def want_strides(walk: Data, odometry: DeadReckoning, robot: Model) -> None:
     correct_offset(corrections, pressure, error.pressed, begins, disturbed, robot)
     pose = (odometry.x, odometry.y, odometry.yaw)
     planned = (walk.pendulum.x, walk.pendulum.y, walk.limbs.pelvis.yaw)
-    vx, vy = speed_correction(corrections, pose, planned, shift, begins, disturbed, robot)
+    vx, vy = speed_correction(corrections, pose, planned, shift, begins, robot)
     wz = heading_rate(corrections, ahead, begins or disturbed, robot)
     set_wanted_strides(steering, (vx, vy, wz), robot)
 
