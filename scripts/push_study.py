@@ -8,8 +8,8 @@ A push acts on the trunk for 50 ms, at a random phase of the gait and from a ran
 from the seed, while the robot walks forward at 0.1 m/s times its speed scale. A level is the
 impulse over m √(g h), with mass m and height h of the centre of mass in the ready posture, or the
 change of velocity it causes. Sensors are noisy. ``--policy`` takes a network of MuJoCo Playground,
-see `policy_walk`; pushes and seeds are those of the engine. ``--record`` adds the results to a CSV file,
-see `measured`. Tune on seeds 0 to 99; the results are from seeds 1000 and above.
+see `policy_walk`, with the pushes and seeds of the engine. ``--record`` puts the results into a CSV
+file, see `measured`. Tune on seeds 0 to 99; the results are from seeds 1000 and above.
 """
 
 import argparse
