@@ -28,8 +28,7 @@ from hsr8.version import VERSION
 
 if TYPE_CHECKING:
     from hsr8.api import run
-    from hsr8.recording.run import Run
-    from hsr8.recording.run_reader import open_run, runs
+    from hsr8.recording.run import Run, open_run, runs
     from hsr8.scenario.loader import load_scenario
     from hsr8.simulation.loop import Simulation
     from navigation.belief.belief import Belief
@@ -63,9 +62,9 @@ _PLACES = {
     "Run": "hsr8.recording.run",
     "Simulation": "hsr8.simulation.loop",
     "load_scenario": "hsr8.scenario.loader",
-    "open_run": "hsr8.recording.run_reader",
+    "open_run": "hsr8.recording.run",
     "run": "hsr8.api",
-    "runs": "hsr8.recording.run_reader",
+    "runs": "hsr8.recording.run",
 }
 
 choose_backend()

@@ -9,8 +9,8 @@ import tomlkit
 
 from hsr8.driver import run_scenario
 from hsr8.errors import UsageError
-from hsr8.files.shell import shell_line
-from hsr8.files.writing import require_temporary
+from hsr8.files.atomic import require_temporary
+from hsr8.files.text import shell_line
 from hsr8.plugins.decisions import GazePlugin, PlannerPlugin
 from hsr8.plugins.walker import CustomWalker
 from hsr8.recording.manifest import CALL

@@ -9,7 +9,7 @@ from types import TracebackType
 from typing import Self
 
 from hsr8.errors import RecordingFailed
-from hsr8.files.writing import FAILED
+from hsr8.files.atomic import FAILED
 from hsr8.measure.metrics import measure
 from hsr8.plugins.decisions import GazePlugin, PlannerPlugin
 from hsr8.plugins.walker import CustomWalker
@@ -18,9 +18,8 @@ from hsr8.process.gl import require_gl
 from hsr8.process.signals import stop_on_signals
 from hsr8.recording.manifest import CALL
 from hsr8.recording.recorder import IMAGES, PERIOD, Recorder, Sink
-from hsr8.recording.run import Run
+from hsr8.recording.run import Run, open_run
 from hsr8.recording.run_folder import RunFolder
-from hsr8.recording.run_reader import open_run
 from hsr8.scenario.schema import Scenario
 from hsr8.simulation.drive import Drive
 from hsr8.simulation.loop import Simulation

@@ -11,7 +11,7 @@ from pydantic import BaseModel, ValidationError
 from pydantic_core import ErrorDetails
 
 from hsr8.errors import escaped
-from hsr8.files.key_lines import lines_of
+from hsr8.files.text import lines_of
 from hsr8.keys import Path, annotation_at, choices, chosen, hints, holds, texts
 from hsr8.suggestion import suggestion
 

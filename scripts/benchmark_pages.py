@@ -12,6 +12,7 @@ import pyarrow as pa
 import pyarrow.parquet as pq
 from benchmark_runs import Cell, Definition
 from benchmark_table import COLUMNS, Run, row
+from measured import read_results
 
 ROOT = Path(__file__).resolve().parents[1]
 RESULTS = ROOT / "docs" / "results"
@@ -69,6 +70,7 @@ class Page:
         page = self.table
         lines = [MARK, "", f"# {page['title']}", "", f"**{page['question']}**", ""]
         lines += [self.filled(page["answer"], runs), "", *self.rows(runs), ""]
+        lines += self.measured()
         lines += ["**Setup.** " + page["setup"], ""]
         lines += ["**Caveats.**", "", *(f"- {text}" for text in page["caveats"]), ""]
         made_by = f"[Data](data/{self.name}.parquet): `make benchmarks ONLY={self.name}`."
@@ -95,6 +97,25 @@ class Page:
             shown = page.get("labels", {}).get(label, label)
             table.append(f"| {shown} | {' | '.join(cells)} |")
         return table
+
+    def measured(self) -> list[str]:
+        """Return the table of a CSV file that a study of its own wrote, if the page names one.
+
+        One row per robot and walker, one column per study and level.
+        """
+        page = self.table
+        file = self.data.parent / page.get("measured", "")
+        if not file.is_file():
+            return []
+        cells = read_results(file)
+        levels = list(dict.fromkeys((cell["study"], cell["level"]) for cell in cells))
+        table = _header(["", *(f"{study}, {level}" for study, level in levels)])
+        for name in dict.fromkeys((cell["robot"], cell["walker"]) for cell in cells):
+            of = {(c["study"], c["level"]): c for c in cells if (c["robot"], c["walker"]) == name}
+            row = (of[level]["result"] if level in of else "" for level in levels)
+            table.append(f"| {', '.join(name)} | {' | '.join(row)} |")
+        codes = ", ".join(dict.fromkeys(cell["code"] for cell in cells))
+        return [page["measured_text"], "", *table, "", f"Code {codes}.", ""]
 
     def filled(self, text: str, runs: Sequence[Run]) -> str:
         """Return a text with its ``{ARM.COLUMN}``, with ``@LEVEL`` or ``/SCENARIO`` after the arm.

@@ -16,7 +16,7 @@ import sys
 from collections.abc import Sequence
 from pathlib import Path
 
-from hsr8.recording.code_digest import code_digest
+from hsr8.recording.manifest import code_digest
 from hsr8.version import VERSION
 
 from benchmark_pages import RESULTS, ROOT, Page, versions, write

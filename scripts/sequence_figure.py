@@ -7,8 +7,7 @@ from pathlib import Path
 from types import SimpleNamespace
 
 from hsr8.recording.derived import walk_of
-from hsr8.recording.run import Run
-from hsr8.recording.run_reader import open_run
+from hsr8.recording.run import Run, open_run
 from hsr8.recording.table import Table
 from hsr8.robots.loaded import load_robot
 from hsr8.scenario.loader import load_scenario

@@ -8,7 +8,7 @@ from hsr8.cli.options import Bench, Run
 from hsr8.cli.sweep import INTERRUPTED, folder_name, report_lost_runs, require_no_seed
 from hsr8.errors import Hsr8Error, UsageError
 from hsr8.files import atomic
-from hsr8.files.shell import shell_line
+from hsr8.files.text import shell_line
 from hsr8.process.signals import like_ctrl_c
 from hsr8.sweep.bench.entry import FILE, Entry, entry_page, row
 from hsr8.sweep.bench.suite import (

@@ -10,7 +10,7 @@ from hsr8.cli.command_line import command_words, option_tables, run_options, set
 from hsr8.cli.options import Check
 from hsr8.cli.output_file import require_file_name, writing
 from hsr8.files import atomic
-from hsr8.files.shell import shell_line
+from hsr8.files.text import shell_line
 from hsr8.plugins.file import inspect_plugins
 from hsr8.scenario.loader import load_scenario
 from hsr8.scenario.schema import Scenario

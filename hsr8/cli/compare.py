@@ -4,7 +4,7 @@ from hsr8.cli.options import BenchCompare, Compare
 from hsr8.cli.output_file import require_file_name, writing
 from hsr8.errors import UsageError, escaped_lines
 from hsr8.files import atomic
-from hsr8.files.shell import shell_line
+from hsr8.files.text import shell_line
 from hsr8.sweep.bench.comparison import compare_entries
 from hsr8.sweep.bench.entry import read_entry
 from hsr8.sweep.comparison import compare, open_side

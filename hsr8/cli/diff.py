@@ -10,11 +10,10 @@ from rich.table import Table
 from hsr8.cli.options import Diff
 from hsr8.errors import escaped
 from hsr8.files import atomic
-from hsr8.recording import run_difference
+from hsr8.recording import difference
+from hsr8.recording.difference import RunDifference
 from hsr8.recording.rows import TABLES
-from hsr8.recording.run import Run
-from hsr8.recording.run_difference import RunDifference
-from hsr8.recording.run_reader import open_run
+from hsr8.recording.run import Run, open_run
 
 DIFFERENT = 1
 MAX_VALUE_LENGTH = 24  # in the table [characters]
@@ -28,8 +27,8 @@ def main(options: Diff) -> int:
         0 where every bit of the recorded motion is equal, else 1.
     """
     a, b = open_run(options.a), open_run(options.b)
-    motion = run_difference.first_differences(a, b)
-    about = [*run_difference.settings(a, b), *run_difference.results(a, b)]
+    motion = difference.first_differences(a, b)
+    about = [*difference.settings(a, b), *difference.results(a, b)]
     if options.json:
         comparison = {
             "a": str(a.folder),

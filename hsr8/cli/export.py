@@ -14,8 +14,7 @@ from hsr8.export.urdf import urdf_of
 from hsr8.export.world_files import irsim_yaml, write_map
 from hsr8.files import atomic
 from hsr8.files.atomic import draft
-from hsr8.recording.run import Run
-from hsr8.recording.run_reader import open_run
+from hsr8.recording.run import Run, open_run
 from hsr8.robots.loaded import load_robot
 from hsr8.scenario.loader import load_scenario
 from hsr8.scenario.schema import Scenario

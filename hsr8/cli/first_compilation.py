@@ -17,7 +17,7 @@ from hsr8.errors import RenderingUnavailable
 from hsr8.plugins.walker import RobotInfo
 from hsr8.process.compilation_watch import CompilationWatch
 from hsr8.process.gl import require_gl
-from hsr8.process.parent_watch import with_parent_watch
+from hsr8.process.signals import with_parent_watch
 from hsr8.scenario.loader import load_scenario
 from hsr8.simulation.loop import Simulation
 from navigation.angles import wrap

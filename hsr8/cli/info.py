@@ -11,8 +11,7 @@ from hsr8.errors import UsageError, escaped
 from hsr8.files import atomic
 from hsr8.measure.registry import METRICS, Shown, shown_in
 from hsr8.recording.manifest import RUNNING, other_versions
-from hsr8.recording.run import Run
-from hsr8.recording.run_reader import open_run
+from hsr8.recording.run import Run, open_run
 from hsr8.recording.verdict import Criterion, exit_code
 
 PLAIN = (  # first rows of the table

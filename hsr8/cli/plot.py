@@ -6,7 +6,7 @@ from hsr8.cli.options import Plot
 from hsr8.cli.output_file import require_file_name, writing
 from hsr8.errors import UsageError
 from hsr8.files import atomic
-from hsr8.recording.run_reader import open_run
+from hsr8.recording.run import open_run
 
 SUFFIXES = (".png", ".svg", ".pdf")
 

@@ -1,4 +1,4 @@
-"""Progress of a run: one line on standard error."""
+"""Progress of a run, one line on standard error, and its pace."""
 
 import sys
 import time as clock
@@ -11,6 +11,7 @@ from rich.text import Text
 from hsr8.simulation.record import Event, Tick, TickRecord
 
 REFRESH = 0.1  # wall time between two updates of the live line [s]
+TOLERANCE = 0.1  # delay of the pace that is not caught up with [s]
 PLAIN_PERIOD = 10.0  # simulated time between two lines without a terminal [s]
 
 
@@ -83,3 +84,22 @@ class Progress:
             f"   via points {self._via_points:3d}   collisions {self._collisions}"
             f"   gait {record.walking.phase:<8}   planner {self._situation}"
         )
+
+
+class Pace:
+    """Upper limit of the pace of a run.
+
+    Args:
+        factor: simulated seconds per second, positive.
+    """
+
+    def __init__(self, factor: float) -> None:
+        self._factor = factor
+        self._due: float | None = None  # wall time of the tick at time zero [s]
+
+    def wait(self, tick: Tick) -> None:
+        """Wait until a tick is due."""
+        now, elapsed = clock.perf_counter(), tick.time / self._factor
+        if self._due is None or now - self._due - elapsed > TOLERANCE:
+            self._due = now - elapsed
+        clock.sleep(max(0.0, self._due + elapsed - now))

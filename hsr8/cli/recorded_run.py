@@ -10,13 +10,12 @@ from rich.console import Console
 from hsr8.cli import report
 from hsr8.cli.first_compilation import two_processes
 from hsr8.cli.options import Run
-from hsr8.cli.pace import Pace
-from hsr8.cli.progress import Progress
+from hsr8.cli.progress import Pace, Progress
 from hsr8.driver import run_scenario
 from hsr8.errors import Hsr8Error
 from hsr8.files import atomic
-from hsr8.files.shell import shell_word
-from hsr8.files.writing import require_temporary
+from hsr8.files.atomic import require_temporary
+from hsr8.files.text import shell_word
 from hsr8.process.gl import require_gl
 from hsr8.process.signals import like_ctrl_c
 from hsr8.recording.crash import crash_report

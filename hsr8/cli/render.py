@@ -13,7 +13,7 @@ from hsr8.errors import UsageError
 from hsr8.files import atomic
 from hsr8.process.gl import is_software, require_gl
 from hsr8.recording import run_folder
-from hsr8.recording.run_reader import open_run
+from hsr8.recording.run import open_run
 from hsr8.show.video.run_video import RenderedVideo, VideoOptions, render_run
 from hsr8.show.video.video import FORMATS
 

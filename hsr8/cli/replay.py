@@ -7,11 +7,10 @@ from hsr8.cli.options import Replay
 from hsr8.cli.output_file import parse_size, require_file_name, writing
 from hsr8.errors import UsageError
 from hsr8.files import atomic
-from hsr8.files.shell import shell_word
+from hsr8.files.text import shell_word
 from hsr8.process.signals import like_ctrl_c
 from hsr8.recording.manifest import versions
-from hsr8.recording.run import Run
-from hsr8.recording.run_reader import open_run
+from hsr8.recording.run import Run, open_run
 from hsr8.show import viewer
 from hsr8.show.viewer import live_view
 

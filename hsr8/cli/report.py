@@ -5,7 +5,7 @@ from pathlib import Path
 from typing import Any
 
 from hsr8.errors import escaped
-from hsr8.files.shell import shell_word
+from hsr8.files.text import shell_word
 from hsr8.measure.registry import METRICS
 from hsr8.recording.run import Run
 from hsr8.recording.verdict import Criterion, counted, exit_code, reason_of

@@ -13,7 +13,7 @@ from hsr8.cli.options import RobotCalibrate
 from hsr8.cli.output_file import require_file_name, require_new, writing
 from hsr8.errors import UsageError
 from hsr8.files import atomic
-from hsr8.files.shell import shell_line
+from hsr8.files.text import shell_line
 from hsr8.robots.file.description import Calibration, read_description
 from hsr8.robots.file.description_file import moved, with_calibration
 from hsr8.robots.file.locate import find_description

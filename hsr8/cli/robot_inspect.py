@@ -9,7 +9,7 @@ from hsr8.cli.options import RobotInspect
 from hsr8.cli.output_file import require_file_name, require_new, writing
 from hsr8.errors import ModelError, UsageError
 from hsr8.files import atomic
-from hsr8.files.shell import shell_line
+from hsr8.files.text import shell_line
 from hsr8.robots.inspection import Inspection, description_text, facts, inspect, load_inspected
 from hsr8.robots.loaded import LoadedRobot
 from hsr8.show.image import write_png

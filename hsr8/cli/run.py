@@ -8,7 +8,7 @@ from math import inf
 from hsr8.cli.command_line import command_words, option_tables, settings
 from hsr8.cli.options import Run
 from hsr8.errors import UsageError
-from hsr8.files.shell import shell_line
+from hsr8.files.text import shell_line
 from hsr8.plugins.file import inspect_plugins
 from hsr8.robots.file.description import read_description
 from hsr8.robots.file.locate import find_description

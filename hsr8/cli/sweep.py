@@ -15,7 +15,7 @@ from hsr8.cli.command_line import command_words, flat, option_tables, run_option
 from hsr8.cli.options import Sweep
 from hsr8.errors import Hsr8Error, UsageError
 from hsr8.files import atomic
-from hsr8.files.shell import shell_line
+from hsr8.files.text import shell_line
 from hsr8.process.signals import like_ctrl_c
 from hsr8.scenario.loader import load_scenario
 from hsr8.scenario.schema import Scenario

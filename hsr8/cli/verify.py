@@ -7,8 +7,7 @@ from hsr8.cli.options import Verify
 from hsr8.errors import UsageError
 from hsr8.files import atomic
 from hsr8.recording.manifest import other_versions
-from hsr8.recording.run import Run
-from hsr8.recording.run_reader import open_run
+from hsr8.recording.run import Run, open_run
 from hsr8.robots.file.locate import digest
 
 if TYPE_CHECKING:

@@ -1,7 +1,8 @@
 """ROS 2 messages in CDR."""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from math import cos, sin
 from typing import Any
 
 import numpy as np
@@ -11,6 +12,7 @@ Stamps = NDArray[np.int64]
 Contents = dict[str, Any]
 """Fields of a message by name; those left out are zero or empty."""
 
+PLANE = np.ix_([0, 1, 5], [0, 1, 5])  # x, y and yaw among the six axes of ROS covariances
 BASE, NAME, ARRAY, SEQUENCE = 1, 2, 3, 4  # values of rosbags.interfaces.Nodetype
 
 
@@ -71,3 +73,32 @@ def nanoseconds(times: Any) -> Stamps:
 def header(time: Contents, frame: str) -> Mapping[str, Any]:
     """Return the fields of a header."""
     return {"stamp": time, "frame_id": frame}
+
+
+def pose_of(pose: Sequence[float]) -> Contents:
+    """Return the contents of a pose x, y, heading."""
+    x, y, yaw = pose
+    turn = {"w": cos(0.5 * yaw), "z": sin(0.5 * yaw)}
+    return {"position": xyz([x, y, 0.0]), "orientation": turn}
+
+
+def uncertain_pose(pose: Sequence[float], covariance: Any = 0.0) -> Contents:
+    """Return a pose x, y, heading with its covariance (3, 3)."""
+    whole = np.zeros((6, 6))
+    whole[PLANE] = covariance
+    return {"pose": pose_of(pose), "covariance": whole.ravel()}
+
+
+def twist_of(vx: float, vy: float, wz: float) -> Contents:
+    """Return a planar velocity."""
+    return {"linear": {"x": vx, "y": vy}, "angular": {"z": wz}}
+
+
+def xyz(values: Sequence[float]) -> Contents:
+    """Return a vector."""
+    return dict(zip("xyz", values, strict=True))
+
+
+def wxyz(values: Sequence[float]) -> Contents:
+    """Return a quaternion, w first."""
+    return dict(zip("wxyz", values, strict=True))

@@ -4,7 +4,7 @@ Each topic is made of the rows of one table of a run. A bag gives all rows at on
 of one tick.
 """
 
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
 from functools import partial
 from math import cos, isfinite, pi, sin
@@ -13,7 +13,18 @@ from typing import Any, Self
 import numpy as np
 from numpy.typing import NDArray
 
-from hsr8.export.cdr import Contents, Messages, header, nanoseconds, stamp
+from hsr8.export.cdr import (
+    Contents,
+    Messages,
+    header,
+    nanoseconds,
+    pose_of,
+    stamp,
+    twist_of,
+    uncertain_pose,
+    wxyz,
+    xyz,
+)
 from hsr8.export.links import CAMERA, INERTIAL, Link, links_of, model_of
 from hsr8.export.transforms import (
     FOOTPRINT,
@@ -40,7 +51,6 @@ START = "start"
 """Source with one row: time, and pose of odom in the map before the first frame, ``start``."""
 PIXELS = "pixels"
 """Source with the images of live runs, uncompressed."""
-PLANE = np.ix_([0, 1, 5], [0, 1, 5])  # x, y and yaw among the six axes of ROS covariances
 CYLINDER, DELETE_ALL = 3, 3  # visualization_msgs/msg/Marker
 
 
@@ -173,7 +183,7 @@ def _tf(stamps: list[Contents], tf: Transforms) -> Stream:
                 {
                     "header": header(time, parent),
                     "child_frame_id": child,
-                    "transform": {"translation": _xyz(position), "rotation": _wxyz(orientation)},
+                    "transform": {"translation": xyz(position), "rotation": wxyz(orientation)},
                 }
                 for (parent, child), position, orientation in zip(tf.frames, *poses, strict=True)
             ]
@@ -194,9 +204,9 @@ def _imu(translator: Translator, rows: Rows, stamps: list[Contents]) -> Stream:
     for time, turn, rate, force in _values(stamps, rows, "orientation", "gyro", "accelerometer"):
         yield {
             "header": header(time, INERTIAL),
-            "orientation": _wxyz(turn),
-            "angular_velocity": _xyz(rate),
-            "linear_acceleration": _xyz(force),
+            "orientation": wxyz(turn),
+            "angular_velocity": xyz(rate),
+            "linear_acceleration": xyz(force),
         }
 
 
@@ -215,18 +225,18 @@ def _motion(
         rate, c, s = 1.0 / (time - earlier), cos(pose[2]), sin(pose[2])
         x, y, turn = (now - then for now, then in zip(pose, before, strict=True))
         turn = (turn + pi) % (2.0 * pi) - pi
-        twist = _twist(rate * (c * x + s * y), rate * (c * y - s * x), rate * turn)
+        twist = twist_of(rate * (c * x + s * y), rate * (c * y - s * x), rate * turn)
         yield {
             "header": header(stamp_, frame),
             "child_frame_id": FOOTPRINT,
-            "pose": _uncertain(pose, *covariance),
+            "pose": uncertain_pose(pose, *covariance),
             "twist": {"twist": twist},
         }
 
 
 def _command(translator: Translator, rows: Rows, stamps: list[Contents]) -> Stream:
     for _, command in _values(stamps, rows, "command"):
-        yield _twist(*command) if all(map(isfinite, command)) else None
+        yield twist_of(*command) if all(map(isfinite, command)) else None
 
 
 def _compressed(translator: Translator, rows: Rows, stamps: list[Contents]) -> Stream:
@@ -264,7 +274,7 @@ def _captures(rows: Rows) -> list[Contents]:
 
 def _belief(translator: Translator, rows: Rows, stamps: list[Contents]) -> Stream:
     for time, pose, covariance in _values(stamps, rows, "pose", "pose_covariance"):
-        yield {"header": header(time, MAP), "pose": _uncertain(pose, covariance)}
+        yield {"header": header(time, MAP), "pose": uncertain_pose(pose, covariance)}
 
 
 def _goal(translator: Translator, rows: Rows, stamps: list[Contents]) -> Stream:
@@ -273,7 +283,7 @@ def _goal(translator: Translator, rows: Rows, stamps: list[Contents]) -> Stream:
         target = x, y, heading if isfinite(heading) else 0.0
         new = isfinite(x + y) and target != translator.before.get("goal")
         translator.before["goal"] = target
-        yield {"header": header(time, MAP), "pose": _pose(target)} if new else None
+        yield {"header": header(time, MAP), "pose": pose_of(target)} if new else None
 
 
 def _tracks(translator: Translator, rows: Rows, stamps: list[Contents]) -> Stream:
@@ -292,8 +302,8 @@ def _tracks(translator: Translator, rows: Rows, stamps: list[Contents]) -> Strea
                 "ns": motion,
                 "id": number,
                 "type": CYLINDER,
-                "pose": {"position": _xyz([x, y, 0.5 * height]), "orientation": {"w": 1.0}},
-                "scale": _xyz([2.0 * radius, 2.0 * radius, height]),
+                "pose": {"position": xyz([x, y, 0.5 * height]), "orientation": {"w": 1.0}},
+                "scale": xyz([2.0 * radius, 2.0 * radius, height]),
                 "color": {"r": red / 255, "g": green / 255, "b": blue / 255, "a": 0.7},
             }
         )
@@ -314,37 +324,11 @@ def _local_map(translator: Translator, rows: Rows, stamps: list[Contents]) -> St
                     "resolution": cell,
                     "width": shades.shape[1],
                     "height": shades.shape[0],
-                    "origin": {"position": _xyz([*origin, 0.0]), "orientation": {"w": 1.0}},
+                    "origin": {"position": xyz([*origin, 0.0]), "orientation": {"w": 1.0}},
                 },
                 "data": np.round(shades.ravel() * (100.0 / 255.0)),
             }
         )
-
-
-def _pose(pose: Sequence[float]) -> Contents:
-    """Return a pose x, y, heading."""
-    x, y, yaw = pose
-    turn = {"w": cos(0.5 * yaw), "z": sin(0.5 * yaw)}
-    return {"position": _xyz([x, y, 0.0]), "orientation": turn}
-
-
-def _uncertain(pose: Sequence[float], covariance: Any = 0.0) -> Contents:
-    """Return a pose x, y, heading with its covariance (3, 3)."""
-    whole = np.zeros((6, 6))
-    whole[PLANE] = covariance
-    return {"pose": _pose(pose), "covariance": whole.ravel()}
-
-
-def _twist(vx: float, vy: float, wz: float) -> Contents:
-    return {"linear": {"x": vx, "y": vy}, "angular": {"z": wz}}
-
-
-def _xyz(values: Sequence[float]) -> Contents:
-    return dict(zip("xyz", values, strict=True))
-
-
-def _wxyz(values: Sequence[float]) -> Contents:
-    return dict(zip("wxyz", values, strict=True))
 
 
 TF, ODOMETRY = "tf2_msgs/msg/TFMessage", "nav_msgs/msg/Odometry"

@@ -1,11 +1,20 @@
-"""Handlers of SIGINT (Ctrl-C) and SIGTERM, which schedulers and `timeout` send."""
+"""Signals: SIGINT (Ctrl-C), SIGTERM of schedulers and `timeout`, and the end of the parent.
 
+python signals.py PARENT PROGRAM ARGUMENT...   becomes a program that ends with the parent
+"""
+
+import ctypes
+import os
 import signal
+import sys
 import threading
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import AbstractContextManager, contextmanager
 from types import FrameType
 from typing import Any
+
+PR_SET_PDEATHSIG = 1
+ORPHAN = 130  # exit code of a process whose parent ended before the signal was set
 
 
 @contextmanager
@@ -40,3 +49,35 @@ def stop_on_signals(stop: Callable[[], object]) -> AbstractContextManager[None]:
         stop()
 
     return on_signals((signal.SIGINT, signal.SIGTERM), handle)
+
+
+def end_with_parent(parent: int, number: int = signal.SIGTERM) -> bool:
+    """Let the kernel send this process a signal when its parent ends.
+
+    Args:
+        parent: process id.
+        number: number of the signal.
+
+    Returns:
+        Whether the parent still runs.
+    """
+    ctypes.CDLL(None).prctl(PR_SET_PDEATHSIG, number)
+    return os.getppid() == parent
+
+
+def with_parent_watch(command: Sequence[str]) -> list[str]:
+    """Return the command line of a process that becomes `command` and ends with this process."""
+    isolated = (sys.executable, "-I", "-S", __file__)  # no modules of the current folder
+    return [*isolated, str(os.getpid()), *command]
+
+
+def main(arguments: list[str]) -> int:
+    """Become the program in `arguments`, which begin with the process id of the parent."""
+    parent, *command = arguments
+    if end_with_parent(int(parent)):
+        os.execv(command[0], command)
+    return ORPHAN
+
+
+if __name__ == "__main__":
+    raise SystemExit(main(sys.argv[1:]))

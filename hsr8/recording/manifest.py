@@ -1,17 +1,20 @@
 """Manifest of a run: versions, seed, machine and exit reason."""
 
+import hashlib
 import platform
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import asdict, dataclass, field
 from datetime import UTC, datetime
+from functools import cache
 from importlib import metadata
+from importlib.util import find_spec
 from pathlib import Path
 from typing import Any
 
 from hsr8.files import atomic
 from hsr8.plugins.file import digests
 from hsr8.process import arithmetic
-from hsr8.recording.code_digest import code_digest
+from hsr8.robots.file.files import models_dir
 from hsr8.robots.file.locate import digest
 from hsr8.scenario.schema import Scenario
 from hsr8.scenario.track_file import track_digests
@@ -28,6 +31,9 @@ LIBRARIES = (
     "pydantic",
     "av",
 )
+PACKAGES = ("compilation", "hsr8", "navigation", "walking", "vision")
+# Folders and files of hsr8 that influence no run:
+NOT_IN_DIGEST = ("cli", "show", "export", "sweep", "measure/registry", "_models")
 FORMAT = 7  # of run folders; those without a number are of format 1
 RUNNING = "running"
 CALL = "hsr8.run("  # begins the command of a run with a planner or gaze object
@@ -127,3 +133,31 @@ def versions_of(scenario: Scenario) -> dict[str, str]:
     """
     made = digests(scenario.plugin) | digest(scenario.robot.model)
     return versions() | made | track_digests(scenario.world.mover)
+
+
+@cache
+def code_digest() -> str:
+    """Return the first digits of the SHA-256 of all files that influence a result.
+
+    It is computed once per process: the code that runs does not follow later changes of the files.
+    """
+    digest = hashlib.sha256()
+    for name, file in _files():
+        digest.update(name.encode() + b"\0" + hashlib.sha256(file.read_bytes()).digest())
+    return digest.hexdigest()[:12]
+
+
+def _files() -> Iterator[tuple[str, Path]]:
+    for package in PACKAGES:
+        spec = find_spec(package)
+        assert spec is not None, package
+        assert spec.origin is not None, package
+        root = Path(spec.origin).parent
+        for file in sorted(root.rglob("*.py")):
+            name = file.relative_to(root).as_posix()
+            if package != "hsr8" or not name.startswith(NOT_IN_DIGEST):
+                yield f"{package}/{name}", file
+    root = models_dir()
+    for file in sorted(root.rglob("*")):
+        if file.is_file() and file.suffix not in (".py", ".pyc", ".md"):
+            yield f"models/{file.relative_to(root).as_posix()}", file

@@ -11,7 +11,7 @@ from typing import BinaryIO
 
 import pyarrow as pa
 
-from hsr8.files.writing import writing
+from hsr8.files.atomic import writing
 from hsr8.recording.columns import Row, schema_of
 from hsr8.recording.rows import TABLES
 from hsr8.recording.table import Table

@@ -9,12 +9,12 @@ import numpy as np
 
 from hsr8.errors import SimulationDiverged
 from hsr8.recording.columns import attributes
+from hsr8.recording.difference import first_cell
 from hsr8.recording.frame_row import CONTEXT, DETECTION, FRAME, MEASURED
 from hsr8.recording.recorded import FrameSampler, RecordedFrame
 from hsr8.recording.rows import TABLES
 from hsr8.recording.run import Run
 from hsr8.recording.table import Table
-from hsr8.recording.table_difference import first_cell
 from hsr8.seeds import named_rng
 from hsr8.simulation.decisions import DecisionContext, DriveCommand, FrameRecord
 from hsr8.simulation.drive import Drive

@@ -12,8 +12,7 @@ from pathlib import Path as FilePath
 from typing import Any
 
 from hsr8.errors import ScenarioError
-from hsr8.files.key_lines import lines_of
-from hsr8.files.text import TomlError, parse_toml, read_text
+from hsr8.files.text import TomlError, lines_of, parse_toml, read_text
 from hsr8.keys import Path
 from hsr8.scenario.plugin import KINDS
 from hsr8.scenario.scaling import merged

@@ -16,9 +16,9 @@ from typing import Literal, Self
 from urllib.parse import quote
 
 from hsr8.errors import UsageError
-from hsr8.files.writing import require_temporary
+from hsr8.files.atomic import require_temporary
 from hsr8.process.gl import VULKAN_LINE
-from hsr8.process.parent_watch import with_parent_watch
+from hsr8.process.signals import with_parent_watch
 
 LOOPBACK = "127.0.0.1"
 TIMELINE = "sim_time"

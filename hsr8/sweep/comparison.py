@@ -14,7 +14,7 @@ from hsr8.files.tables import flatten
 from hsr8.measure.registry import METRICS, Shown, shown_in
 from hsr8.measure.statistics import PairedDifference, compare_successes, compare_values
 from hsr8.recording.manifest import CALL
-from hsr8.recording.run_reader import open_run, run_folders
+from hsr8.recording.run import open_run, run_folders
 from hsr8.suggestion import suggestion
 from hsr8.sweep.definition import (
     Definition,

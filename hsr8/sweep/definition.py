@@ -9,10 +9,9 @@ from dataclasses import dataclass
 from typing import Any
 
 from hsr8.errors import ScenarioError
-from hsr8.files.shell import shell_line
 from hsr8.files.tables import flatten
-from hsr8.recording.code_digest import code_digest
-from hsr8.recording.manifest import versions_of
+from hsr8.files.text import shell_line
+from hsr8.recording.manifest import code_digest, versions_of
 from hsr8.scenario.layers import Table
 from hsr8.scenario.loader import dump, loads, tables
 from hsr8.scenario.schema import Scenario

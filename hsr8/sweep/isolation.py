@@ -16,7 +16,7 @@ from multiprocessing import forkserver
 from multiprocessing.connection import Connection
 from multiprocessing.process import BaseProcess
 
-from hsr8.process.parent_watch import ORPHAN, end_with_parent
+from hsr8.process.signals import ORPHAN, end_with_parent
 from hsr8.sweep.job import Job, RunResult, prune, run_job, unfinished
 
 Work = Callable[[Job], RunResult]

@@ -11,7 +11,7 @@ from queue import Empty, SimpleQueue
 from typing import Any, Protocol
 
 from hsr8.errors import Hsr8Error, UsageError
-from hsr8.recording.code_digest import code_digest
+from hsr8.recording.manifest import code_digest
 from hsr8.sweep.isolation import RUNNING, Work, run_isolated, start_server
 from hsr8.sweep.job import Job, RunResult, run_job, unfinished
 

@@ -9,7 +9,7 @@ import os
 import signal
 from contextlib import suppress
 
-from hsr8.process.parent_watch import end_with_parent
+from hsr8.process.signals import end_with_parent
 
 end_with_parent(os.getppid(), signal.SIGKILL)
 os.environ["JE_ARROW_MALLOC_CONF"] = "background_thread:false"  # a thread of PyArrow

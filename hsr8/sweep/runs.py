@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 
 from hsr8.errors import Hsr8Error, UsageError
-from hsr8.files.writing import require_temporary
+from hsr8.files.atomic import require_temporary
 from hsr8.plugins.file import require_plugins
 from hsr8.process.gl import require_gl
 from hsr8.scenario.schema import Scenario

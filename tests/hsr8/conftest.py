@@ -1,6 +1,7 @@
-"""Fixtures that stand in for the loop: a small world and records of any moment in it."""
+"""A short run, and fixtures that stand in for the loop: a small world and records of it."""
 
 import ctypes
+import shutil
 from math import cos, sin
 from types import SimpleNamespace
 
@@ -8,8 +9,10 @@ import numpy as np
 import pyarrow as pa
 import pytest
 
+from hsr8.cli.main import entry
 from hsr8.recording.recorded import FrameSampler
 from hsr8.recording.rows import TABLES
+from hsr8.recording.run import open_run
 from hsr8.recording.table import Table
 from hsr8.robots.loaded import load_robot
 from hsr8.simulation.decisions import Decision, DecisionContext, FrameRecord
@@ -37,6 +40,21 @@ BEACONS = (
     Beacon("magenta/cyan", (-2.3, 1.0), "magenta", "cyan"),
 )
 ROTATION = np.array([[0.0, 0.0, 1.0], [-1.0, 0.0, 0.0], [0.0, -1.0, 0.0]])
+
+
+@pytest.fixture(scope="session")
+def quick_runs(tmp_path_factory):
+    """Folder with a run of one second of `quick`, kinematic and without images, to read only."""
+    out = tmp_path_factory.mktemp("runs")
+    fast = ["--body", "kinematic", "--camera", "analytic", "--duration", "1", "--quiet"]
+    assert entry(["run", "quick", *fast, "--out", str(out)]) == 1
+    return out
+
+
+@pytest.fixture
+def quick_run(quick_runs, tmp_path):
+    """Copy of that run, in the folder `quick` of a folder of runs."""
+    return open_run(shutil.copytree(quick_runs, tmp_path / "runs"))
 
 
 @pytest.fixture(scope="session")

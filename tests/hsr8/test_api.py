@@ -6,9 +6,9 @@ import pytest
 
 import hsr8
 from hsr8.errors import RenderingUnavailable, ScenarioError, UsageError
+from hsr8.recording.difference import first_cell
 from hsr8.recording.rows import TABLES
-from hsr8.recording.run_reader import open_run
-from hsr8.recording.table_difference import first_cell
+from hsr8.recording.run import open_run
 from hsr8.recording.verification import recompute
 from navigation.belief.belief import Belief
 from navigation.decision import GazeDecision, MotionDecision

@@ -9,7 +9,7 @@ import time
 
 import pytest
 
-from hsr8.recording.run_reader import open_run
+from hsr8.recording.run import open_run
 from walking.parameters import CONTROL_PERIOD
 
 COUNT = struct.Struct("<q")

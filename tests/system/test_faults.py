@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from hsr8.cli.main import entry
-from hsr8.recording.run_reader import open_run
+from hsr8.recording.run import open_run
 
 START, LASTS = 0.7, 0.4  # of the faults that the robot recovers from [s]
 RECOVERY = {  # magnitudes that a walking robot recovers from within a second

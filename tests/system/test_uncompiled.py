@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 
 import hsr8
+from hsr8.recording.difference import CLOCKED_COLUMNS
 from hsr8.recording.rows import TABLES
-from hsr8.recording.run_difference import CLOCKED_COLUMNS
 
 DURATION = 1.5  # with the first footstep [s]
 

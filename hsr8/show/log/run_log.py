@@ -10,7 +10,7 @@ import rerun as rr
 from numpy.typing import NDArray
 
 from hsr8.files import atomic
-from hsr8.files.writing import failure, writing
+from hsr8.files.atomic import failure, writing
 from hsr8.recording import palette, run_folder
 from hsr8.recording.derived import Speedometer
 from hsr8.recording.recorder import Tables

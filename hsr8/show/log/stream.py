@@ -10,7 +10,7 @@ import rerun as rr
 import rerun.blueprint as rrb
 from numpy.typing import NDArray
 
-from hsr8.files.writing import require_temporary
+from hsr8.files.atomic import require_temporary
 from hsr8.recording.recorded import Throttle
 
 TIMELINE = "sim_time"

@@ -1,7 +1,7 @@
 """Entry of a benchmark: versions, settings and all runs, in one JSON file."""
 
 import json
-from dataclasses import asdict, dataclass
+from dataclasses import asdict, dataclass, replace
 from pathlib import Path
 from typing import Annotated, Any, Literal, Self
 
@@ -13,7 +13,6 @@ from hsr8.files import atomic
 from hsr8.files.tables import table
 from hsr8.files.text import read_text
 from hsr8.measure.registry import METRICS
-from hsr8.measure.statistics import Proportion
 from hsr8.mistakes import mistake_lines
 from hsr8.scenario.section import Section
 from hsr8.sweep.definition import Differences
@@ -22,6 +21,7 @@ from hsr8.sweep.job import RunResult
 from hsr8.sweep.summary import Summary, summarize
 
 FILE = "bench.json"  # in the folder of an entry
+REFERENCE = Path(__file__).with_name("reference.json")  # entry of the default
 FORMAT = 1
 ALL = "all"  # name of the score of all families
 DIGITS = 4  # of numbers of runs, after the point
@@ -152,6 +152,27 @@ def read_entry(path: Path) -> Entry:
     )
 
 
+def reference_for(entry: Entry) -> Entry | None:
+    """Return the shipped entry of the default on the worlds of `entry`, in families that it has.
+
+    None if it is of another suite or has no family with all worlds of `entry`. Equal worlds have
+    the same certified time.
+    """
+    reference = read_entry(REFERENCE)
+    if (reference.suite, reference.suite_version) != (entry.suite, entry.suite_version):
+        return None
+    runs = {}
+    for family, theirs in entry.runs.items():
+        known = {run["seed"]: run for run in reference.runs.get(family, ())}
+        defaults = [known[run["seed"]] for run in theirs if run["seed"] in known]
+        times = [[run["certified_time_s"] for run in part] for part in (theirs, defaults)]
+        if len(defaults) == len(theirs) and all(
+            None in pair or pair[0] == pair[1] for pair in zip(*times, strict=True)
+        ):
+            runs[family] = defaults
+    return replace(reference, runs=runs) if runs else None
+
+
 def row(result: RunResult) -> RunResult:
     """Return what an entry keeps of the result of a run."""
     values = {key: result.get(key) for key in Run.model_fields}
@@ -168,14 +189,21 @@ SHOWN = ("hsr8", "code", "mujoco", "numpy", "scipy", "pin", "processor", "arithm
 
 
 def entry_page(entry: Entry) -> str:
-    """Return the page of one entry: a line per family."""
+    """Return the page of one entry: a line per family, and one of the default below it."""
     lines = [f"# {entry.name} in {_suite(entry)}, {entry.seeds} seeds", "", f"    {entry.command}"]
     lines += ["", f"{_versions(entry)}.", "", *_settings(entry)]
     head = ("family", "runs", "success", "95 % interval", *SCORES)
-    rows = [
-        (name, str(part.runs), *_success(part.success), *_cells(part))
-        for name, part in entry.scores().items()
-    ]
+    reference = reference_for(entry)
+    defaults = {} if reference is None else reference.scores()
+    if len(defaults) <= len(entry.runs):  # a family is missing in the sum
+        defaults.pop(ALL, None)
+    rows = []
+    for name, part in entry.scores().items():
+        rows.append((name, *_cells(part)))
+        if name in defaults:
+            rows.append((f"{name}, default", *_cells(defaults[name])))
+    if reference is not None:
+        lines += [f"Lines of the default: the same worlds, {_versions(reference)}.", ""]
     return "\n".join([*lines, *table(head, rows)])
 
 
@@ -195,16 +223,17 @@ def _settings(entry: Entry) -> list[str]:
     return table(("setting", "standard", "entry"), rows)
 
 
-def _success(success: Proportion) -> tuple[str, str]:
-    interval = f"{100 * success.low:.1f} to {100 * success.high:.1f} %"
-    return f"{100 * success.fraction:.1f} %", interval
-
-
 def _cells(part: Summary) -> list[str]:
+    success = part.success
+    interval = f"{100 * success.low:.1f} to {100 * success.high:.1f} %"
     rates = [f"{100 * p.fraction:.1f}" for p in (part.collision, part.timeout, part.fall)]
     ratios = ["" if v is None else f"{v:.3f}" for v in (part.spl, part.optimal_time_ratio)]
     medians = [
         f"{part.quantities[key].median:.{digits}f}" if key in part.quantities else ""
         for key, digits in MEDIANS.items()
     ]
-    return [*rates, *ratios, *medians]
+    return [
+        str(part.runs),
+        f"{100 * success.fraction:.1f} %",
+        *(interval, *rates, *ratios, *medians),
+    ]

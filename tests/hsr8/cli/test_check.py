@@ -38,13 +38,6 @@ def test_an_image_is_drawn(tmp_path, capsys):
     assert cv2.imread(str(path)).shape == (900, 900, 3)
 
 
-def test_columns_have_their_units(capsys):
-    main(Check("quick"))
-    message = capsys.readouterr().out
-    for unit in ("position [m]", "radius [m]", "speed [m/s]", "duration [s]"):
-        assert unit in message
-
-
 def test_the_printed_command_makes_the_checked_run(capsys):
     main(Check("quick", set=(("world.n_static=3",),)))
     command = capsys.readouterr().out.splitlines()[-1]

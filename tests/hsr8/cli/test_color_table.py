@@ -44,13 +44,3 @@ def test_an_unknown_mask_color_is_refused_with_its_pixel(image_path):
     cv2.imwrite(str(path), mask)
     with pytest.raises(UsageError, match=r"\(7, 3\).*\(250, 0, 0\).*red"):
         main(ColorTable((image_path,)))
-
-
-def test_missing_and_invalid_images_are_refused(image_path, tmp_path):
-    with pytest.raises(UsageError, match=r"b\.png: cannot be read"):
-        main(ColorTable((tmp_path / "b.png",)))
-    image_path.with_name("a.mask.png").write_bytes(b"no image")
-    with pytest.raises(UsageError, match="not an image"):
-        main(ColorTable((image_path,)))
-    with pytest.raises(UsageError, match="npz"):
-        main(ColorTable((image_path,), tmp_path / "table.txt"))

@@ -6,7 +6,7 @@ import pytest
 
 from hsr8.cli.main import entry
 from hsr8.recording.rows import TABLES
-from hsr8.recording.run_reader import open_run
+from hsr8.recording.run import open_run
 
 RUN = ["run", "quick", "--body", "kinematic", "--camera", "analytic", "--duration", "2"]
 RUN += ["--set", "navigation.gaze.mode=fixed"]  # detections in every frame

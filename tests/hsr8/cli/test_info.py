@@ -3,16 +3,11 @@ import json
 import pytest
 
 from hsr8.cli.main import entry
-from hsr8.recording.run_reader import open_run
 
 
 @pytest.fixture
-def run(tmp_path, capsys):
-    """A run of a second."""
-    fast = ["--body", "kinematic", "--camera", "analytic", "--duration", "1"]
-    entry(["run", "quick", *fast, "--quiet", "--out", str(tmp_path)])
-    capsys.readouterr()
-    return open_run(tmp_path)
+def run(quick_run):
+    return quick_run
 
 
 def test_json_has_all_contents_of_the_folder(run, capsys):

@@ -14,10 +14,3 @@ def test_every_built_in_scenario_is_listed(capsys):
     assert (paper["static"], paper["moving"], paper["duration_s"]) == (12, 4, 560.2)
     assert by_name["conflict"]["moving"] == 6
     assert by_name["corridor"]["static"] > 10
-
-
-def test_a_table_is_printed(capsys):
-    assert main(List()) == 0
-    out = capsys.readouterr().out
-    assert all(name in out for name in built_in_names())
-    assert "duration [s]" in out

@@ -62,17 +62,6 @@ def test_a_run_without_log_does_not_import_rerun(tmp_path):
     assert [*tmp_path.rglob("metrics.json")]
 
 
-def test_a_scenario_without_recorded_movers_does_not_import_their_interpolation():
-    script = (
-        "import sys; from hsr8.scenario.loader import load_scenario; load_scenario('quick'); "
-        "print('scipy.interpolate' in sys.modules)"
-    )
-    done = subprocess.run(
-        [sys.executable, "-c", script], capture_output=True, text=True, check=True, timeout=60
-    )
-    assert done.stdout.split() == ["False"]
-
-
 def test_no_arguments_show_the_help(capsys):
     assert entry([]) == 0
     assert "First steps" in capsys.readouterr().out

@@ -31,6 +31,11 @@ LINES = [
     ("sweep quick --seeds 0-10", "1000:1200"),
     ("sweep quick --seeds 0:2 --vary seed=1", "--vary: the seed is not a setting, got seed=1"),
     ("sweep quick --seeds 0:2 --executor slurm", "--executor: unknown executor, got slurm"),
+    ("bench --set world.n_static=3", "--set: settings change the suite"),
+    ("bench --suite none.toml", "--suite none.toml: cannot be read"),
+    ("bench --name a/b", "--name: wrong form, got 'a/b'; expected letters"),
+    ("bench compare RUN RUN", "RUN/bench.json: not an entry of hsr8 bench"),
+    ("compare damaged RUN", "manifest.json"),
     ("robot check unknown.toml", "feets: unknown key; did you mean 'feet'?"),
     ("robot inspect text.xml", "text.xml: invalid robot model"),
     ("robot calibrate hsr8 --out yard.toml", "--out yard.toml: exists; expected a new name"),
@@ -41,6 +46,8 @@ LINES = [
     ("plot RUN", "nothing to plot from 0 s to 0 s"),
     ("export RUN RUN --csv tables", "--csv: got 2 runs; expected one"),
     ("render RUN --size big", "--size: got 'big'; expected WIDTHxHEIGHT"),
+    ("plot RUN --out a.jpg", ".png, .svg, .pdf"),
+    ("color-table none.png", "none.png: cannot be read"),
     ("color-table image.png", "(0, 0, 250)"),
 ]
 

@@ -12,8 +12,8 @@ from hsr8.api import run as api_run
 from hsr8.cli.main import entry
 from hsr8.errors import RenderingUnavailable
 from hsr8.recording import run_folder
+from hsr8.recording.run import open_run
 from hsr8.recording.run_folder import RunFolder
-from hsr8.recording.run_reader import open_run
 from hsr8.robots.file.locate import find_description
 from hsr8.robots.loaded import load_robot
 from hsr8.show.log.run_log import RunLog, write_log
@@ -23,10 +23,8 @@ FAST = ("--body", "kinematic", "--camera", "analytic")
 
 
 @pytest.fixture
-def run(tmp_path):
-    words = ["run", "quick", "--duration", "0.5", "--quiet", *FAST, "--out", str(tmp_path / "runs")]
-    entry(words)
-    return open_run(tmp_path / "runs" / "quick")
+def run(quick_run):
+    return quick_run
 
 
 @pytest.mark.parametrize(

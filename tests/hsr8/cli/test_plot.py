@@ -1,6 +1,4 @@
 import json
-import subprocess
-import sys
 
 import pytest
 
@@ -36,21 +34,3 @@ def test_a_part_of_a_run_is_plotted_elsewhere(run, tmp_path, capsys):
         "to_s": 1.2,
     }
     assert "walk, seed 0, 0.5 to 1.2 s" in out.read_text()
-
-
-@pytest.mark.parametrize(
-    ("arguments", "expected"),
-    [(["--from", "3"], "the run ended at 1.5 s"), (["--out", "plot.jpg"], ".png, .svg, .pdf")],
-)
-def test_invalid_options_are_refused(run, arguments, expected, capsys):
-    assert entry(["plot", str(run), *arguments]) == 2
-    assert expected in capsys.readouterr().err
-
-
-@pytest.mark.parametrize("module", ["hsr8.cli.plot", "hsr8.cli.verify"])
-def test_heavy_modules_are_imported_after_the_first_line(module):
-    script = f"import sys, {module}; print('matplotlib' in sys.modules, 'pinocchio' in sys.modules)"
-    done = subprocess.run(
-        [sys.executable, "-c", script], capture_output=True, text=True, check=True, timeout=60
-    )
-    assert done.stdout.split() == ["False", "False"]

@@ -3,14 +3,11 @@ from rerun.chunk import RrdReader
 
 from hsr8.cli.main import entry
 from hsr8.recording import run_folder
-from hsr8.recording.run_reader import open_run
 
 
 @pytest.fixture
-def run(tmp_path):
-    options = ["--body", "kinematic", "--camera", "analytic", "--duration", "1"]
-    entry(["run", "quick", *options, "--quiet", "--out", str(tmp_path)])
-    return open_run(tmp_path).path
+def run(quick_run):
+    return quick_run.path
 
 
 def test_without_a_display_alternatives_are_printed(run, capsys, monkeypatch):
@@ -47,7 +44,7 @@ def test_a_missing_log_is_made_from_the_tables(run, monkeypatch, capsys):
     assert {"/belief/tracks", "/plots/tilt", "/world/robot/ellipsoids"} <= entities
 
 
-@pytest.mark.parametrize("time", ["nan", "inf", "-inf", "1e300", "-1", "1.01"])
+@pytest.mark.parametrize("time", ["nan", "-1", "1.01"])
 def test_a_time_outside_the_run_is_refused_before_drawing(run, monkeypatch, capsys, time):
     (run / run_folder.LOG).touch()
     monkeypatch.setattr("hsr8.show.viewer.screenshot", lambda *_: pytest.fail("was drawn"))

@@ -8,7 +8,7 @@ import pytest
 
 from hsr8.cli.main import entry
 from hsr8.errors import SimulationDiverged
-from hsr8.recording.run_reader import open_run
+from hsr8.recording.run import open_run
 from hsr8.scenario.loader import dump
 from hsr8.simulation.loop import Simulation
 

@@ -17,12 +17,10 @@ ESCAPES = "\x1b]0;owned\x07 \x9b31m \u202edoog"
 FAST = ("--body", "kinematic", "--camera", "analytic", "--duration", "0.5", "--quiet")
 
 
-@pytest.fixture(scope="module")
-def hostile(tmp_path_factory):
+@pytest.fixture
+def hostile(quick_run):
     """A run whose files contain escapes of a terminal wherever there is text."""
-    out = tmp_path_factory.mktemp("hostile")
-    assert entry(["run", "quick", *FAST, "--out", str(out)]) == 1
-    (run,) = (out / "quick").iterdir()
+    run = quick_run.path
     for name in ("manifest.json", "metrics.json"):
         values = json.loads((run / name).read_text())
         changed = {key: ESCAPES if isinstance(v, str) else v for key, v in values.items()}
@@ -78,10 +76,10 @@ def test_a_message_about_a_long_argument_is_short(capsys):
         "run quick --set vision.color_table=PATH",
     ],
 )
-def test_any_path_works_or_is_one_line(hostile_free, tmp_path, monkeypatch, capsys, command, name):
+def test_any_path_works_or_is_one_line(quick_runs, tmp_path, monkeypatch, capsys, command, name):
     monkeypatch.chdir(tmp_path)
     monkeypatch.setattr("hsr8.cli.sweep.run_sweeps", _refuse)
-    words = [w.replace("PATH", name).replace("RUN", str(hostile_free)) for w in command.split()]
+    words = [w.replace("PATH", name).replace("RUN", str(quick_runs)) for w in command.split()]
     quick = [*FAST] if words[0] == "run" else []
     code = entry([*words, *quick])
     error = capsys.readouterr().err
@@ -92,15 +90,6 @@ def test_any_path_works_or_is_one_line(hostile_free, tmp_path, monkeypatch, caps
 
 def _refuse(*_):
     raise UsageError("no runs in this test")
-
-
-@pytest.fixture(scope="module")
-def hostile_free(tmp_path_factory):
-    """A run."""
-    out = tmp_path_factory.mktemp("plain")
-    assert entry(["run", "quick", *FAST, "--out", str(out)]) == 1
-    (run,) = (out / "quick").iterdir()
-    return run
 
 
 def test_a_library_that_cannot_be_imported_is_one_line():

@@ -7,7 +7,7 @@ import pytest
 
 from hsr8.cli.main import entry
 from hsr8.errors import SimulationDiverged
-from hsr8.recording.run_reader import open_run
+from hsr8.recording.run import open_run
 from hsr8.robots.file.locate import find_description
 from hsr8.world.body.kinematic import KinematicBody
 from walking.engine import PlanDiverged, WalkingEngine

@@ -3,7 +3,7 @@
 import pytest
 
 from hsr8.cli.main import entry
-from hsr8.recording.run_reader import open_run
+from hsr8.recording.run import open_run
 
 
 @pytest.fixture(scope="package")

@@ -11,7 +11,7 @@ from scipy.spatial.transform import Rotation
 from hsr8.cli.main import entry
 from hsr8.errors import ModelError
 from hsr8.export.bag import write_bag
-from hsr8.recording.run_reader import open_run
+from hsr8.recording.run import open_run
 from hsr8.robots.loaded import load_robot
 
 pytest.importorskip("rosbags")

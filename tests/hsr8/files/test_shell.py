@@ -4,7 +4,7 @@ import subprocess
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from hsr8.files.shell import shell_line
+from hsr8.files.text import shell_line
 
 WORDS = st.lists(st.binary(min_size=1, max_size=8).filter(lambda b: b"\0" not in b), min_size=1)
 

@@ -7,8 +7,8 @@ import pytest
 from hsr8.errors import UsageError
 from hsr8.recording import run_folder
 from hsr8.recording.manifest import FORMAT, Manifest
+from hsr8.recording.run import open_run
 from hsr8.recording.run_folder import RunFolder
-from hsr8.recording.run_reader import open_run
 from hsr8.scenario.loader import load_scenario
 
 

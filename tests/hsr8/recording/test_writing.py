@@ -12,8 +12,8 @@ import pytest
 from hsr8.cli.main import entry
 from hsr8.recording import crash, run_folder
 from hsr8.recording.recorder import Recorder
+from hsr8.recording.run import open_run
 from hsr8.recording.run_folder import RunFolder
-from hsr8.recording.run_reader import open_run
 from hsr8.recording.stream import SUFFIX
 
 FAST = ("--body", "kinematic", "--camera", "analytic", "--quiet")
@@ -100,7 +100,7 @@ LOG_TWICE = """
 import resource, sys
 from pathlib import Path
 from hsr8.errors import RecordingFailed
-from hsr8.recording.run_reader import open_run
+from hsr8.recording.run import open_run
 from hsr8.show.log import run_log
 
 run_log.WRITE_TIMEOUT = 1.0

@@ -14,11 +14,11 @@ import numpy as np
 import pytest
 
 from hsr8.cli.main import entry
-from hsr8.cli.pace import Pace
+from hsr8.cli.progress import Pace
 from hsr8.driver import run_scenario
 from hsr8.errors import UsageError
 from hsr8.export.topics import TOPICS, Setup
-from hsr8.recording.run_reader import open_run
+from hsr8.recording.run import open_run
 from hsr8.recording.verification import recompute
 from hsr8.robots.loaded import load_robot
 from hsr8.ros.graph import SUBSCRIPTION, Endpoint

@@ -8,7 +8,7 @@ from dataclasses import replace
 import pytest
 
 from hsr8.errors import RecordingFailed, SimulationDiverged
-from hsr8.recording.run_reader import open_run
+from hsr8.recording.run import open_run
 from hsr8.scenario.loader import load_scenario
 from hsr8.simulation.loop import Simulation
 from hsr8.sweep.job import Job, prune, run_job

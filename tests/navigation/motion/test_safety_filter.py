@@ -1,7 +1,7 @@
 import numpy as np
 import pytest
 
-from navigation.motion.hypotheses import DISC
+from navigation.motion.hypotheses import Disc
 from navigation.motion.safety_filter import RolloutStart, SafetyFilter
 from navigation.parameters.motion import SafetyFilterParameters, VelocityMappingParameters
 
@@ -14,7 +14,7 @@ ON_COURSE = None
 
 def discs(places, velocities=None, radius=0.25, horizon=6.0, weight=1.0):
     places = np.atleast_2d(np.asarray(places, float))
-    result = np.zeros(len(places), DISC).view(np.recarray)
+    result = np.zeros(len(places), Disc).view(np.recarray)
     result.position, result.velocity = places, 0.0 if velocities is None else velocities
     result.radius, result.horizon, result.weight = radius, horizon, weight
     return result

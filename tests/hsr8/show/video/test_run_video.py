@@ -8,7 +8,7 @@ import pytest
 from hsr8.cli.main import entry
 from hsr8.errors import UsageError
 from hsr8.recording import run_folder
-from hsr8.recording.run_reader import open_run
+from hsr8.recording.run import open_run
 from hsr8.show.video.run_images import shown_frames
 from hsr8.show.video.run_video import VideoOptions, instants, render_run
 
@@ -55,12 +55,9 @@ def test_a_run_without_records_is_a_usage_error():
         instants(np.zeros(0), VideoOptions())
 
 
-@pytest.fixture(scope="module")
-def run(tmp_path_factory):
-    out = tmp_path_factory.mktemp("runs")
-    options = ["--body", "kinematic", "--camera", "analytic", "--duration", "1"]
-    entry(["run", "quick", *options, "--quiet", "--out", str(out)])
-    return open_run(out)
+@pytest.fixture
+def run(quick_run):
+    return quick_run
 
 
 @pytest.mark.gl

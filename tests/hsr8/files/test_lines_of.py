@@ -5,7 +5,7 @@ import tomlkit
 from hypothesis import given
 from hypothesis import strategies as st
 
-from hsr8.files.key_lines import lines_of
+from hsr8.files.text import lines_of
 from hsr8.keys import depth
 
 TEXT = '''\
@@ -43,12 +43,12 @@ speed = [
         (("world", "mover", 0, "speed"), 11),
         (("world", "mover", 0, "deep", "x"), 13),
         (("world", "mover", 1), 14),
-        (("world", "mover", 1, "speed", 1), 18),
+        (("world", "mover", 1, "speed", 1), 16),
         (("world", "missing"), 6),
         (("missing",), None),
     ],
 )
-def test_a_key_has_the_line_on_which_it_begins_or_that_of_its_table(path, line, newline):
+def test_a_key_has_the_first_line_of_its_statement_or_that_of_its_table(path, line, newline):
     assert lines_of(TEXT.replace("\n", newline), [path]).get(path) == line
 
 

@@ -1,11 +1,11 @@
 import subprocess
 import sys
 
-from hsr8.process.parent_watch import with_parent_watch
+from hsr8.process.signals import with_parent_watch
 
 PARENT = """
 import os, subprocess, sys
-child = "import sys, time; import hsr8.process.parent_watch as a;"
+child = "import sys, time; import hsr8.process.signals as a;"
 child += "print(a.end_with_parent(PARENT), flush=True); time.sleep(60)"
 child = child.replace("PARENT", str(os.getpid()))
 process = subprocess.Popen([sys.executable, "-c", child], stdout=subprocess.PIPE, text=True)
@@ -24,7 +24,7 @@ def test_it_ends_with_a_parent_that_is_killed():
 
 
 def test_a_parent_that_already_ended_is_reported():
-    code = "import hsr8.process.parent_watch as a; print(a.end_with_parent(1))"
+    code = "import hsr8.process.signals as a; print(a.end_with_parent(1))"
     words = [sys.executable, "-c", code]
     done = subprocess.run(words, capture_output=True, text=True, check=True, timeout=60)
     assert done.stdout.strip() == "False"
@@ -33,7 +33,7 @@ def test_a_parent_that_already_ended_is_reported():
 def test_a_watched_program_ends_with_its_parent():
     """Its standard output is the parent's, which is closed when both have ended."""
     script = (
-        "import os, subprocess; from hsr8.process.parent_watch import with_parent_watch;"
+        "import os, subprocess; from hsr8.process.signals import with_parent_watch;"
         "child = subprocess.Popen(with_parent_watch(['/bin/sh', '-c', 'echo here; exec sleep 60']),"
         " stdout=subprocess.PIPE, start_new_session=True);"
         "print(child.stdout.readline(), flush=True); os.kill(os.getpid(), 9)"

@@ -4,19 +4,16 @@ import pytest
 
 from hsr8.cli.main import entry
 from hsr8.errors import UsageError
+from hsr8.recording.run import open_run
 from hsr8.recording.run_folder import RunFolder
-from hsr8.recording.run_reader import open_run
 from hsr8.scenario.loader import load_scenario
 
 COMMANDS = [["info"], ["diff", "SAME"], ["verify"]]
 
 
 @pytest.fixture(scope="module")
-def recorded(tmp_path_factory):
-    out = tmp_path_factory.mktemp("runs")
-    words = ["run", "quick", "--body", "kinematic", "--camera", "analytic", "--duration", "1"]
-    entry([*words, "--quiet", "--out", str(out)])
-    return open_run(out).path
+def recorded(quick_runs):
+    return open_run(quick_runs).path
 
 
 def output(command, run, capsys):

@@ -1,5 +1,5 @@
-from hsr8.recording import code_digest as module
-from hsr8.recording.code_digest import code_digest
+from hsr8.recording import manifest as module
+from hsr8.recording.manifest import code_digest
 
 
 def test_the_digest_is_of_what_shapes_a_result(tmp_path, monkeypatch):
