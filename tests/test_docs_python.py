@@ -21,11 +21,3 @@ def test_the_example_runs(code, tmp_path, monkeypatch, capsys):
     printed = capsys.readouterr().out
     assert printed.strip()
     assert "False" not in printed.replace("False timeout", "")
-
-
-@pytest.mark.parametrize("page", sorted(DOCS.rglob("*.md")), ids=lambda page: page.name)
-def test_hsr8_is_imported_before_numpy(page):
-    for code in re.findall(r"```python\n(.*?)```", page.read_text(), re.S):
-        imported = re.findall(r"^(?:import|from) (\w+)", code, re.M)
-        if {"hsr8", "numpy"} <= set(imported):
-            assert imported.index("hsr8") < imported.index("numpy"), code

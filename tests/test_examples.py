@@ -117,17 +117,6 @@ def test_the_correction_of_g1_is_bounded(onnx_walker):
     )
 
 
-def test_what_is_missing_is_named(onnx_walker, monkeypatch):
-    with pytest.raises(ValueError, match="the robot lacks the joints AAHead_yaw, Head_pitch"):
-        onnx_walker.BoosterT1().start(SimpleNamespace(joint_names=("knee",)))
-    monkeypatch.setattr(onnx_walker, "POLICY", "none.onnx")
-    with pytest.raises(FileNotFoundError, match=r"POLICY: 'none\.onnx' does not exist"):
-        onnx_walker.BoosterT1()
-    monkeypatch.setitem(sys.modules, "onnxruntime", None)
-    with pytest.raises(ImportError, match="pip install onnxruntime"):
-        onnx_walker.BoosterT1()
-
-
 @pytest.mark.parametrize(("robot", "walker"), [("t1", "BoosterT1"), ("g1", "UnitreeG1")])
 def test_the_description_drives_every_joint_of_the_policy(onnx_walker, robot, walker):
     file = EXAMPLES / f"{robot}_playground.toml"

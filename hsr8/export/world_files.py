@@ -17,7 +17,7 @@ from hsr8.errors import UsageError
 from hsr8.scenario.schema import Scenario
 from hsr8.scenario.track import Track
 from hsr8.world.field.layout import Beacon, Layout, Obstacle
-from hsr8.world.field.motion import Appearing, Circle, MotionLaw, Passage, Shuttle, Wander, pace
+from hsr8.world.field.motion import Circle, MotionLaw, Passage, Shuttle, Wander, pace
 
 STEP = 0.1  # of IR-SIM [s]
 CORNERS = 32  # of the polygon of a circle
@@ -91,7 +91,7 @@ def _color(cylinder: Obstacle | Beacon) -> str:
 
 
 def _mover(mover: Obstacle, layout: Layout, duration: float) -> Table:
-    motion = mover.motion.motion if isinstance(mover.motion, Appearing) else mover.motion
+    motion = mover.motion
     assert motion is not None
     goals, repeats = _goals(motion, duration)
     behavior = "rvo" if layout.reactions.crowd else "dash"

@@ -14,22 +14,19 @@ Linear interpolation would not exceed the mean speed, but its velocity jumps at 
 spline without limits overshoots.
 """
 
-from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
+from collections.abc import Iterator
+from dataclasses import dataclass, replace
 from functools import cached_property
 from math import ceil, inf
-from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
 
+from hsr8.scenario.path import Path, Paths, hermite_pieces
 from hsr8.scenario.schema import Scenario
 from hsr8.scenario.section import Point
 from hsr8.scenario.track_file import RecordedTrack, recorded_tracks
 from hsr8.scenario.world import TrackMover
-
-if TYPE_CHECKING:
-    from scipy.interpolate import CubicHermiteSpline
 
 Array = NDArray[np.float64]
 
@@ -66,45 +63,52 @@ class Track:
     period: float = inf
 
     @cached_property
-    def curve(self) -> "CubicHermiteSpline":
-        """Position by time of the recording."""
-        # Imported late: runs without recorded movers start 0.1 s earlier.
-        from scipy.interpolate import CubicHermiteSpline  # noqa: PLC0415
-
-        rates = rates_at_samples(np.array(self.times), np.array(self.points))
-        return CubicHermiteSpline(self.times, self.points, rates)
+    def path(self) -> Path:
+        """Path by the time of the recording."""
+        times, points = np.array(self.times), np.array(self.points)
+        pieces = hermite_pieces(times, points, rates_at_samples(times, points))
+        linger = inf if self.stays else self.linger
+        return Path(
+            times,
+            times[:-1],
+            pieces,
+            offset=self.begin,
+            first=self.first,
+            period=self.period,
+            window=(self.times[0] - linger, self.times[-1] + linger),
+            away=(self.points[0][0] + self.away, self.points[0][1]),
+        )
 
     @cached_property
     def speed(self) -> float:
         """Upper bound of the speed [m/s]."""
-        return float(speed_bounds(self.curve).max())
+        return float(speed_bounds(self.path).max())
 
     @cached_property
-    def _alone(self) -> "TrackTable":
-        return TrackTable([self])
+    def _alone(self) -> Paths:
+        return Paths([self.path])
 
     def present(self, time: float) -> bool:
         """Return whether the mover is in the world at `time` [s]."""
-        return bool(self._alone.present(time)[0])
+        return bool(self._state(time)[5])
 
     def recorded_time(self, time: float) -> float:
         """Return the time of the recording at `time` [s]."""
-        return float(self._alone.recorded(time)[0])
-
-    def positions(self, times: Array | float) -> Array:
-        """Return the positions at `times` (...) [s] (..., 2) [m]."""
-        positions: Array = self._alone.positions(np.asarray(times)[..., None])[..., 0, :]
-        return positions
+        return float(self._state(time)[4])
 
     def position(self, time: float) -> Point:
         """Return the position at `time` [s]."""
-        x, y = self.positions(time).tolist()
+        x, y = self._state(time)[:2].tolist()
         return x, y
 
     def velocity(self, time: float) -> Point:
         """Return the velocity at `time` [m/s]; zero while the mover stands or is away."""
-        x, y = self._alone.velocities(time)[0].tolist()
+        x, y = self._state(time)[2:4].tolist()
         return x, y
+
+    def _state(self, time: float) -> Array:
+        state: Array = self._alone.states(np.array([time]))[0]
+        return state
 
     def sampled(self, low: float, high: float, spacing: float) -> tuple[Array, Array]:
         """Return times (n,) [s] and positions (n, 2) [m] between two times of the recording.
@@ -119,72 +123,8 @@ class Track:
         low, high = (min(max(moment, self.times[0]), self.times[-1]) for moment in (low, high))
         n = ceil((high - low) * self.speed / spacing) + 1
         moments = np.linspace(low, high, max(2, n))
-        return moments, self.curve(moments)
-
-
-class TrackTable:
-    """Recorded tracks as arrays, padded to the longest one, evaluated together.
-
-    Args:
-        tracks: tracks at least one.
-    """
-
-    def __init__(self, tracks: Sequence[Track]) -> None:
-        n, longest = len(tracks), max(len(track.times) for track in tracks)
-        self._times = np.full((n, longest), np.inf)
-        self._cubics = np.zeros((n, longest - 1, 2, 4))  # highest power first
-        for row, track in enumerate(tracks):
-            self._times[row, : len(track.times)] = track.times
-            self._cubics[row, : len(track.times) - 1] = np.moveaxis(track.curve.c, 0, -1)
-        self._rows = np.arange(n)
-        self._last = np.array([len(track.times) - 2 for track in tracks])
-        self._start = np.array([track.times[0] for track in tracks])
-        self._end = np.array([track.times[-1] for track in tracks])
-        linger = np.array([np.inf if track.stays else track.linger for track in tracks])
-        self._appears, self._leaves = self._start - linger, self._end + linger
-        self._begin = np.array([track.begin for track in tracks])
-        self._first = np.array([track.first for track in tracks])
-        self._period = np.array([track.period for track in tracks])
-        self._away = np.array([(t.points[0][0] + t.away, t.points[0][1]) for t in tracks])
-
-    def present(self, times: Array | float) -> NDArray[np.bool_]:
-        """Return whether the movers are in the world at `times` (..., n or 1) [s] (..., n)."""
-        moment = self.recorded(times)
-        present: NDArray[np.bool_] = (self._appears <= moment) & (moment < self._leaves)
-        return present
-
-    def recorded(self, times: Array | float) -> Array:
-        """Return the times of the recordings at `times` (..., n or 1) [s] (..., n) [s]."""
-        moment: Array = np.asarray(times) + self._begin
-        repeats = np.isfinite(self._period)
-        if repeats.any():
-            period = np.where(repeats, self._period, 1.0)
-            again = self._first + np.mod(moment - self._first, period)
-            moment = np.where(repeats, again, moment)
-        return moment
-
-    def positions(self, times: Array | float) -> Array:
-        """Return the positions at `times` (..., n or 1) [s], in order (..., n, 2) [m]."""
-        moment = self.recorded(times)
-        cubics, u = self._pieces(np.clip(moment, self._start, self._end))
-        at = cubics[..., 3] + u * (cubics[..., 2] + u * (cubics[..., 1] + u * cubics[..., 0]))
-        positions: Array = np.where(self.present(times)[..., None], at, self._away)
-        return positions
-
-    def velocities(self, times: Array | float) -> Array:
-        """Return the velocities at `times` (..., n or 1) [s], in order (..., n, 2) [m/s]."""
-        moment = self.recorded(times)
-        cubics, u = self._pieces(np.clip(moment, self._start, self._end))
-        slope = cubics[..., 2] + u * (2.0 * cubics[..., 1] + u * (3.0 * cubics[..., 0]))
-        walks = (self._start <= moment) & (moment < self._end)
-        velocities: Array = np.where(walks[..., None], slope, 0.0)
-        return velocities
-
-    def _pieces(self, moment: Array) -> tuple[Array, Array]:
-        """Return coefficients (..., n, 2, 4) and times since the last sample (..., n, 1) [s]."""
-        passed = (self._times <= moment[..., None]).sum(axis=-1)
-        k = np.minimum(passed - 1, self._last)
-        return self._cubics[self._rows, k], (moment - self._times[self._rows, k])[..., None]
+        lane = replace(self.path, offset=0.0, period=inf, window=(-inf, inf))
+        return moments, Paths([lane]).positions(moments[:, None])[:, 0]
 
 
 def rates_at_samples(times: Array, points: Array) -> Array:
@@ -208,15 +148,15 @@ def rates_at_samples(times: Array, points: Array) -> Array:
     return np.concatenate([means[:1], middle, means[-1:]])
 
 
-def speed_bounds(curve: "CubicHermiteSpline") -> Array:
-    """Return upper bounds of the speed between the samples of a curve (n - 1,) [m/s].
+def speed_bounds(path: Path) -> Array:
+    """Return upper bounds of the speed between the samples of a recording (n - 1,) [m/s].
 
     The velocity is a quadratic polynomial of time. In each of `SUBDIVISIONS` parts it is in the
     convex hull of its Bézier points.
     """
     fractions = np.linspace(0.0, 1.0, 2 * SUBDIVISIONS + 1)[:, None]
-    u = (fractions * np.diff(curve.x))[..., None]
-    velocity = curve.c[2] + u * (2.0 * curve.c[1] + u * (3.0 * curve.c[0]))
+    u, c = (fractions * np.diff(path.knots))[..., None], path.cubics
+    velocity = c[..., 2] + u * (2.0 * c[..., 1] + u * (3.0 * c[..., 0]))
     ends, middles = velocity[::2], velocity[1::2]
     controls = 2.0 * middles - 0.5 * (ends[:-1] + ends[1:])
     speeds = [np.hypot(v[..., 0], v[..., 1]) for v in (ends, controls)]

@@ -7,9 +7,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from hsr8.mistakes import Mistake
+from hsr8.scenario.path import Paths
 from hsr8.scenario.schema import Scenario
 from hsr8.scenario.section import Point
-from hsr8.scenario.track import Recording, Track, TrackTable, recordings
+from hsr8.scenario.track import Recording, Track, recordings
 from hsr8.scenario.world import TrackMover
 
 Array = NDArray[np.float64]
@@ -172,7 +173,7 @@ def _meetings(
     radii = np.array([crowds[k][0].mover.radius for k in owner])
     drawn = np.array([crowds[k][0].mover.latest_start is not None for k in owner])
     half = 0.5 * np.asarray(scenario.world.size) + radii[:, None]
-    table, step = TrackTable(tracks), STEP * scenario.time_scale
+    table, step = Paths([track.path for track in tracks]), STEP * scenario.time_scale
     closest: dict[int, tuple[float, float, int, int]] = {}  # missing room, time, both tracks
     times = np.arange(0.0, _horizon(scenario, crowds), step)
     for begin in range(0, len(times), CHUNK):

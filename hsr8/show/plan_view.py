@@ -11,7 +11,7 @@ from hsr8.show.canvas import Canvas, Point, framed
 from hsr8.show.image import Color, Image, draw_text
 from hsr8.world.field.certificate import Certificate
 from hsr8.world.field.layout import Layout, Obstacle
-from hsr8.world.field.motion import Appearing, Circle, Line, MotionLaw, Passage, Shuttle, Wander
+from hsr8.world.field.motion import Circle, Line, MotionLaw, Passage, Shuttle, Wander
 from vision.color import COLOR_CLASSES
 
 INK = (60, 58, 55)
@@ -77,11 +77,8 @@ class PlanView:
         motion = obstacle.motion
         if isinstance(motion, Track) and not motion.present(0.0):
             return
-        if isinstance(motion, Appearing):
-            obstacle = replace(
-                obstacle, position=motion.position(motion.start), motion=motion.motion
-            )
-            motion = motion.motion
+        if motion is not None and obstacle.present[0] > 0.0:
+            obstacle = replace(obstacle, position=motion.position(obstacle.present[0]))
         self._canvas.disc(obstacle.position, obstacle.radius, _rgb(obstacle.color))
         if motion is not None:
             depart = motion.depart if isinstance(motion, Passage) else 0.0
@@ -128,8 +125,6 @@ class PlanView:
             self._canvas.disc(mark, PATH_DOT * self._scale, PATH)
 
     def _lane(self, motion: MotionLaw) -> None:
-        if isinstance(motion, Appearing):
-            motion = motion.motion
         if isinstance(motion, Shuttle | Passage):
             self._canvas.line((motion.start, motion.end), LANE)
         elif isinstance(motion, Line):

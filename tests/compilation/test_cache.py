@@ -114,11 +114,3 @@ def test_a_closure_is_refused():
 
     with pytest.raises(TypeError, match="closure; expected a function of a module"):
         compiled(scaled)
-
-
-def test_a_function_in_no_file_is_compiled_and_not_kept():
-    names = {"__name__": "typed_in"}
-    exec("def doubled(x):\n    return 2.0 * x", names)
-    function = compiled(names["doubled"])
-    assert function(4.0) == 8.0
-    assert function.stats.cache_path is None

@@ -1,6 +1,5 @@
 """Rules that all compiled functions of the project keep, see CONTRIBUTING.md."""
 
-import ast
 import importlib
 from pathlib import Path
 
@@ -8,30 +7,12 @@ import pytest
 
 import compilation
 from compilation.function import OPTIONS
-from compilation.sources import closure
 
 ROOT = Path(compilation.__file__).parents[1]
 LIBRARIES = ("hsr8", "navigation", "vision", "walking")
 FILES = sorted(path for library in LIBRARIES for path in (ROOT / library).rglob("*.py"))
 COMPILED = [path for path in FILES if "\n@compiled\n" in path.read_text(encoding="utf-8")]
 MODULES = [".".join(path.relative_to(ROOT).with_suffix("").parts) for path in COMPILED]
-
-
-def sources(module):
-    """Return the project modules from which a module imports functions, classes or modules."""
-    here = importlib.import_module(module)
-    for node in ast.parse(Path(here.__file__).read_text(encoding="utf-8")).body:
-        if isinstance(node, ast.ImportFrom) and node.module.partition(".")[0] in LIBRARIES:
-            for alias in node.names:
-                value = getattr(here, alias.asname or alias.name)
-                own = node.module.partition(".")[0] == module.partition(".")[0]
-                if hasattr(value, "py_func") or (own and type(value) is type):
-                    yield value.__module__
-
-
-@pytest.mark.parametrize("module", MODULES)
-def test_the_modules_of_imported_functions_and_classes_are_sources(module):
-    assert set(sources(module)) <= closure(module)
 
 
 @pytest.mark.parametrize("module", MODULES)

@@ -6,7 +6,7 @@ import pytest
 from numpy.typing import NDArray
 
 from compilation import compiled
-from compilation.record import WORD, Records, record, record_class, record_type, records
+from compilation.record import Records, record, record_class, record_type, records
 
 PART = record_type(weight=float, used=bool)
 WHOLE = record_type(flag=bool, parts=(PART, 2), matrix=(float, 2, 3))
@@ -32,11 +32,6 @@ def test_compiled_code_reads_and_changes_nested_records():
     assert total(wholes) == total.py_func(wholes) == 1.0 + 3.0 + 5.0
     assert wholes["flag"].all()
     assert wholes[1].parts[1].weight == 3.0
-
-
-def test_every_field_begins_at_a_word():
-    assert all(offset % WORD == 0 for _, offset in WHOLE.fields.values())
-    assert WHOLE.itemsize == WORD * (1 + 2 * 2 + 6)
 
 
 def test_attributes_of_arrays_are_refused_as_names():

@@ -6,7 +6,6 @@ from pathlib import Path
 import mujoco
 import numpy as np
 import pytest
-from scipy.stats import qmc
 
 from walking.body.tree import JOINT_NAMES
 
@@ -63,19 +62,6 @@ def pairs(model, kind):
     return [(name, find(name), find("r" + name[1:])) for name in lefts]
 
 
-def mirror_rotation(quaternion):
-    """Rotation mirrored at the x-z plane, with a non-negative first element."""
-    w, x, y, z = quaternion
-    mirrored = np.array([w, -x, y, -z])
-    return mirrored if w >= 0 else -mirrored
-
-
-@pytest.mark.parametrize("file", ["hsr8.xml", "scene.xml"])
-def test_everything_is_named(file):
-    model = mujoco.MjModel.from_xml_path(str(HERE / file))
-    assert [kind for kind in COUNTS if not all(names(model, kind))] == []
-
-
 def test_actuators_follow_the_joints_in_order_and_range(robot):
     joints = robot.actuator_trnid[:, 0]
     assert tuple(robot.joint(i).name for i in joints) == JOINT_NAMES
@@ -128,28 +114,6 @@ def test_left_mirrors_right_in_joints_and_actuators(robot):
             assert getattr(left, field) == pytest.approx(getattr(right, field)), (name, field)
 
 
-def test_left_mirrors_right_in_shapes(robot):
-    for name, left, right in pairs(robot, "geom"):
-        assert (left.type, left.matid) == (right.type, right.matid), name
-        assert left.size == pytest.approx(right.size), name
-        assert left.pos == pytest.approx(right.pos * MIRROR), name
-        # Shapes are symmetric under half turns: compare the axes up to their signs.
-        a, b = np.empty(9), np.empty(9)
-        mujoco.mju_quat2Mat(a, left.quat)
-        mujoco.mju_quat2Mat(b, mirror_rotation(right.quat))
-        assert np.abs(a) == pytest.approx(np.abs(b), abs=1e-6), name
-
-
-def test_visual_geoms_do_not_collide(robot):
-    visual = robot.geom_group == VISUAL_GROUP
-    assert visual.any()
-    assert not robot.geom_contype[visual].any()
-    assert not robot.geom_conaffinity[visual].any()
-    assert (robot.geom_matid[visual] >= 0).all()
-    named = np.array([name.endswith("_visual") for name in names(robot, "geom")])
-    assert (named == visual).all()
-
-
 def test_no_geom_adds_mass():
     """Inertias are explicit: a change of a shape never changes the dynamics."""
     spec = mujoco.MjSpec.from_file(str(HERE / "hsr8.xml"))
@@ -178,19 +142,6 @@ def test_the_head_does_not_occlude_its_camera(robot):
         assert hit[0] < 0 or robot.geom_bodyid[hit[0]] != head, (u, v)
 
 
-def test_random_setpoints_raise_no_warning(standing):
-    """One second of quasi-random setpoints within all limits, 25 per second."""
-    scene, data = standing
-    lower, upper = scene.actuator_ctrlrange.T
-    noise = qmc.Halton(scene.nu, rng=np.random.default_rng(0)).random(25)
-    for control in lower + noise * (upper - lower):
-        data.ctrl = control
-        mujoco.mj_step(scene, data, nstep=16)
-    assert data.time == pytest.approx(1)
-    assert not data.warning.number.any()
-    assert np.isfinite(data.qpos).all()
-
-
 def test_walk_ready_stands(standing):
     scene, data = standing
     mujoco.mj_step(scene, data, nstep=400)
@@ -202,7 +153,7 @@ def test_walk_ready_stands(standing):
     assert force == pytest.approx(scene.body_mass.sum() * 9.81, rel=0.05)
 
 
-@pytest.mark.parametrize("yaw", [0.3, 1.1, 2.0, -2.7])
+@pytest.mark.parametrize("yaw", [0.3, -2.7])
 def test_pads_measure_the_whole_load_at_any_heading(standing, yaw):
     """The contact points are at the corners of the soles, at the border of the pads."""
     scene, data = standing

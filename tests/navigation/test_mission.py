@@ -59,14 +59,6 @@ def test_a_robot_pushed_off_the_goal_walks_back():
     assert not mission.update(at(1.01 + p.r_release, 0.0)).aligning
 
 
-def test_without_goal_heading_arrival_is_enough():
-    mission = Mission(SQUARE[:2], None, False, MissionParameters())
-    mission.update(at(0.0, 0.0))
-    task = mission.update(at(0.5, 0.0))
-    assert task.heading == pytest.approx(0.0)
-    assert mission.update(at(1.0, 0.0, 2.0)).done
-
-
 def test_endless_tour_cycles():
     mission = Mission(SQUARE, None, True, MissionParameters())
     for lap in range(3):

@@ -37,10 +37,6 @@ def movers(rng):
     ]
 
 
-def test_without_movers_the_speed_stays():
-    assert modified(()) == (DESIRED, "free")
-
-
 def test_the_chosen_speed_is_free_or_the_path_must_change():
     rng, situations = np.random.default_rng(0), set()
     for _ in range(1500):
@@ -87,13 +83,6 @@ def test_the_choice_is_that_of_brute_force():
 
 
 CROSSING = (Encounter(0.45, -0.7, 0.0, 0.1, 0.2),)
-
-
-def test_the_robot_passes_first_if_it_can_and_waits_if_it_cannot():
-    fast = modified(CROSSING, 0.06, 0.06, acceleration=inf)
-    slow = modified(CROSSING, 0.06, 0.06, acceleration=0.0)
-    assert (fast[1], slow[1]) == ("accelerate", "brake")
-    assert fast[0] > 0.06 > slow[0]
 
 
 def test_the_acceleration_limit_is_that_of_the_printed_formula():
@@ -143,15 +132,6 @@ def test_the_oval_starts_at_one_is_xi_in_the_middle_and_ends_at_zero(xi):
     assert [oval(h, xi) for h in (0.0, 0.5, 1.0)] == pytest.approx([1.0, xi, 0.0])
     assert np.all(np.diff([oval(k / 100, xi) for k in range(101)]) < 0.0)
     assert (oval(-1.0, xi), oval(2.0, xi)) == pytest.approx((1.0, 0.0))
-
-
-def test_the_oval_is_concave_above_a_half_linear_at_it_and_continuous_there():
-    h = np.linspace(0.0, 1.0, 101)
-    assert np.all(np.diff([oval(x, 0.7) for x in h], 2) < 0.0)
-    assert np.all(np.diff([oval(x, 0.3) for x in h], 2) > 0.0)
-    assert [oval(x, 0.5) for x in h] == pytest.approx(1.0 - h)
-    for x in h.tolist():
-        assert oval(x, 0.5 + 2.6e-5) == pytest.approx(oval(x, 0.5), abs=3e-5)
 
 
 @pytest.fixture
@@ -224,22 +204,6 @@ def test_the_virtual_obstacle_moves_with_the_robot_along_the_path(virtual):
     assert compared > 15
 
 
-def test_the_virtual_obstacle_does_not_depend_on_the_frame(virtual, planning, track, rotation):
-    a, shift = 0.8, np.array([3.0, -1.0])
-    r = rotation(a)
-    for robot in np.random.default_rng(3).uniform((0.05, -0.5), (0.29, 0.5), (20, 2)):
-        here, _ = virtual(robot)
-        s = planning(
-            [track(shift, r @ [0.1, 0.0])],
-            pose=(*(r @ robot + shift), a),
-            body=(0.15, 0.0, 0.0),
-            parameters=PROFILE,
-        )
-        there = PaperMethod(P).virtual_obstacle(s, 0)
-        assert there.position == pytest.approx(r @ here.position + shift)
-        assert there.radius == pytest.approx(here.radius)
-
-
 # The method
 
 
@@ -286,21 +250,6 @@ def test_a_robot_on_the_path_of_a_mover_leaves_it_on_the_side_of_its_goal(desire
 @BOTH
 def test_the_desired_speed_is_the_nominal_ratio(weights, desired):
     assert np.hypot(*desired([], weights=weights).velocity) == pytest.approx(0.75 * V_MAX)
-
-
-def test_the_scheme_is_mirrored(desired, tracks):
-    rng, situations = np.random.default_rng(7), set()
-    flip = np.array([1.0, -1.0])
-    for _ in range(60):
-        places = rng.uniform((0.2, -0.6), (1.2, 0.6), (3, 2))
-        velocities = rng.normal((-0.08, 0.0), 0.06, (3, 2))
-        one = desired(tracks(places, velocities), (1.6, 0.3))
-        other = desired(tracks(places * flip, velocities * flip), (1.6, -0.3))
-        assert other.velocity == pytest.approx(one.velocity * flip, abs=1e-9)
-        assert other.situation == one.situation
-        assert [v.radius for v in other.virtual] == pytest.approx([v.radius for v in one.virtual])
-        situations.add(one.situation)
-    assert "path_change" in situations
 
 
 @BOTH

@@ -1,5 +1,3 @@
-from dataclasses import replace
-
 import pytest
 
 from navigation.paper import WEIGHTS
@@ -18,18 +16,6 @@ def test_the_constants_printed_in_the_paper_are_kept():
 def test_weights_of_the_gaze_map_sum_to_one(p):
     g = p.gaze
     assert g.w_lm + g.w_way + g.w_sf + g.w_ob == pytest.approx(1.0)
-
-
-def test_the_paper_profile_has_no_additions():
-    assert PAPER.planner.method == "paper"
-    assert PAPER.gaze.mode == "integrated"
-    assert PAPER.univector.holonomic_distance == 0.0
-
-
-def test_profiles_agree_in_all_else():
-    assert PAPER.mission == EXTENDED.mission
-    assert PAPER.velocity_mapping == EXTENDED.velocity_mapping
-    assert replace(PAPER.planner, method=EXTENDED.planner.method) == EXTENDED.planner
 
 
 def test_the_gains_of_the_paper_keep_their_signs():

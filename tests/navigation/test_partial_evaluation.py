@@ -117,24 +117,6 @@ def test_psi_way_is_lipschitz():
         assert abs(pa - pb) <= np.hypot(*(a - b)) / E.d_n_thres + 1e-12
 
 
-def test_the_set_o_does_not_depend_on_the_frame(track):
-    rng = np.random.default_rng(2)
-    places, speeds = rng.uniform(-2, 2, (30, 2)), rng.normal(0, 0.1, (30, 2))
-    a, shift = 0.8, np.array([3.0, -1.0])
-    r = np.array([[np.cos(a), -np.sin(a)], [np.sin(a), np.cos(a)]])
-    here = Tracks.of([track(p, v) for p, v in zip(places, speeds, strict=True)])
-    there = Tracks.of(here).moved(0.0)
-    there.rows["position"] = here.position @ r.T + shift
-    there.rows["velocity"] = here.velocity @ r.T
-    v = np.array([0.1, 0.05])
-    one = attended(here.rows, np.array([0.1, 0.2, 0.3]), v, 2.5)
-    pose = np.array([*(r @ [0.1, 0.2] + shift), 0.3 + a])
-    assert one.tolist() == attended(there.rows, pose, r @ v, 2.5).tolist()
-    assert psi_obstacle(here, np.array([0.1, 0.2]), v, E) == pytest.approx(
-        psi_obstacle(there, pose[:2], r @ v, E)
-    )
-
-
 def test_the_set_o_is_frontal_or_closing(track):
     def member(degrees, speed=0.0, distance=1.0):
         a = np.radians(degrees)

@@ -70,28 +70,6 @@ def test_every_obstacle_has_its_own_evaluations(scene, belief, track):
     assert together.s_oe == pytest.approx([float(s.s_oe[0]) for s in alone])
 
 
-def test_the_order_of_tracks_only_orders_the_evaluations(scene, belief, track):
-    tracks = [track((x, 0.3), (0.0, 0.02 * x), sigma=0.02 * x, id=x) for x in (1, 2, 3)]
-    one, other = (scene(belief(t), body=(0.2, 0.0, 0.0)) for t in (tracks, tracks[::-1]))
-    assert other.psi_ob == pytest.approx(one.psi_ob[::-1])
-    assert other.s_oe == pytest.approx(one.s_oe[::-1])
-
-
-def test_the_evaluations_do_not_depend_on_the_frame(scene, belief, track, rotation):
-    a, shift = 1.3, np.array([2.0, -1.0])
-    r = rotation(a)
-    here = scene(belief([track((0.8, 0.3), (-0.1, 0.02))]), body=(0.2, 0.05, 0.1))
-    moved = belief([track(r @ [0.8, 0.3] + shift, r @ [-0.1, 0.02])], (*shift, a))
-    there = scene(moved, body=(0.2, 0.05, 0.1))
-    assert (there.psi_sf, *there.psi_ob) == pytest.approx((here.psi_sf, *here.psi_ob))
-    assert there.velocity == pytest.approx(r @ here.velocity)
-
-
 def test_the_velocity_is_that_of_the_body_in_w(scene, belief):
     s = scene(belief(pose=(1.0, 2.0, pi / 2)), body=(0.2, 0.05, 0.3))
     assert s.velocity == pytest.approx([-0.05, 0.2])
-
-
-def test_without_obstacles_the_evaluations_are_empty(scene, belief):
-    s = scene(belief())
-    assert (len(s.obstacles), len(s.psi_ob), len(s.s_oe), s.landmarks) == (0, 0, 0, 0)

@@ -87,13 +87,6 @@ def test_wrap_keeps_the_direction_and_the_interval(a):
     assert math.isclose(math.sin(w), math.sin(a), abs_tol=1e-9)
 
 
-@given(angles)
-def test_array_version_agrees_with_the_scalar_one(a):
-    w = float(wrap_array([a])[0])
-    assert -math.pi < w <= math.pi
-    assert abs(wrap(w - wrap(a))) < 1e-9
-
-
 @pytest.mark.parametrize("a", [math.pi, -math.pi, 3 * math.pi, np.nextafter(math.pi, 4.0)])
 def test_the_seam_belongs_to_plus_pi(a):
     assert wrap(math.pi) == math.pi
@@ -105,9 +98,3 @@ def test_the_seam_belongs_to_plus_pi(a):
 def test_wrapping_is_exact(a):
     w = math.remainder(a, 2.0 * math.pi)
     assert wrap(a) == (math.pi if w == -math.pi else w)
-
-
-def test_array_version_leaves_its_argument_alone():
-    a = np.array([4.0, -4.0])
-    wrap_array(a)
-    assert a.tolist() == [4.0, -4.0]

@@ -50,11 +50,6 @@ def test_colors_side_by_side_are_no_post() -> None:
     assert not len(candidates(halves)[1])
 
 
-def test_a_narrow_color_on_a_wide_one_is_no_post() -> None:
-    stack = [Cylinder(2.0, 0.0, "cyan", 0.1), Cylinder(2.0, 0.0, "yellow", 0.05, 0.30, 0.60)]
-    assert not len(candidates(stack)[1])
-
-
 def test_an_obstacle_has_foot_and_head_and_the_typical_radius() -> None:
     _, (candidate,) = candidates([at(1.2, 0.0, "blue", 0.09)], pose(tilt=-0.3))
     assert rims(candidate) == [(0.0, NEAR), (0.30, FAR)]

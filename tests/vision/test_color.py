@@ -29,8 +29,8 @@ def label_of(rgb: tuple[float, ...], light: float) -> str:
 
 
 @pytest.mark.parametrize("name", COLOR_CLASSES)
-@pytest.mark.parametrize("brightness", [0.4, 0.6, 0.8, 1.0, 1.3, 1.6])
-@pytest.mark.parametrize("shade", [0.4, 0.7, 1.0])
+@pytest.mark.parametrize("brightness", [0.4, 1.0, 1.6])
+@pytest.mark.parametrize("shade", [0.4, 1.0])
 def test_painted_objects_keep_their_class_in_any_light(
     name: str, brightness: float, shade: float
 ) -> None:
@@ -53,26 +53,6 @@ def test_classes_that_claim_the_same_color_are_refused() -> None:
     pink = ColorClass("pink", "obstacle", (0.6, 0.1, 0.2), (160.0, 175.0))
     with pytest.raises(VisionError, match=r"'red'.*'pink'"):
         ColorTable({"red": red, "pink": pink})
-
-
-@pytest.mark.parametrize(
-    "image",
-    [
-        np.zeros((4, 4, 3)),
-        np.zeros((4, 4), np.uint8),
-        np.zeros((4, 4, 4), np.uint8),
-        np.zeros((0, 4, 3), np.uint8),
-    ],
-    ids=["float", "grey", "rgba", "empty"],
-)
-def test_only_rgb_images_are_classified(image: np.ndarray) -> None:
-    with pytest.raises(VisionError, match=r"\(height, width, 3\)"):
-        TABLE.classify(image)
-
-
-def test_a_view_that_is_not_contiguous_is_classified_like_its_copy() -> None:
-    image = np.random.default_rng(1).integers(0, 256, (20, 30, 3), dtype=np.uint8)
-    assert np.array_equal(TABLE.classify(image[::2, ::-1]), TABLE.classify(image[::2, ::-1].copy()))
 
 
 RNG = np.random.default_rng(0)
@@ -109,18 +89,6 @@ def test_wrong_archives_are_refused(tmp_path, arrays, message) -> None:
     np.savez(tmp_path / "t.npz", **arrays)
     with pytest.raises(VisionError, match=message):
         load_table(tmp_path / "t.npz")
-
-
-@pytest.mark.parametrize("content", [b"", b"no archive", b"PK\x03\x04 broken"])
-def test_other_files_are_refused(tmp_path, content) -> None:
-    (tmp_path / "t.npz").write_bytes(content)
-    with pytest.raises(VisionError, match="not a colour table"):
-        load_table(tmp_path / "t.npz")
-
-
-def test_a_missing_file_is_named(tmp_path) -> None:
-    with pytest.raises(VisionError, match=r"nowhere\.npz: No such file"):
-        load_table(tmp_path / "nowhere.npz")
 
 
 VIEW = pose(tilt=-0.3)

@@ -167,11 +167,6 @@ def test_a_beacon_behind_an_obstacle_keeps_its_name_or_is_not_seen() -> None:
         assert names == ["yellow/magenta"] or (names == [] and distance > 2.6)
 
 
-def test_one_reserved_color_alone_is_no_beacon() -> None:
-    half = Cylinder(2.0, 0.1, "yellow", 0.05, 0.0, 0.30)
-    assert see([half]) == ()
-
-
 def test_beacons_close_to_each_other_in_the_image_do_not_swap_colors() -> None:
     names = {"yellow/cyan", "magenta/yellow"}
     for y in np.linspace(0.0, 0.4, 9).tolist():
@@ -181,12 +176,6 @@ def test_beacons_close_to_each_other_in_the_image_do_not_swap_colors() -> None:
     assert observed == names
 
 
-@pytest.mark.parametrize("rgb", [(0, 0, 0), (1, 1, 1), *(c.rgb for c in COLOR_CLASSES.values())])
-def test_a_uniform_image_shows_nothing(rgb) -> None:
-    image = np.broadcast_to((255 * np.array(rgb)).astype(np.uint8), (240, 320, 3))
-    assert DETECTOR.detect(image, pose()) == ()
-
-
 def test_an_error_of_the_tilt_is_within_its_uncertainty() -> None:
     obstacle = at(2.0, 8.0, "red")
     image = paint([obstacle], pose(tilt=-0.25))
@@ -194,17 +183,6 @@ def test_an_error_of_the_tilt_is_within_its_uncertainty() -> None:
         wrong = pose(tilt=-0.25 + radians(error))
         (detection,) = Detector(CAMERA, uncertain(radians(0.7))).detect(image, wrong)
         assert_located(detection, obstacle, sigmas=3.0)
-
-
-@pytest.mark.parametrize("tilt", [-1.2, -0.4])
-def test_noise_yields_nothing_but_finite_detections(tilt: float) -> None:
-    rng = np.random.default_rng(7)
-    image = rng.integers(0, 256, (240, 320, 3), dtype=np.uint8)
-    detections = Detector(CAMERA, uncertain(0.01)).detect(image, pose(tilt=tilt))
-    assert detections
-    for detection in detections:
-        assert np.isfinite([detection.distance, detection.bearing, detection.radius]).all()
-        assert np.linalg.eigvalsh(detection.covariance).min() > 0.0
 
 
 @pytest.mark.parametrize("unknown", [{"tilt_sigma": 1e7}, {"height_sigma": 1e8}])

@@ -69,12 +69,6 @@ def test_resolution_is_the_derivative_of_the_angles(gaze, u, v) -> None:
         assert abs(after[1] - before[1]) / (2 * eps) == pytest.approx(slope, rel=1e-3, abs=1e-7)
 
 
-@given(u=st.floats(0.0, 320.0), v=st.floats(0.0, 240.0), depth=st.floats(0.05, 20.0))
-def test_points_on_a_ray_project_back_to_its_pixel(u: float, v: float, depth: float) -> None:
-    point = depth * rays(CAMERA, [u], [v])
-    assert CAMERA.project(point) == pytest.approx(np.array([[u, v]]), abs=1e-9)
-
-
 def test_field_of_view_is_the_angle_between_the_outermost_rays() -> None:
     camera = PinholeCamera.from_vertical_fov(320, 240, radians(70.0))
     assert camera.vertical_fov == pytest.approx(radians(70.0))

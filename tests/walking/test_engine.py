@@ -14,7 +14,6 @@ from walking.body.tree import HEAD
 from walking.command import CommandState, HeadTarget, Limit, VelocityCommand
 from walking.engine import PlanDiverged, WalkingEngine
 from walking.parameters import CONTROL_PERIOD, HeadParameters, WalkingParameters
-from walking.plan.footsteps import STANCE_YAW_TOLERANCE
 from walking.state import Phase
 
 AHEAD = HeadTarget()
@@ -63,51 +62,6 @@ def test_it_walks_at_the_commanded_velocity(robot, ideal_body, velocity, generat
     first, last = np.array(poses[-1 - 5 * period]), np.array(poses[-1])
     mean = (last - first) / (5 * period * CONTROL_PERIOD)
     assert mean == pytest.approx(velocity, abs=0.012)
-
-
-def test_odometry_follows_the_ideal_body(robot, ideal_body):
-    script = always(0.15, 0.03, 0.3)
-    engine, _ = run(robot, ideal_body, script, 6.0)
-    run_one = engine.step(ideal_body.sense(), script(6.0), AHEAD)
-    pose = engine.state().odometry
-    assert np.isfinite(run_one.position).all()
-    assert (pose.x, pose.y) == pytest.approx((ideal_body.x, ideal_body.y), abs=0.03)
-    assert np.sin(pose.yaw - ideal_body.yaw) == pytest.approx(0.0, abs=1e-9)
-
-
-def test_it_stands_still_without_a_command(robot, ideal_body):
-    engine, rows = run(robot, ideal_body, always(), 2.0)
-    assert engine.state().phase is Phase.STANDING
-    assert engine.state().step_count == 0
-    np.testing.assert_allclose(rows[-1], rows[-100], atol=1e-6)
-
-
-@pytest.mark.parametrize("generator", GENERATORS)
-def test_it_stops_with_parallel_feet(robot, ideal_body, generator):
-    parameters = WalkingParameters()
-    pattern = replace(parameters.pattern, generator=generator)
-    engine, _ = run(
-        robot,
-        ideal_body,
-        lambda now: VelocityCommand(0.2, 0.05, 0.4) if now < 2.5 else VelocityCommand(),
-        5.0,
-        replace(parameters, pattern=pattern),
-    )
-    state = engine.state()
-    assert state.phase is Phase.STANDING
-    support, other = state.footsteps
-    assert np.hypot(support.x - other.x, support.y - other.y) == pytest.approx(
-        2.0 * WalkingParameters().gait.half_stance, abs=1e-3
-    )
-    assert support.yaw == pytest.approx(other.yaw, abs=STANCE_YAW_TOLERANCE)
-
-
-def test_targets_stay_smooth_and_inside_the_limits_whatever_is_asked(robot, ideal_body):
-    _, rows = run(robot, ideal_body, twists, 12.0)
-    position = rows[:, :26]
-    assert (position >= robot.lower - 1e-9).all()
-    assert (position <= robot.upper + 1e-9).all()
-    assert np.abs(np.diff(position, axis=0)).max() / CONTROL_PERIOD < 15.0
 
 
 def test_a_lying_robot_knows_it_and_does_not_step(robot, ideal_body):
@@ -225,20 +179,6 @@ def test_the_planned_zmp_keeps_its_margin_in_the_support_polygon(robot, ideal_bo
     assert min(depths) > pattern.sole_margin - 1e-9
 
 
-def test_without_disturbance_the_measured_motion_is_the_planned(robot, ideal_body):
-    apart = []
-
-    def watch(engine, _k):
-        state = engine.state()
-        apart.append(np.abs(state.balance.dcm - state.dcm).max())
-        planned = {(f.left): (f.x, f.y) for f in state.footsteps[:1]}
-        for left, (x, y) in planned.items():
-            assert state.balance.feet[0 if left else 1, :2] == pytest.approx((x, y), abs=1e-9)
-
-    run(robot, ideal_body, always(0.15, 0.0, 0.0), 3.0, None, watch)
-    assert max(apart) < 0.03
-
-
 PARAMETERS = WalkingParameters()
 
 
@@ -281,13 +221,3 @@ def test_a_new_command_state_at_every_tick_keeps_the_joints_smooth(robot, ideal_
     assert (positions >= robot.lower - 1e-9).all()
     assert (positions <= robot.upper + 1e-9).all()
     assert np.abs(np.diff(positions, axis=0)).max() / CONTROL_PERIOD < 25.0
-
-
-def test_a_velocity_may_follow_a_command_state_and_stop_it(robot, ideal_body):
-    def command(k):
-        return CommandState(forward=0.06) if k < 500 else VelocityCommand()
-
-    engine = WalkingEngine(robot, PARAMETERS)
-    steps, _ = step_through(engine, ideal_body, command, 5.0)
-    assert steps[-1][0] > 500
-    assert engine.state().phase is Phase.STANDING

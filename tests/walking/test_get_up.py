@@ -63,12 +63,6 @@ def test_on_its_back_it_turns_over(get_up):
     assert all(reached(rows, posture.mirrored()) for posture in MOTIONS.roll)
 
 
-def test_on_its_left_side_it_goes_on_where_the_roll_has_come_to(get_up):
-    rows = follow(get_up, LEFT, 4.0)
-    assert not reached(rows, MOTIONS.roll[0])
-    assert all(reached(rows, posture) for posture in MOTIONS.roll[MOTIONS.from_side :])
-
-
 def test_the_other_side_is_the_mirror_image(robot, mirrored_joints):
     left, right = (
         follow(GetUp(robot, PARAMETERS, robot.ready), side, 4.0) for side in (LEFT, RIGHT)
@@ -100,18 +94,6 @@ def test_it_stands_in_the_ready_posture_once_all_has_gone_well(robot, get_up):
 
 
 POSTURES = (*MOTIONS.rise, *MOTIONS.roll, STRAIGHT)
-
-
-@pytest.mark.parametrize("posture", POSTURES, ids=lambda p: p.name)
-def test_the_mirror_image_swaps_the_sides_and_turns_roll_and_yaw(posture, mirrored_joints):
-    angles, mirrored = np.array(posture.angles()), np.array(posture.mirrored().angles())
-    assert mirrored == pytest.approx(mirrored_joints(angles))
-    assert posture.mirrored().mirrored() == posture
-
-
-@pytest.mark.parametrize("posture", [*MOTIONS.rise, STRAIGHT], ids=lambda p: p.name)
-def test_rising_is_symmetric(posture):
-    assert posture.mirrored() == posture
 
 
 @pytest.mark.parametrize("posture", POSTURES, ids=lambda p: p.name)
@@ -176,14 +158,6 @@ def test_the_lying_side_is_independent_of_the_heading(yaw, tilt):
         (Lying.RIGHT, tilt, right),
     ):
         assert lying_on(up_in_trunk(quaternion(yaw, pitch, roll))) is side
-
-
-@given(st.floats(0.0, 2.0 * pi))
-def test_the_mirror_swaps_left_and_right_alone(angle):
-    forward, left = cos(angle), sin(angle)
-    swapped = {Lying.LEFT: Lying.RIGHT, Lying.RIGHT: Lying.LEFT}
-    side, mirrored = lying_on((forward, left, 0.0)), lying_on((forward, -left, 0.0))
-    assert mirrored is swapped.get(side, side)
 
 
 def test_rest_needs_its_duration_and_restarts_after_a_jolt():

@@ -1,40 +1,12 @@
 """Records and values: types of fields, copies, and parameters by name."""
 
-import pickle
-
 import numpy as np
-import pytest
 
-from compilation.record import record_type
 from compilation.value import comparable_value, value
 from walking.constants import parameters_record
-from walking.data import Data, DeadReckoning, Plan
-from walking.model import FootholdRecord, Joint, Model
+from walking.data import Data, Plan
+from walking.model import FootholdRecord
 from walking.parameters import WalkingParameters
-from walking.plan.footsteps import Foothold
-from walking.published import Published
-
-
-def test_a_field_with_the_name_of_an_attribute_of_arrays_is_refused():
-    for name in ("size", "base", "strides", "data"):
-        with pytest.raises(TypeError, match=name):
-            record_type(**{name: float})
-
-
-def parts(kind):
-    """A record and all records in it."""
-    return [kind, *(part for field, *_ in kind.fields.values() for part in inner(field.base))]
-
-
-def inner(kind):
-    return parts(kind) if kind.fields else []
-
-
-@pytest.mark.parametrize("kind", [Data, Plan, Model, Published, DeadReckoning, Joint])
-def test_every_field_begins_at_a_whole_word(kind):
-    for part in parts(kind):
-        assert all(offset % 8 == 0 for _, offset, *_ in part.fields.values())
-        assert part.itemsize % 8 == 0
 
 
 def test_an_assigned_record_is_a_copy_and_a_read_one_is_shared():
@@ -76,8 +48,3 @@ def test_a_value_compares_by_identity_a_comparable_one_by_content():
     assert one == one != Pair(1.0)
     assert Numbers(1.0) == Numbers(1.0) != Numbers(2.0)
     assert repr(one) == "Pair(first=1.0, second=())"
-
-
-def test_a_value_survives_a_copy_to_another_process():
-    step = Foothold(left=True, x=0.1, y=0.2, yaw=0.3)
-    assert pickle.loads(pickle.dumps(step)) == step

@@ -10,16 +10,11 @@ from hypothesis import strategies as st
 from walking.command import CommandState, VelocityCommand
 from walking.constants import parameters_for
 from walking.dimension import (
-    ACCELERATION,
     DECAY_PER_TICK,
     GAIN_PER_TICK,
     HSR_VIII,
     LENGTH,
-    NUMBER,
     RATE,
-    SPEED,
-    STANCE,
-    TIME,
     Dimension,
     RobotMeasures,
     rules_of,
@@ -93,16 +88,6 @@ def test_a_softer_ankle_is_moved_further():
     assert made.stabilizer.gyro_gain == 2.0 * before["stabilizer.gyro_gain"]
 
 
-def test_measures_follow_the_mass_and_the_servos(robot):
-    y = robot.measures()
-    assert y.leg == pytest.approx(robot.legs[0].length, rel=1e-5)
-    height = GRAVITY * y.time**2
-    assert y.ankle == pytest.approx(robot.mass * GRAVITY * height / robot.stiffness[4], rel=1e-5)
-    # Between the hips, which all of the mass would follow on a weightless leg, and the floor.
-    base = 5.0 / 6.0 * y.leg
-    assert 0.5 * base < height < base + robot.com(robot.ready)[2]
-
-
 def test_a_command_is_carried_over_whole():
     double = replace(HSR_VIII, leg=2.0 * HSR_VIII.leg, hip=2.0 * HSR_VIII.hip)
     made = scale_parameters(CommandState(forward=0.1), HSR_VIII, double)
@@ -119,14 +104,6 @@ POWER = st.integers(-2, 2).map(float)
 DIMENSION = st.builds(Dimension, POWER, POWER, POWER, POWER, POWER, POWER)
 
 
-def test_they_multiply():
-    assert SPEED * TIME == LENGTH
-    assert ACCELERATION == SPEED / TIME
-    assert RATE * TIME == NUMBER
-    assert LENGTH**2.0 == LENGTH * LENGTH
-    assert STANCE != LENGTH
-
-
 @given(DIMENSION, DIMENSION, ROBOT, ROBOT)
 def test_a_product_scales_as_its_factors(one, other, old, new):
     whole = (one * other).scale(6.0, old, new)
@@ -140,12 +117,6 @@ def test_scaling_is_invertible_and_composes_over_a_third_robot(rule, old, new):
     assert rule.scale(there, new, old) == pytest.approx(0.3)
     between = rule.scale(0.3, old, HSR_VIII)
     assert rule.scale(between, HSR_VIII, new) == pytest.approx(there)
-
-
-@given(ROBOT)
-def test_the_same_robot_keeps_every_bit(robot):
-    for rule in (NUMBER, LENGTH, DECAY_PER_TICK, GAIN_PER_TICK):
-        assert rule.scale(0.37, robot, robot) == 0.37
 
 
 @pytest.mark.parametrize("slower", [0.5, 3.0])

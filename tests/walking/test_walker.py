@@ -42,14 +42,6 @@ def test_a_robot_on_its_feet_walks_as_the_engine_does(robot, ideal_body):
     assert np.array_equal(walked, walk(WalkingEngine(robot, RISING), twin, 300))
 
 
-def test_without_getting_up_nothing_takes_the_engine_over(robot, ideal_body):
-    walker = Walker(robot, WalkingParameters())
-    walk(walker, ideal_body, 10)
-    fall(walker, ideal_body)
-    assert not walker.down
-    assert walker.state().fallen
-
-
 def test_a_fallen_robot_gets_up_or_gives_up(robot, ideal_body):
     walker = Walker(robot, RISING)
     walk(walker, ideal_body, 10)

@@ -133,7 +133,7 @@ class RobotModel:
         )
         self.dynamics = Dynamics(self._model)
         self.mass = float(tree.masses.sum())
-        links, self.order, self._rotations = tree.links()
+        links, self.order = tree.links()
         self.links = cast("Records[Link]", links.view(Link).reshape(-1))
         self.legs = (
             Leg.of(tree.chain(list(range(6)), tree.feet[0]), tree.posture[LEFT_LEG]),
@@ -272,8 +272,7 @@ class RobotModel:
 
     def on_link(self, frame: Frame) -> Array:
         """Return rotation, row by row, and position of a frame on its link (12,) [m]."""
-        rotation = self._rotations[frame.joint]
-        return np.array([*(rotation @ frame.rotation).ravel(), *(rotation @ frame.position)])
+        return np.array([*frame.rotation.ravel(), *frame.position])
 
     def frame_pose(self, frame: Frame, joint_position: Array) -> tuple[Array, Array]:
         """Return rotation (3, 3) and position (3,) [m] of a frame in the base frame."""
@@ -311,7 +310,7 @@ def dynamic_model(tree: RobotTree) -> pin.Model:
 
     def add_children(parent: int) -> None:
         for joint in np.flatnonzero(tree.parents == parent).tolist():
-            placement = pin.SE3(tree.rotations[joint], tree.positions[joint])
+            placement = pin.SE3(np.eye(3), tree.positions[joint])
             revolute = pin.JointModelRevoluteUnaligned(tree.axes[joint])
             ids[joint] = model.addJoint(ids[parent], revolute, placement, tree.names[joint])
             add_children(joint)

@@ -46,12 +46,12 @@ class RobotTree:
 
     The base frame has x forward and z up in the ready posture. Joints are ordered: six of the left
     leg, six of the right leg, each hip first, then all others, parents before children. In every
-    array they have this order. The frame of a joint is at its axis.
+    array they have this order. The frame of a joint is at its axis and, with all joints at zero,
+    parallel to the base.
 
     Attributes:
         names: names of the joints (n,).
         parents: index of the joint that carries each joint, -1 for the base (n,).
-        rotations: rotations of the joint frames in those of their parents at angle zero (n, 3, 3).
         positions: positions of the joint frames in those of their parents (n, 3) [m].
         axes: axes of rotation, in the joint frames (n, 3).
         bodies: frames of the centres of mass of all bodies, along their principal axes (m,).
@@ -74,7 +74,6 @@ class RobotTree:
 
     names: tuple[str, ...]
     parents: Indices
-    rotations: Array
     positions: Array
     axes: Array
     bodies: tuple[Frame, ...]
@@ -122,7 +121,6 @@ class RobotTree:
         rows, rotation, position = [], np.eye(3), np.zeros(3)
         for joint in self.path(end.joint):
             position = position + rotation @ self.positions[joint]
-            rotation = rotation @ self.rotations[joint]
             if joint in joints:
                 rows.append([*rotation.ravel(), *position, *self.axes[joint]])
                 rotation, position = np.eye(3), np.zeros(3)
@@ -132,31 +130,22 @@ class RobotTree:
         rows.append([*(rotation @ end.rotation).ravel(), *position, 0.0, 0.0, 0.0])
         return np.array(rows)
 
-    def links(self) -> tuple[Array, Indices, Array]:
+    def links(self) -> tuple[Array, Indices]:
         """Return the links as arrays, see `kinematics.tree_pass`.
-
-        Their frames are at the joints and parallel to the base with all joints at zero.
 
         Returns:
             Links: position of each joint in the frame of its parent [m], its axis, mass [kg] and
             first moment [kg m] of its link in its frame; the last row is the base (n + 1, 10).
             Order: joints and their parents, parents first, n for the base (n, 2).
-            Rotations: rotation of each joint frame of this tree in the frame of its link
-            (n + 1, 3, 3).
         """
         n = len(self.names)
-        links, rotations = np.zeros((n + 1, 10)), np.zeros((n + 1, 3, 3))
-        rotations[n] = np.eye(3)
-        joints = sorted(range(n), key=lambda joint: len(self.path(joint)))
-        order = np.column_stack([joints, self.parents[joints] % (n + 1)])
-        for joint, parent in order:
-            rotations[joint] = rotations[parent] @ self.rotations[joint]
-            links[joint, :3] = rotations[parent] @ self.positions[joint]
-            links[joint, 3:6] = rotations[joint] @ self.axes[joint]
+        links = np.zeros((n + 1, 10))
+        links[:n, :3], links[:n, 3:6] = self.positions, self.axes
         for body, mass in zip(self.bodies, self.masses, strict=True):
             links[body.joint, 6] += mass
-            links[body.joint, 7:] += mass * (rotations[body.joint] @ body.position)
-        return links, order, rotations
+            links[body.joint, 7:] += mass * body.position
+        joints = sorted(range(n), key=lambda joint: len(self.path(joint)))
+        return links, np.column_stack([joints, self.parents[joints] % (n + 1)])
 
 
 def turn(axis: Array, angle: float) -> Array:

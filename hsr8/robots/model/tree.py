@@ -9,8 +9,8 @@ from numpy.typing import NDArray
 
 from hsr8.robots.checks.mechanism import TO_JOINT
 from hsr8.robots.parts.roles import Roles
-from hsr8.robots.parts.skeleton import HINGE, matrix_of
-from walking.body.tree import Frame, RobotTree, turn
+from hsr8.robots.parts.skeleton import HINGE, Posed
+from walking.body.tree import Frame, RobotTree
 from walking.model import Sole
 
 Array = NDArray[np.float64]
@@ -53,7 +53,7 @@ def tree_of(
     posture: Mapping[str, float],
     speed: Mapping[str, float],
 ) -> RobotTree:
-    """Return the tree of a robot.
+    """Return the tree of a robot, from its places with all driven joints at zero.
 
     Args:
         model: compiled model, with the sites of `parts`.
@@ -62,108 +62,83 @@ def tree_of(
         posture: joint angles with straight legs; zero by default [rad].
         speed: maximum speed by joint, instead of that of the model [rad/s].
     """
-    return _Builder(model, roles, posture).tree(parts, speed)
+    names = driven_joints(model, roles)
+    data = Posed.at(model, {name: q for name, q in posture.items() if name not in names}).data
+    joints = np.array([model.joint(name).id for name in names])
+    parents, carriers = _carriers(model, roles, joints)
+    anchors = np.vstack([data.xanchor[joints], np.zeros(3)])  # the last one is the base
+    servo = servos_of(model)
+    servos = np.array([servo[j] for j in joints.tolist()])
+    limited = model.jnt_limited[joints].astype(bool)
+    ranges = np.where(limited[:, None], model.jnt_range[joints], [[-UNLIMITED, UNLIMITED]])
+    gear = model.actuator_gear[servos, 0]
+    torque = max_torque(model, joints, servos)
+    dofs = model.jnt_dofadr[joints]
+    damping = model.dof_damping[dofs]
+    fastest = np.divide(torque, damping, out=np.full(len(names), np.inf), where=damping > 0.0)
+    bodies = [body for body in carriers if model.body_mass[body] > 0.0]
+
+    def frame(body: int, rotation: Array, position: Array) -> Frame:
+        joint = carriers[body]
+        return Frame(joint, rotation.reshape(3, 3).copy(), position - anchors[joint])
+
+    def site(name: str) -> Frame:
+        k = model.site(name).id
+        return frame(int(model.site_bodyid[k]), data.site_xmat[k], data.site_xpos[k])
+
+    def pair(joints: tuple[str, str] | None) -> tuple[int, int] | None:
+        return None if joints is None else (names.index(joints[0]), names.index(joints[1]))
+
+    return RobotTree(
+        names=names,
+        parents=parents,
+        positions=anchors[:-1] - anchors[parents],
+        axes=data.xaxis[joints],
+        bodies=tuple(frame(b, data.ximat[b], data.xipos[b]) for b in bodies),
+        masses=model.body_mass[bodies],
+        inertias=model.body_inertia[bodies],
+        lower=ranges[:, 0].copy(),
+        upper=ranges[:, 1].copy(),
+        stiffness=gear * model.actuator_gainprm[servos, 0],
+        servo_damping=-gear * model.actuator_biasprm[servos, 2],
+        joint_damping=damping,
+        armature=model.dof_armature[dofs],
+        effort=torque,
+        speed=np.array([speed.get(n, s) for n, s in zip(names, fastest, strict=True)]),
+        posture=np.array([posture.get(name, 0.0) for name in names]),
+        feet=(site(parts.feet[0]), site(parts.feet[1])),
+        sole=parts.sole,
+        camera=site(parts.camera),
+        head=pair(roles.head),
+        shoulders=pair(roles.shoulders),
+    )
 
 
-class _Builder:
-    """Walks through the bodies of a model and lumps them onto the driven joints."""
+def _carriers(
+    model: mujoco.MjModel, roles: Roles, joints: Ints
+) -> tuple[NDArray[np.int64], dict[int, int]]:
+    """Return the driven joint above each driven joint, and above each body, -1 for the base.
 
-    def __init__(self, model: mujoco.MjModel, roles: Roles, posture: Mapping[str, float]) -> None:
-        self._model, self._roles, self._posture = model, roles, posture
-        self._names = driven_joints(model, roles)
-        self._index = {model.joint(name).id: k for k, name in enumerate(self._names)}
-        n = len(self._names)
-        self._parents = np.full(n, -1, dtype=np.int64)
-        self._rotations, self._positions = np.zeros((n, 3, 3)), np.zeros((n, 3))
-        self._axes = np.zeros((n, 3))
-        self._carriers: dict[int, Frame] = {}  # frame of every body
-        base = model.body(roles.base).id
-        for body in range(base, model.nbody):
-            if model.body_rootid[body] == model.body_rootid[base] and body >= base:
-                self._carriers[body] = self._carried(body, base)
-
-    def _carried(self, body: int, base: int) -> Frame:
-        """Return the frame of a body on the driven joint that moves it; store its own joints."""
-        model = self._model
-        if body == base:
-            return Frame(-1, np.eye(3), np.zeros(3))
-        parent = self._carriers[int(model.body_parentid[body])]
-        rotation = parent.rotation @ matrix_of(model.body_quat[body])
-        position = parent.position + parent.rotation @ model.body_pos[body]
-        joint = parent.joint
+    Args:
+        model: compiled model.
+        roles: roles of its parts.
+        joints: ids of the driven joints (n,).
+    """
+    index = {joint: k for k, joint in enumerate(joints.tolist())}
+    parents = np.full(len(joints), -1, dtype=np.int64)
+    root = model.body(roles.base).id
+    carriers = {root: -1}
+    for body in range(root + 1, model.nbody):
+        if model.body_rootid[body] != root:
+            continue
+        carrier = carriers[int(model.body_parentid[body])]
         first = int(model.body_jntadr[body])
-        for j in range(first, first + int(model.body_jntnum[body])):
-            axis, anchor = model.jnt_axis[j], model.jnt_pos[j]
-            zero = float(model.qpos0[model.jnt_qposadr[j]])
-            if j in self._index:
-                k = self._index[j]
-                self._parents[k], self._axes[k] = joint, axis
-                self._rotations[k] = rotation @ turn(axis, -zero)
-                self._positions[k] = position + rotation @ anchor
-                joint, rotation, position = k, np.eye(3), -anchor
-                continue
-            angle = self._posture.get(model.joint(j).name, zero) - zero
-            if model.jnt_type[j] != HINGE:
-                position = position + rotation @ (axis * angle)
-                continue
-            held = turn(axis, angle)
-            position = position + rotation @ (anchor - held @ anchor)
-            rotation = rotation @ held
-        return Frame(joint, rotation, position)
-
-    def _site(self, name: str) -> Frame:
-        model = self._model
-        site = model.site(name).id
-        body = self._carriers[int(model.site_bodyid[site])]
-        rotation = body.rotation @ matrix_of(model.site_quat[site])
-        return Frame(body.joint, rotation, body.position + body.rotation @ model.site_pos[site])
-
-    def tree(self, parts: Parts, speed: Mapping[str, float]) -> RobotTree:
-        model, names = self._model, self._names
-        joints = np.array([model.joint(name).id for name in names])
-        dofs = model.jnt_dofadr[joints]
-        servo = servos_of(model)
-        servos = np.array([servo[j] for j in joints.tolist()])
-        limited = model.jnt_limited[joints].astype(bool)
-        ranges = np.where(limited[:, None], model.jnt_range[joints], [[-UNLIMITED, UNLIMITED]])
-        gear = model.actuator_gear[servos, 0]
-        torque = max_torque(model, joints, servos)
-        damping = model.dof_damping[dofs]
-        fastest = np.divide(torque, damping, out=np.full(len(names), np.inf), where=damping > 0.0)
-        bodies = [b for b, mass in enumerate(model.body_mass) if mass > 0.0 and b in self._carriers]
-
-        def pair(joints: tuple[str, str] | None) -> tuple[int, int] | None:
-            return None if joints is None else (names.index(joints[0]), names.index(joints[1]))
-
-        return RobotTree(
-            names=names,
-            parents=self._parents,
-            rotations=self._rotations,
-            positions=self._positions,
-            axes=self._axes,
-            bodies=tuple(self._mass_frame(b) for b in bodies),
-            masses=model.body_mass[bodies],
-            inertias=model.body_inertia[bodies],
-            lower=ranges[:, 0].copy(),
-            upper=ranges[:, 1].copy(),
-            stiffness=gear * model.actuator_gainprm[servos, 0],
-            servo_damping=-gear * model.actuator_biasprm[servos, 2],
-            joint_damping=damping,
-            armature=model.dof_armature[dofs],
-            effort=torque,
-            speed=np.array([speed.get(n, s) for n, s in zip(names, fastest, strict=True)]),
-            posture=np.array([self._posture.get(name, 0.0) for name in names]),
-            feet=(self._site(parts.feet[0]), self._site(parts.feet[1])),
-            sole=parts.sole,
-            camera=self._site(parts.camera),
-            head=pair(self._roles.head),
-            shoulders=pair(self._roles.shoulders),
-        )
-
-    def _mass_frame(self, body: int) -> Frame:
-        model, frame = self._model, self._carriers[body]
-        rotation = frame.rotation @ matrix_of(model.body_iquat[body])
-        return Frame(frame.joint, rotation, frame.position + frame.rotation @ model.body_ipos[body])
+        for joint in range(first, first + int(model.body_jntnum[body])):
+            if joint in index:
+                parents[index[joint]] = carrier
+                carrier = index[joint]
+        carriers[body] = carrier
+    return parents, carriers
 
 
 def max_torque(model: mujoco.MjModel, joints: Ints, servos: Ints) -> Array:

@@ -39,7 +39,7 @@ class Crowd:
     def __init__(self, layout: Layout) -> None:
         movers, reactions, scale = layout.movers, layout.reactions, layout.scale
         motions = [m.motion for m in movers if isinstance(m.motion, Passage | Shuttle)]
-        laws = Movers(tuple(motions))
+        laws = Movers(motions)
         self._seen_radius = reactions.robot_radius if reactions.sees_robot else None
         self._reached, duration = REACHED * scale, reactions.time_scale
         self._period, self._horizon = PERIOD * duration, HORIZON * duration

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from hsr8.scenario.fault import Bump, Fault, MoverAppears
 from hsr8.scenario.track import AWAY
 from hsr8.scenario.world import World
-from hsr8.world.field.motion import Appearing, MotionLaw, Movers, Point
+from hsr8.world.field.motion import ALWAYS, SAME_TIME, Interval, MotionLaw, Movers, Point
 from vision.sizes import Sizes
 
 Array = NDArray[np.float64]
@@ -31,6 +31,7 @@ class Obstacle:
         color: name of the colour class.
         motion: motion law of a mover; None of a static obstacle.
         yields: whether a mover waits for the robot.
+        present: begin and end of its presence, outside of which a mover is far away [s].
     """
 
     position: Point
@@ -39,6 +40,7 @@ class Obstacle:
     color: str
     motion: MotionLaw | None = None
     yields: bool = False
+    present: Interval = ALWAYS
 
 
 @dataclass(frozen=True, slots=True)
@@ -128,7 +130,8 @@ class Layout:
 
     def motion(self) -> Movers:
         """Return the motion laws of all movers."""
-        return Movers(tuple(o.motion for o in self.obstacles if o.motion is not None))
+        movers = [(o.motion, o.present) for o in self.obstacles if o.motion is not None]
+        return Movers([m for m, _ in movers], [p for _, p in movers], AWAY * self.scale)
 
 
 def sizes_of(world: World) -> Sizes:
@@ -204,11 +207,11 @@ def with_faults(layout: Layout, faults: Sequence[Fault]) -> Layout:
     for fault in faults:
         if isinstance(fault, MoverAppears):
             mover = obstacles[first + fault.mover]
-            assert mover.motion is not None
             end = inf if fault.end is None else fault.end
-            motion = Appearing(mover.motion, fault.begin, end, AWAY * layout.scale)
-            obstacles[first + fault.mover] = replace(
-                mover, position=motion.position(0.0), motion=motion
-            )
+            x, y = mover.position
+            if fault.begin > SAME_TIME:
+                x += AWAY * layout.scale
+            present = (fault.begin, end)
+            obstacles[first + fault.mover] = replace(mover, position=(x, y), present=present)
     bumps = tuple(fault for fault in faults if isinstance(fault, Bump))
     return replace(layout, obstacles=tuple(obstacles), bumps=bumps) if faults else layout

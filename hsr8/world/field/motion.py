@@ -1,17 +1,20 @@
 """Motion laws of moving obstacles: exact position and velocity at any time."""
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from math import hypot, inf
-from typing import Any, Protocol, cast
+from typing import cast
 
 import numpy as np
 from numpy.typing import NDArray
 
-from hsr8.scenario.track import AWAY, Track, TrackTable
+from hsr8.scenario.path import Path, Paths, straight_pieces
+from hsr8.scenario.track import AWAY, Track
 
 Array = NDArray[np.float64]
 Point = tuple[float, float]
+Interval = tuple[float, float]
+ALWAYS: Interval = (-inf, inf)
 
 SAME_TIME = 1e-6  # times closer than this are equal [s]
 
@@ -37,7 +40,7 @@ class _Law:
         return x, y
 
     def _alone(self) -> "Movers":
-        return Movers((cast("MotionLaw", self),))  # every subclass is one
+        return Movers([cast("MotionLaw", self)])  # every subclass is one
 
 
 @dataclass(frozen=True, slots=True)
@@ -51,6 +54,14 @@ class Line(_Law):
 
     start: Point
     rate: Point
+
+    @property
+    def path(self) -> Path:
+        """Path by the distance travelled."""
+        speed = hypot(*self.rate)
+        along = np.array([self.rate]) / (speed or 1.0)
+        pieces = straight_pieces(np.array([self.start]), along)
+        return Path(np.array([0.0, inf]), np.zeros(1), pieces, speed=speed)
 
 
 @dataclass(frozen=True, slots=True)
@@ -83,6 +94,15 @@ class Shuttle(_Segment):
 
     offset: float = 0.0
 
+    @property
+    def path(self) -> Path:
+        """Path by the distance travelled there and back."""
+        length = self.length
+        along = (np.array(self.end) - self.start) / length
+        pieces = straight_pieces(np.array([self.start, self.start]), np.array([along, -along]))
+        knots = length * np.arange(3.0)
+        return Path(knots, knots[[0, 2]], pieces, self.offset, self.speed, period=knots[2])
+
 
 @dataclass(frozen=True, slots=True)
 class Passage(_Segment):
@@ -93,6 +113,15 @@ class Passage(_Segment):
     """
 
     depart: float = 0.0
+
+    @property
+    def path(self) -> Path:
+        """Path by the travelled fraction."""
+        start = np.array([self.start])
+        pieces, unit = straight_pieces(start, np.array([self.end]) - start), self.length
+        return Path(
+            np.arange(2.0), np.zeros(1), pieces, speed=self.speed, depart=self.depart, unit=unit
+        )
 
 
 @dataclass(frozen=True, slots=True)
@@ -133,66 +162,52 @@ class Wander(_Law):
         """Length of the track [m]."""
         return self.side * len(self.track)
 
-
-@dataclass(frozen=True, slots=True)
-class Appearing(_Law):
-    """Another motion during an interval; outside it the mover is far away.
-
-    Attributes:
-        motion: motion while the mover is present.
-        start: begin of the interval [s].
-        end: end of the interval [s].
-        away: distance from the lane outside the interval [m].
-    """
-
-    motion: "MotionLaw"
-    start: float
-    end: float = inf
-    away: float = AWAY
+    @property
+    def path(self) -> Path:
+        """Path by the number of sides travelled."""
+        n, corners = len(self.track), np.array(self.track)
+        pieces = straight_pieces(corners, np.roll(corners, -1, axis=0) - corners)
+        knots = np.arange(n + 1.0)
+        return Path(
+            knots, knots[:-1], pieces, self.offset, self.speed, unit=self.side, period=float(n)
+        )
 
 
-MotionLaw = Line | Shuttle | Circle | Passage | Wander | Track | Appearing
+MotionLaw = Line | Shuttle | Circle | Passage | Wander | Track
 
 
 def pace(motion: MotionLaw) -> float:
     """Return the speed of a mover while it moves, of a recorded one the maximum [m/s]."""
-    match motion:
-        case Appearing():
-            return pace(motion.motion)
-        case Line():
-            return hypot(*motion.rate)
-    return abs(motion.speed)
-
-
-class _Kind(Protocol):
-    """Movers of one kind, evaluated together, each at its own time or all at one time."""
-
-    def positions(self, times: Array) -> Array:
-        """Return the positions at `times` (..., n or 1) [s] (..., n, 2) [m]."""
-
-    def velocities(self, times: Array) -> Array:
-        """Return the velocities at `times` (..., n or 1) [s] (..., n, 2) [m/s]."""
+    return hypot(*motion.rate) if isinstance(motion, Line) else abs(motion.speed)
 
 
 class Movers:
-    """All moving obstacles of a layout, those of each kind evaluated together.
+    """All moving obstacles of a layout, evaluated together.
 
     Args:
         motions: motion laws in layout order.
+        intervals: begin and end of the presence of each mover [s]; default: always present.
+        away: distance of an absent mover from its lane [m].
     """
 
-    def __init__(self, motions: tuple[MotionLaw, ...]) -> None:
+    def __init__(
+        self,
+        motions: Sequence[MotionLaw],
+        intervals: Sequence[Interval] | None = None,
+        away: float = AWAY,
+    ) -> None:
         self.motions = motions
-        laws = [motion.motion if isinstance(motion, Appearing) else motion for motion in motions]
-        self._kinds: list[tuple[NDArray[np.intp], _Kind]] = []
-        for classes, kind in _KINDS:
-            chosen = [k for k, motion in enumerate(laws) if isinstance(motion, classes)]
-            if chosen:
-                self._kinds.append((np.array(chosen), kind([laws[k] for k in chosen])))
-        appearing = [(k, m) for k, m in enumerate(motions) if isinstance(m, Appearing)]
-        self._appearing = np.array([k for k, _ in appearing], dtype=np.intp)
-        rows = [(motion.start, motion.end, motion.away) for _, motion in appearing]
-        self._start, self._end, self._away = np.reshape(rows, (-1, 3)).T
+        circles = {k: law for k, law in enumerate(motions) if isinstance(law, Circle)}
+        paths = {k: law.path for k, law in enumerate(motions) if not isinstance(law, Circle)}
+        self._kinds: list[tuple[list[int], Paths | _Circles]] = []
+        if circles:
+            self._kinds.append((list(circles), _Circles(list(circles.values()))))
+        if paths:
+            self._kinds.append((list(paths), Paths(list(paths.values()))))
+        windows = np.reshape(intervals or [ALWAYS] * len(motions), (-1, 2))
+        self._appearing = np.flatnonzero((windows != ALWAYS).any(axis=1))
+        self._begin, self._end = windows[self._appearing].T
+        self._away = away
 
     def __len__(self) -> int:
         return len(self.motions)
@@ -234,38 +249,14 @@ class Movers:
     def _present(self, times: Array) -> NDArray[np.bool_]:
         """Return whether the appearing movers are in the world (..., m)."""
         soon = times[..., None] + SAME_TIME
-        present: NDArray[np.bool_] = (self._start <= soon) & (soon < self._end)
+        present: NDArray[np.bool_] = (self._begin <= soon) & (soon < self._end)
         return present
 
 
-class _Lanes:
-    """Lines and shuttles."""
-
-    def __init__(self, laws: Sequence[Line | Shuttle]) -> None:
-        lanes = np.array([_lane(motion) for motion in laws], dtype=float)
-        self._origin, self._direction = lanes[:, :2], lanes[:, 2:4]
-        self._speed, self._period, self._offset = lanes[:, 4], 2.0 * lanes[:, 5], lanes[:, 6]
-
-    def positions(self, times: Array) -> Array:
-        travelled = self._travelled(times)
-        along = np.minimum(travelled, self._period - travelled)[..., None]
-        positions: Array = self._origin + along * self._direction
-        return positions
-
-    def velocities(self, times: Array) -> Array:
-        there = self._travelled(times) < 0.5 * self._period
-        rates: Array = np.where(there, self._speed, -self._speed)[..., None] * self._direction
-        return rates
-
-    def _travelled(self, times: Array) -> Array:
-        travelled: Array = np.mod(self._offset + self._speed * times, self._period)
-        return travelled
-
-
 class _Circles:
-    """Circles."""
+    """Circles, evaluated as `Paths`."""
 
-    def __init__(self, laws: Sequence[Circle]) -> None:
+    def __init__(self, laws: list[Circle]) -> None:
         table = np.array([(*c.centre, c.radius, c.speed, c.angle) for c in laws], dtype=float)
         self._centre, self._radius, self._angle = table[:, :2], table[:, 2:3], table[:, 4]
         self._speed, self._rate = table[:, 3:4], table[:, 3] / table[:, 2]
@@ -281,78 +272,3 @@ class _Circles:
         angle = self._angle + self._rate * times
         velocities: Array = self._speed * np.stack([-np.sin(angle), np.cos(angle)], axis=-1)
         return velocities
-
-
-class _Passages:
-    """Passages."""
-
-    def __init__(self, laws: Sequence[Passage]) -> None:
-        self._start = np.array([motion.start for motion in laws])
-        self._along = np.array([motion.end for motion in laws]) - self._start
-        table = np.array([(motion.speed, motion.depart, motion.length) for motion in laws])
-        self._speed, self._depart, self._length = table.T
-
-    def positions(self, times: Array) -> Array:
-        fraction = np.clip(self._travelled(times) / self._length, 0.0, 1.0)
-        positions: Array = self._start + fraction[..., None] * self._along
-        return positions
-
-    def velocities(self, times: Array) -> Array:
-        travelled = self._travelled(times)
-        moves = (travelled >= 0.0) & (travelled < self._length)
-        rate = np.where(moves, self._speed / self._length, 0.0)
-        velocities: Array = rate[..., None] * self._along
-        return velocities
-
-    def _travelled(self, times: Array) -> Array:
-        travelled: Array = self._speed * (times - self._depart)
-        return travelled
-
-
-class _Wanders:
-    """Closed polygons, which have equally many corners."""
-
-    def __init__(self, laws: Sequence[Wander]) -> None:
-        self._corners = np.array([motion.track for motion in laws])
-        self._rows = np.arange(len(laws))
-        table = np.array([(motion.side, motion.speed, motion.offset) for motion in laws])
-        self._side, self._speed, self._offset = table.T
-
-    def positions(self, times: Array) -> Array:
-        corner, along, fraction = self._sides(times)
-        positions: Array = corner + fraction[..., None] * along
-        return positions
-
-    def velocities(self, times: Array) -> Array:
-        _, along, _ = self._sides(times)
-        velocities: Array = (self._speed / self._side)[:, None] * along
-        return velocities
-
-    def _sides(self, times: Array) -> tuple[Array, Array, Array]:
-        """Return the last corner, the vector to the next one, and the travelled fraction."""
-        sides = (self._offset + self._speed * times) / self._side
-        whole = np.floor(sides)
-        n = self._corners.shape[1]
-        last = whole.astype(np.intp) % n
-        corner = self._corners[self._rows, last]
-        return corner, self._corners[self._rows, (last + 1) % n] - corner, sides - whole
-
-
-_KINDS: tuple[tuple[Any, Callable[[Sequence[Any]], _Kind]], ...] = (
-    ((Line, Shuttle), _Lanes),
-    (Circle, _Circles),
-    (Passage, _Passages),
-    (Wander, _Wanders),
-    (Track, TrackTable),
-)
-
-
-def _lane(motion: Line | Shuttle) -> tuple[float, ...]:
-    """Return origin, unit direction, speed, length and offset of a straight motion."""
-    if isinstance(motion, Shuttle):
-        length, start, end = motion.length, motion.start, motion.end
-        x, y = (end[0] - start[0]) / length, (end[1] - start[1]) / length
-        return *motion.start, x, y, motion.speed, length, motion.offset
-    speed = hypot(*motion.rate)
-    x, y = (motion.rate[0] / speed, motion.rate[1] / speed) if speed > 0.0 else (0.0, 0.0)
-    return *motion.start, x, y, speed, inf, 0.0

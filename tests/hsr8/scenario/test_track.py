@@ -6,7 +6,8 @@ import pytest
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
-from hsr8.scenario.track import Track, TrackTable
+from hsr8.scenario.path import Paths
+from hsr8.scenario.track import Track
 
 BOUND = sqrt(2.5)  # of the speed over the mean speed between two samples
 coordinate = st.floats(-5.0, 5.0)
@@ -117,15 +118,15 @@ def test_a_scaled_recording_is_walked_along_scaled_curves(given_samples, length,
 
 @given(st.lists(tracks(), min_size=1, max_size=5), st.lists(st.floats(0.0, 30.0), min_size=1))
 def test_all_together_are_each_alone(chosen, instants):
-    table = TrackTable(chosen)
+    table = Paths([track.path for track in chosen])
     together = table.positions(np.array(instants)[:, None])
     for k, time in enumerate(instants):
         assert together[k] == pytest.approx(
             np.array([track.position(time) for track in chosen]), abs=1e-9
         )
-        assert np.array_equal(together[k], table.positions(np.asarray(time)))
+        assert np.array_equal(together[k], table.positions(np.array([time])))
         velocities = np.array([track.velocity(time) for track in chosen])
-        assert table.velocities(time) == pytest.approx(velocities, abs=1e-9)
+        assert table.velocities(np.array([time])) == pytest.approx(velocities, abs=1e-9)
 
 
 SHORT = track_of([1.0, 2.0], [(0.0, 0.0), (1.0, 0.0)], linger=0.5)

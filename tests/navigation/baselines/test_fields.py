@@ -1,5 +1,4 @@
 import numpy as np
-import pytest
 
 from navigation.baselines.fields import PotentialField
 from navigation.parameters.planner import ApfParameters
@@ -11,18 +10,6 @@ def desired(planning, *tracks, **details):
     return PotentialField(P).desired(planning(tracks, **details))
 
 
-def test_beyond_its_influence_an_obstacle_does_not_repel(planning, track):
-    edge = 0.2 + P.margin + P.influence
-    for x, repels in ((edge - 0.05, True), (edge + 0.05, False)):
-        velocity = desired(planning, track((x, 0.02))).velocity
-        assert (velocity != pytest.approx([0.2, 0.0])) == repels
-
-
-def test_the_nearer_an_obstacle_the_more_it_repels(planning, track):
-    along = [desired(planning, track((x, 0.02))).velocity[0] for x in (0.9, 0.7, 0.5, 0.4)]
-    assert np.all(np.diff(along) < 0.0)
-
-
 def test_an_approaching_mover_repels_more_and_a_leaving_one_does_not(planning, track):
     still, towards, away = (
         desired(planning, track((0.6, 0.02), v)).velocity[0]
@@ -30,13 +17,6 @@ def test_an_approaching_mover_repels_more_and_a_leaving_one_does_not(planning, t
     )
     assert towards < still
     assert away >= still
-
-
-def test_the_speed_is_at_most_the_maximum(planning, tracks):
-    rng = np.random.default_rng(0)
-    for _ in range(50):
-        near = tracks(rng.uniform(-0.8, 0.8, (5, 2)), rng.normal(0, 0.1, (5, 2)))
-        assert np.hypot(*desired(planning, *near).velocity) <= 0.2 + 1e-12
 
 
 def test_exactly_head_on_the_robot_swerves_to_one_side_and_does_not_stand(walker, task, track):

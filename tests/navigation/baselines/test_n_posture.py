@@ -28,17 +28,6 @@ def test_the_field_never_leads_away_from_the_destination(planning, task):
         assert abs(float(off)) <= 0.5 * np.pi + 1e-9
 
 
-def test_starts_all_around_arrive_with_the_heading(walker, task):
-    for bearing in np.arange(6) * np.pi / 3:
-        start = (np.cos(bearing), np.sin(bearing), bearing + np.pi)
-        walk = walker("n-posture", start)
-        for _ in range(60):
-            walk.step(task((0.0, 0.0), 0.4, is_goal=True))
-            if walk.distance((0.0, 0.0)) < 0.06:
-                break
-        assert walk.distance((0.0, 0.0)) < 0.06
-
-
 def test_at_the_gap_of_full_weight_the_obstacle_decides_alone(planning, task, track):
     gap = 0.2 + P.margin + 0.5 * P.d_min
     w = desired(planning, task((2.0, 0.0)), track((0.0, gap)))

@@ -130,33 +130,3 @@ def test_movers_have_a_longer_horizon_than_static_obstacles(plan, belief, task, 
     )
     assert static == pytest.approx(free)
     assert not np.allclose(moving, free)
-
-
-def test_the_reference_implementation_agrees():
-    """RVO2 by its Python binding, where it is installed: half the responsibility, no box."""
-    pyrvo = pytest.importorskip("pyrvo")
-    rng = np.random.default_rng(4)
-    for _ in range(200):
-        n = int(rng.integers(1, 7))
-        places = rng.uniform(-1.2, 1.2, (n, 2))
-        places = places[np.hypot(*places.T) > 0.2]
-        velocities = rng.uniform(-0.15, 0.15, places.shape)
-        own, desired = rng.uniform(-0.12, 0.12, 2), rng.uniform(-0.15, 0.15, 2)
-        sim = pyrvo.RVOSimulator(0.34, 10.0, 20, 5.0, 5.0, 0.14, V_MAX)
-        me = sim.add_agent((0.0, 0.0))
-        sim.set_agent_velocity(me, tuple(own))
-        sim.set_agent_pref_velocity(me, tuple(desired))
-        for x, v in zip(places, velocities, strict=True):
-            other = sim.add_agent(tuple(x))
-            sim.set_agent_velocity(other, tuple(v))
-        sim.do_step()
-        reference = sim.get_agent_velocity(me).to_tuple()
-        order = np.argsort(np.hypot(*places.T))
-        planes = [
-            orca_plane(
-                tuple(places[i]), tuple(own - velocities[i]), tuple(own),
-                radius=0.28, horizon=5.0, footstep=0.34, responsibility=0.5,
-            )
-            for i in order
-        ]  # fmt: skip
-        assert solve(planes, 0, tuple(desired), V_MAX) == pytest.approx(reference, abs=2e-4)

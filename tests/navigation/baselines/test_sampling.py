@@ -3,7 +3,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from navigation.baselines.sampling import DynamicWindow, PathIntegral, contact_cost, gaps, rollout
+from navigation.baselines.sampling import DynamicWindow, PathIntegral, gaps, rollout
 from navigation.parameters.planner import DwaParameters, MppiParameters
 
 DT = 0.34
@@ -33,25 +33,6 @@ def test_gaps_equal_brute_force(tracks, planning):
                 for x, r in zip(there, radii, strict=True)
             )
             assert result[k, t] == pytest.approx(min(most, least))
-
-
-def test_obstacles_within_lateral_reach_count(track, planning, limits):
-    wide = replace(limits, vy=0.5)
-    s = planning([track((0.0, 1.4))], limits=wide)
-    aside = np.zeros((1, 6, 3))
-    aside[..., 1] = wide.vy
-    position, _ = rollout(s.pose, aside, DT)
-    gap = gaps(position, s, np.array([0.2]), 0.3)
-    assert gap[0, -1] == pytest.approx(1.4 - 6 * DT * 0.5 - 0.2)
-
-
-def test_an_earlier_collision_costs_more():
-    gap = np.full((4, 5), 0.3)
-    gap[1, 3] = gap[2, 1] = gap[3, 0] = -0.01
-    cost = contact_cost(gap)
-    assert cost[0] == 0.0
-    assert cost.tolist() == sorted(cost.tolist())
-    assert cost[3] == pytest.approx(1.01)
 
 
 def test_the_window_is_what_one_footstep_reaches(planning):
@@ -97,15 +78,3 @@ def test_the_plan_of_mppi_lives_in_the_memory_alone(planning, task):
     assert len(start.plan) == len(plan)
     assert np.array_equal(start.plan[-1], start.plan[-2])
     assert start.plan[0] != pytest.approx(start.body)
-
-
-def test_the_plan_of_mppi_is_continued(planner, scene, belief, task):
-    """The second decision of a memory is faster than the first: the body has accelerated."""
-    planned = planner("mppi", rng=np.random.default_rng(0))
-    memory, body, speeds = planned.begin(), np.zeros(3), []
-    for _ in range(6):
-        decision, memory = planned.plan(memory, scene(belief(), task(), body=body))
-        body = decision.velocity
-        speeds.append(body[0])
-        assert memory.plan.shape == (MppiParameters().steps, 3)
-    assert speeds[-1] > speeds[0] + 0.05

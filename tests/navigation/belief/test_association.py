@@ -27,11 +27,6 @@ def test_nothing_is_paired_at_a_loss():
     assert pairs(np.array([[-1.0, np.inf]])) == [(0, 0)]
 
 
-def test_nothing_to_pair():
-    assert pairs(np.empty((0, 3))) == []
-    assert pairs(np.empty((2, 0))) == []
-
-
 def test_of_two_overlapping_tracks_of_a_colour_the_one_with_weaker_evidence_goes():
     rng = np.random.default_rng(1)
     p = TrackingParameters()

@@ -1,5 +1,4 @@
 import pickle
-from math import cos, sin
 
 import numpy as np
 import pytest
@@ -80,27 +79,6 @@ def test_kidnapped_the_robot_finds_itself_and_its_obstacles_again(view, observe,
     red = [t for t in belief.tracks if t.label == "red"]
     assert len(red) == 1
     assert np.hypot(*(red[0].position - STATIC)) < 0.08
-
-
-def test_rotating_the_world_rotates_the_belief(view, observe, frame):
-    def final(turn):
-        c, s = cos(turn), sin(turn)
-        R = np.array([[c, -s], [s, c]])
-        beacons = {n: tuple((R @ p).tolist()) for n, p in BEACONS.items()}
-        start = np.array([0.0, 0.0, turn])
-        e = Estimator(
-            BeliefParameters(), beacons, start, np.eye(3) * 4e-4, np.random.default_rng(0)
-        )
-        for f in frames(view, observe, frame, 3.0):
-            belief = e.update(f)
-        return belief, R
-
-    plain, _ = final(0.0)
-    turned, R = final(2.5)
-    for a, b in zip(plain.tracks, turned.tracks, strict=True):
-        assert a.motion is b.motion
-        assert np.allclose(R @ a.position, b.position, atol=2e-3)
-        assert np.allclose(R @ a.velocity, b.velocity, atol=2e-3)
 
 
 @pytest.mark.parametrize("seed", range(3))

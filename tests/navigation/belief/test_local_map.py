@@ -1,7 +1,6 @@
 import numpy as np
 import pytest
 
-from navigation.belief import local_map
 from navigation.belief.local_map import LocalMap
 from navigation.belief.visibility import Viewpoint
 from navigation.parameters.belief import LocalMapParameters
@@ -61,30 +60,6 @@ def test_outside_the_map_is_confident_and_unknown(view):
     assert grid.confidence_at(far).tolist() == [1.0, 1.0]
     assert grid.age_at(far).tolist() == [0.0, 0.0]
     assert not grid.free_at(far).any()
-
-
-def test_scrolling_keeps_cells_at_their_position_in_the_world(view):
-    rolled = LocalMap(P, (0.0, 0.0), 0.0)
-    look(rolled, 0.0, view(pan=0.3))
-    points = np.random.default_rng(0).uniform(-2.2, 2.2, (400, 2))
-    before = rolled.age_at(points)
-    for k, centre in enumerate([(0.3, 0.1), (0.75, -0.42), (-0.33, 0.6)], 1):
-        look(rolled, 0.0, view(tilt=1.5), pose=(*centre, 0.1 * k))
-        assert np.array_equal(rolled.age_at(points), before)
-    look(rolled, 0.0, view(tilt=1.5), pose=(40.0, 0.0, 0.0))
-    look(rolled, 0.0, view(tilt=1.5), pose=(0.0, 0.0, 0.0))
-    assert np.all(rolled.age_at(points) == np.inf)
-
-
-def test_a_snapshot_stays_as_it_is(view):
-    grid = LocalMap(P, (0.0, 0.0), 0.0)
-    look(grid, 0.0, view(pan=0.0))
-    snapshot = grid.snapshot()
-    confidence, occupied = snapshot.confidence.copy(), occupancy(snapshot)
-    look(grid, 3.0, view(pan=1.0), pose=(0.5, 0.0, 0.0))
-    assert np.array_equal(snapshot.confidence, confidence)
-    assert np.array_equal(occupancy(snapshot), occupied)
-    assert not np.array_equal(grid.confidence, confidence)
 
 
 def test_a_scrolled_map_equals_a_fixed_one(view):
@@ -155,24 +130,3 @@ def grid():
     points = rng.uniform(low - 3 * CELL, low + (SIDE + 3) * CELL, (400, 2))
     strange = np.array([[np.nan, 0.5], [np.inf, 0.5], [0.0, -1e300]])
     return np.concatenate([points, strange]), rng.uniform(-3.0, 1.0, (SIDE, SIDE))
-
-
-def test_lookup_returns_the_cell_that_contains_a_point(grid):
-    points, cells = grid
-    result = local_map.lookup(points, CORNER, CELL, cells, 7.0)
-    padded = np.pad(cells, SIDE, constant_values=7.0)
-    column, row = (np.floor(points[:-3] / CELL).astype(int) - CORNER + SIDE).T
-    assert np.array_equal(result[:-3], padded[row, column])
-    assert (result[-3:] == 7.0).all()
-    assert 100 < (result != 7.0).sum() < 300
-
-
-def test_a_frame_adds_its_evidence():
-    rng = np.random.default_rng(6)
-    marks = rng.integers(0, 3, (20, 20)).astype(np.uint8)
-    before = np.linspace(-4, 4, 400).reshape(20, 20)
-    seen_at, log_odds = np.zeros((20, 20)), before.copy()
-    local_map.update_grid(marks, seen_at, log_odds, 3.0, (-0.4, 1.0, 4.0))
-    change = np.array([0.0, -0.4, 1.0])[marks]
-    assert np.array_equal(log_odds, np.clip(before + change, -4.0, 4.0))
-    assert np.array_equal(seen_at, 3.0 * (marks > 0))

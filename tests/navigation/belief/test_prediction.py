@@ -26,24 +26,6 @@ def test_the_pose_moves_as_the_odometry_did(belief, view, pose, then, now):
     assert later.time == 1.06
 
 
-@settings(max_examples=25)
-@given(pose=poses, then=poses, now=poses)
-def test_the_covariance_follows_the_motion(belief, view, pose, then, now):
-    def moved(p):
-        return predict(belief(pose=p), then, now, 1.06, view()).pose
-
-    J = np.zeros((3, 3))
-    for k in range(3):
-        step = np.zeros(3)
-        step[k] = 1e-6
-        difference = moved(pose + step) - moved(pose - step)
-        difference[2] = (difference[2] + pi) % (2.0 * pi) - pi
-        J[:, k] = difference / 2e-6
-    before = belief(pose=pose, sigma=0.01, turn_sigma=0.02)
-    after = predict(before, then, now, 1.06, view()).pose_covariance
-    assert after == pytest.approx(J @ before.pose_covariance @ J.T, abs=1e-9)
-
-
 def test_movers_move_on(belief, track, view):
     before = belief([track((1.0, 2.0), (0.1, -0.2))], time=1.0)
     (moved,) = predict(before, np.zeros(3), np.zeros(3), 1.5, view()).tracks

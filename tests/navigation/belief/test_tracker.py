@@ -1,4 +1,3 @@
-from copy import deepcopy
 from math import hypot
 
 import numpy as np
@@ -7,7 +6,7 @@ import pytest
 from navigation.belief.belief import Motion
 from navigation.belief.detections import in_world
 from navigation.belief.tracker import Tracker
-from navigation.belief.visibility import Viewpoint, clear_points
+from navigation.belief.visibility import Viewpoint
 from navigation.parameters.belief import TrackingParameters
 
 DT = 0.06
@@ -66,25 +65,6 @@ def stage(view, observe):
     return Stage(view, observe)
 
 
-def test_two_sightings_make_a_track_and_one_does_not(stage):
-    assert not stage.show((1.0, 0.0))
-    (track,) = stage.show((1.0, 0.0))
-    assert track.motion is Motion.UNKNOWN
-    assert track.visible
-    assert track.hits == 2
-
-
-def test_far_away_no_track_begins_but_one_goes_on(stage):
-    far, near = P.birth_range + 0.3, P.birth_range - 0.2
-    stage.watch(0.6, (far, 0.0, 0.0, 0.0))
-    assert not stage.tracks
-    stage.watch(0.6, (near, 0.0, 0.0, 0.0))
-    (track,) = stage.watch(9.0, (near, 0.0, 0.06, 0.0))
-    assert track.position[0] == pytest.approx(near + 0.54, abs=0.05)
-    assert track.position[0] > P.birth_range
-    assert track.visible
-
-
 def test_single_false_detections_leave_no_track(stage):
     for k in range(300):
         a = 0.6 * np.sin(12.9 * k)
@@ -92,7 +72,7 @@ def test_single_false_detections_leave_no_track(stage):
     assert len(stage.show((1.0, 0.0))) == 1
 
 
-@pytest.mark.parametrize("seed", range(5))
+@pytest.mark.parametrize("seed", range(2))
 def test_a_static_obstacle_is_static_after_two_seconds_and_never_moving(view, observe, seed):
     stage = Stage(view, observe, seed)
     stage.show((1.2, 0.2))
@@ -106,7 +86,7 @@ def test_a_static_obstacle_is_static_after_two_seconds_and_never_moving(view, ob
     assert np.linalg.eigvalsh(track.covariance)[0] > 0
 
 
-@pytest.mark.parametrize("seed", range(5))
+@pytest.mark.parametrize("seed", range(2))
 @pytest.mark.parametrize("speed", [0.06, 0.10, 0.14])
 def test_a_mover_is_moving_within_two_seconds_and_never_static(view, observe, seed, speed):
     stage = Stage(view, observe, seed)
@@ -118,7 +98,7 @@ def test_a_mover_is_moving_within_two_seconds_and_never_static(view, observe, se
     assert np.hypot(*(track.velocity - (0.0, speed))) < 0.05
 
 
-@pytest.mark.parametrize("seed", range(5))
+@pytest.mark.parametrize("seed", range(2))
 def test_a_mover_that_stops_is_not_moving_after_rare_looks(view, observe, seed):
     """One noisy look per half second."""
     stage, interval = Stage(view, observe, seed), 0.5
@@ -187,23 +167,7 @@ def test_a_lost_mover_becomes_particles_that_go_on_or_turn_back(stage):
     assert not stage.tracks
 
 
-def test_particles_where_the_camera_looks_in_vain_are_given_up(view, observe):
-    """The mover has left to the left, out of view; seen nothing at the right."""
-    stage = Stage(view, observe, 3)
-    stage.watch(3.0, (1.0, -0.4, 0.0, 0.12))
-    stage.look_away(1.0)
-    (before,) = stage.tracks
-    for _ in range(30):
-        stage.show()
-    viewpoint = Viewpoint.of(view(pan=0.0), np.zeros(3), 2.5, stage.parameters.view_margin)
-    for t in stage.tracks:
-        points = np.ascontiguousarray(t.particles.positions)
-        in_view = clear_points(points, *viewpoint, np.zeros((0, 2)), np.zeros(0))
-        assert t.particles.weights[in_view].sum() < 0.2
-    assert before.particles.weights.sum() == pytest.approx(1.0)
-
-
-@pytest.mark.parametrize("seed", range(3))
+@pytest.mark.parametrize("seed", range(2))
 def test_a_refuted_mover_goes_on_where_enough_of_the_places_tried_are_out_of_view(
     view, observe, seed
 ):
@@ -260,61 +224,7 @@ def test_a_part_is_placed_by_the_radius_that_the_track_knows(view, observe):
     assert locations[1] == pytest.approx(1.0, abs=0.01)
 
 
-def test_radius_is_fused(stage):
-    for k in range(60):
-        stage.show((1.0, 0.0), radius=0.08 + 0.02 * (-1) ** k, radius_sigma=0.02)
-    (track,) = stage.tracks
-    assert track.radius == pytest.approx(0.08, abs=0.005)
-    assert track.radius_sigma < 0.01
-
-
-def test_two_tracks_on_one_obstacle_become_one(stage):
-    """A second blob on the same cylinder for a while must not stay as a second track."""
-    stage.watch(1.0, (1.0, 0.0, 0.0, 0.0))
-    for _ in range(10):
-        stage.show((1.0, 0.0), (1.0, 0.20), noise=0.005)
-    assert len(stage.tracks) == 2
-    for k in range(60):
-        stage.show((1.0, max(0.05, 0.20 - 0.01 * k)), noise=0.005)
-    assert len(stage.tracks) == 1
-
-
-def test_the_order_of_detections_does_not_matter(view, observe):
-    def run(reverse):
-        stage = Stage(view, observe)
-        for k in range(60):
-            locations = [(1.0, 0.0), (1.2, 0.5), (0.8, -0.4 + 0.006 * k)]
-            stage.show(*(reversed(locations) if reverse else locations), noise=1e-9)
-        return sorted((*t.position.round(6).tolist(), t.motion) for t in stage.tracks)
-
-    for a, b in zip(run(False), run(True), strict=True):
-        assert np.allclose(a[:2], b[:2], atol=1e-5)
-        assert a[2] == b[2]
-
-
-def test_a_seed_determines_everything_even_after_a_copy(view, observe):
-    def run(*, copied=False):
-        stage = Stage(view, observe, 5)
-        for seconds, *movers in (
-            (1.5, (1.0, -0.4, 0.0, 0.12)),
-            (1.5, (1.0, -0.22, 0.0, 0.12), (1.3, 0.5, 0.0, 0.0)),
-        ):
-            stage.watch(seconds, *movers)
-            if copied:
-                stage.tracker = deepcopy(stage.tracker)
-        stage.look_away(4.0)
-        return stage.tracks
-
-    for a, b in zip(run(), run(copied=True), strict=True):
-        assert np.array_equal(a.position, b.position)
-        assert np.array_equal(a.covariance, b.covariance)
-        assert (a.particles is None) == (b.particles is None)
-        if a.particles is not None:
-            assert np.array_equal(a.particles.positions, b.particles.positions)
-            assert np.array_equal(a.particles.weights, b.particles.weights)
-
-
-@pytest.mark.parametrize("seed", range(6))
+@pytest.mark.parametrize("seed", range(2))
 def test_a_turn_in_view_is_seen_within_a_second_by_noisy_looks(view, observe, seed):
     stage = Stage(view, observe, seed)
     stage.watch(4.0, (1.0, -0.4, 0.0, 0.1), noise=0.03)

@@ -1,8 +1,5 @@
 """Tracks as arrays, their classification and what is published of them."""
 
-import dataclasses
-from dataclasses import replace
-
 import numpy as np
 import pytest
 
@@ -17,7 +14,7 @@ from navigation.belief.tracked_object import (
     published,
     search_radius,
 )
-from navigation.belief.tracks import MOTIONS, Tracks, join, max_deviation
+from navigation.belief.tracks import MOTIONS, Tracks, max_deviation
 from navigation.parameters.belief import TrackingParameters
 
 
@@ -30,64 +27,6 @@ def test_max_deviation_is_that_of_the_eigenvalues_and_ignores_rotation():
     c, s = np.cos(0.7), np.sin(0.7)
     turn = np.array([[c, -s], [s, c]])
     assert [max_deviation(q) for q in turn @ p @ turn.T] == pytest.approx(expected)
-
-
-def equal(one, other):
-    """Return whether two tracks have the same values."""
-    fields = [f.name for f in dataclasses.fields(one) if f.name != "particles"]
-    pairs = [(getattr(one, name), getattr(other, name)) for name in fields]
-    if one.particles is not None:
-        names = [f.name for f in dataclasses.fields(one.particles)]
-        pairs += [(getattr(one.particles, n), getattr(other.particles, n)) for n in names]
-    same = (one.particles is None) == (other.particles is None)
-    return same and all(np.array_equal(a, b) and type(a) is type(b) for a, b in pairs)
-
-
-def some(track):
-    cloud = ([[1.0, 0.0], [2.0, 0.0]], [[0.1, 0.0], [0.0, 0.2]], [0.5, 0.5])
-    lost = track((9.0, 9.0), (0.1, 0.0), id=4, age=2.0, particles=cloud, turn_rates=[0.1, 0.2])
-    return [
-        track((1.0, 0.5), (0.3, -0.4), id=2, sigma=0.02, radius=0.07, reach=0.3, turn_rate=0.2),
-        lost,
-        track((0.0, 2.0), motion=Motion.UNKNOWN, id=7, hits=3, age=0.5),
-    ]
-
-
-def test_tracks_as_an_array_are_the_same_one_by_one(track):
-    plain = some(track)
-    array = Tracks.of(plain)
-    assert Tracks.of(array) is array
-    assert len(array) == 3
-    assert all(equal(a, b) for a, b in zip(array, plain, strict=True))
-    assert equal(array[1], plain[1])
-    assert equal(array[1:][1], plain[2])
-    assert array.speed == pytest.approx([0.5, 0.1, 0.0])
-    assert array.sigma == pytest.approx([0.02, 0.01, 0.01])
-    assert not array.static.any()
-    assert array.lost.tolist() == [False, True, False]
-
-
-def test_two_sets_become_one(track):
-    ours, landmark = some(track), [replace(track((2.0, 2.0), id=-1), label="cyan/yellow")]
-    for first, second in ((landmark, ours), (ours, landmark), (ours, ours), ([], ours)):
-        both = join(first, second)
-        assert all(equal(a, b) for a, b in zip(both, [*first, *second], strict=True))
-
-
-def test_tracks_move_at_constant_velocity(track):
-    before = Tracks.of(some(track))
-    after = before.moved(0.5)
-    assert after[0].position == pytest.approx([1.15, 0.3])
-    assert before[0].position == pytest.approx([1.0, 0.5])
-    assert after[2].position == pytest.approx(before[2].position)
-
-
-def test_selection_keeps_rows_together(track):
-    tracks = [track((i, 2 * i), (0.1 * i, 0.0), id=i) for i in range(4)]
-    part = Tracks.of(tracks).where(np.array([False, True, False, True]))
-    assert part.ids.tolist() == [1, 3]
-    assert part.position[:, 1] == pytest.approx([2, 6])
-    assert part.speed == pytest.approx([0.1, 0.3])
 
 
 P = TrackingParameters()
@@ -197,6 +136,14 @@ def test_a_detection_outside_the_gate_counts_once(last_time):
     assert track_of(objects, 10.0).covariance[2, 2] == pytest.approx(P.velocity_sigma**2)
 
 
+def test_two_equally_certain_radii_are_averaged():
+    d = np.zeros(1, DETECTION)[0]
+    d.position, d.covariance, d.radius, d.radius_sigma = (0.95, 2.0), SHARP, 0.10, 0.02
+    o = make(radius=0.08, radius_sigma=0.02)[0]
+    correct(o, d, 100.0, LIMITS[0])  # so late that the errors are independent
+    assert (o.radius, o.radius_sigma) == pytest.approx((0.09, 0.02 / np.sqrt(2.0)))
+
+
 @pytest.mark.parametrize(
     ("modes", "changes"),
     [
@@ -234,15 +181,6 @@ def test_the_reach_grows_with_age_unless_static():
         known = P.reach_sigmas * 0.01
         assert track_of(o, 5.0).reach == pytest.approx(known)
         assert track_of(o, 8.0).reach == pytest.approx(known + 3.0 * growth)
-
-
-def test_the_reach_does_not_depend_on_the_axes_of_the_world():
-    reach = []
-    for turn in (0.0, 0.4, 0.8, 2.0):
-        c, s = np.cos(turn), np.sin(turn)
-        Q = np.array([[c, -s], [s, c]])
-        reach.append(detection_reach(Q @ np.diag([9e-4, 1e-6]) @ Q.T, LIMITS[0]))
-    assert np.allclose(reach, P.reach_sigmas * 0.03)
 
 
 def test_the_search_radius_grows_with_speed():

@@ -31,14 +31,6 @@ def test_an_omnidirectional_camera_contains_everything_in_range(view):
     np.testing.assert_array_equal(observed, np.hypot(*(points - [0.3, -0.2]).T) <= 1.5)
 
 
-def test_a_blind_camera_contains_nothing(view):
-    seen = Viewpoint.of(view(tilt=-0.5), np.zeros(3), 2.5)
-    blind = Viewpoint.of(replace(view(tilt=-0.5), blind=True), np.zeros(3), 2.5)
-    points = np.random.default_rng(2).uniform(-2, 2, (300, 2))
-    assert contains(seen, points).any()
-    assert not contains(blind, points).any()
-
-
 def test_a_panoramic_camera_contains_a_sector(view):
     sector = Viewpoint.of(view(pan=0.3, hfov=4.0, vfov=pi), np.array([0.0, 0.0, 0.5]), 9.0)
     angles = np.linspace(-pi, pi, 721)
@@ -97,7 +89,7 @@ def blocked(points, camera, pose, centres, radii, slack):
     return (nearer & (np.abs(across) < (radii + slack) * np.hypot(*p.T).T)).any(axis=1)
 
 
-@pytest.mark.parametrize("seed", range(4))
+@pytest.mark.parametrize("seed", range(2))
 def test_points_agree_with_the_formulas_over_arrays(scene, seed):
     points, view, centres, radii = scene(seed)
     inside, behind = contained(points, *view, 0.05), blocked(points, *view, centres, radii, 0.03)
@@ -106,7 +98,7 @@ def test_points_agree_with_the_formulas_over_arrays(scene, seed):
     assert 0 < clear.sum() < inside.sum()
 
 
-@pytest.mark.parametrize("seed", range(4))
+@pytest.mark.parametrize("seed", range(2))
 def test_cells_agree_with_the_formulas_over_arrays(scene, seed):
     _, view, centres, radii = scene(seed)
     corner, cell, count = (-20, -17), 0.1, 40

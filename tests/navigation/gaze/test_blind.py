@@ -48,13 +48,3 @@ def test_a_stop_keeps_its_direction_in_the_world(gaze, belief, view):
     first = choose(belief(camera=view(2.0, 0.0)))
     turned = choose(belief(pose=(0.0, 0.0, -0.2), time=0.06, camera=view(2.0, 0.0)))
     assert turned.pan == pytest.approx(first.pan + 0.2)
-
-
-def test_a_stop_that_the_head_does_not_reach_ends(gaze, belief, view):
-    choose = gaze(mode="steps", **SWEEP)
-    reached = {choose(belief(time=0.06 * k, camera=view(3.0, 0.0))).pan for k in range(200)}
-    assert len(reached) == 4
-
-
-def test_the_fixed_gaze_looks_ahead(pans):
-    assert not np.any(pans("fixed"))

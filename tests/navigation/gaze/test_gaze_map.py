@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from navigation.gaze.grid import GazeGrid
-from navigation.gaze.integrated import Votes, gaze_map, highest_centre, join, one_vote
+from navigation.gaze.integrated import Votes, gaze_map, highest_centre, one_vote
 from navigation.parameters.gaze import GazeParameters
 
 GRID = GazeGrid.of(GazeParameters(step=pi / 36))
@@ -37,23 +37,6 @@ def test_the_map_is_the_sum_of_regions_in_any_order():
     assert 0.0 <= gm.min() <= gm.max() <= 1.0
 
 
-def test_a_map_of_zeros_keeps_the_gaze():
-    assert highest_centre(np.zeros((17, 37)), GRID, (0.33, -0.2)) == (0.33, -0.2)
-
-
-def test_one_candidate_is_the_highest_centre():
-    for pan in np.linspace(-0.7, 0.7, 8):
-        gm = gaze_map(one_vote(pan, -0.4, 1.0), GRID, FOV)
-        assert highest_centre(gm, GRID, (0.0, 0.0))[0] == pytest.approx(pan, abs=GRID.step)
-
-
-def test_the_scale_of_the_weights_is_irrelevant():
-    votes = random_votes(np.random.default_rng(4), 12)
-    scaled = Votes(votes.pan, votes.tilt, 7.0 * votes.value)
-    one, other = (highest_centre(gaze_map(v, GRID, FOV), GRID, (0, 0)) for v in (votes, scaled))
-    assert one == other
-
-
 def test_the_largest_plateau_wins_then_the_nearest_then_the_smaller_pan():
     gm = np.zeros((17, 37))
     gm[4:9, 2:7] = 1.0
@@ -74,12 +57,3 @@ def test_a_bent_or_hollow_plateau_gives_its_member_nearest_the_centroid():
     gm[5:8, 11:14] = 0.5
     pan, tilt = highest_centre(gm, GRID, (0.0, 0.0))
     assert gm[GRID.tilt == tilt, GRID.pan == pan] == [1.0]
-
-
-def test_votes_are_joined_in_order():
-    nothing = join([])
-    assert not gaze_map(nothing, GRID, FOV).any()
-    joined = join([one_vote(0.1, -0.2, 0.3), nothing, one_vote(0.4, -0.5, 0.6)])
-    assert joined.pan.tolist() == [0.1, 0.4]
-    assert joined.tilt.tolist() == [-0.2, -0.5]
-    assert joined.value.tolist() == [0.3, 0.6]

@@ -33,12 +33,6 @@ def test_without_obstacles_waypoint_and_map_vote(votes, belief):
     assert v.value[0] == pytest.approx(PAPER.gaze.w_lm)
 
 
-def test_stale_ground_on_both_sides_votes_ahead(votes, belief):
-    """The printed candidate is the mean of the under-confident points."""
-    b = belief(sigma=0.0, confidence=lambda x, y: float(abs(y) < 0.5))
-    assert abs(votes(b).pan[0]) < 0.05
-
-
 def test_the_votes_of_obstacles_are_a_mean(votes, belief, track):
     places = [(0.6, 0.1 * i) for i in range(4)]
     tracks = [track(x, (-0.1, 0.0), sigma=0.2, id=i) for i, x in enumerate(places)]
@@ -53,11 +47,6 @@ def test_obstacles_and_beacons_share_the_vote_of_self_localization(votes, belief
     assert v.tilt[-2:] == pytest.approx(0.0)
     v = votes(belief([track((0.6, 0.1))], sigma=0.2), beacons=beacons)
     assert v.value[-4:-1] == pytest.approx(PAPER.gaze.w_sf / 3)
-
-
-def test_obstacles_out_of_reach_do_not_vote(votes, belief, track):
-    behind = track((-1.0, 0.05), (0.3, 0.0), sigma=0.2)
-    assert len(votes(belief([behind], sigma=0.0)).pan) == 1
 
 
 def test_obstacles_and_beacons_together_do_not_exceed_one(votes, belief, track, view):

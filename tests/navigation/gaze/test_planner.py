@@ -40,15 +40,6 @@ def test_a_steady_gaze_decides_after_arrival_and_dwell_only(gaze, belief, track,
     assert later.pan < 0.0 < first.pan
 
 
-def test_a_steady_gaze_that_stays_is_decided_again_at_every_frame(gaze, belief, track, view):
-    choose, left = gaze(PAPER), track((0.3, 0.6), (-0.1, 0), age=1.0)
-    first = choose(belief([left]))
-    there = view(first.pan, first.tilt)
-    maps = [choose(belief([left], time=0.06 * k, camera=there)).gaze_map for k in range(1, 7)]
-    assert maps[0] is maps[1]
-    assert len({id(gaze_map) for gaze_map in maps[2:]}) == 4
-
-
 @pytest.mark.parametrize("time", [0.5, 0.6])
 def test_a_head_that_never_arrives_does_not_block(time, gaze, belief, track, view):
     choose = gaze(PAPER)
@@ -94,16 +85,3 @@ def test_a_body_turns_to_what_its_fixed_camera_must_see(gaze, belief, track):
     assert decision.tilt == -0.4
     assert 0.3 < decision.pan <= 1.0
     assert decision.body_direction == pytest.approx(decision.pan)
-
-
-def test_a_direction_of_the_body_stays_in_the_world_while_it_turns(gaze, belief, track):
-    choose = gaze(**FIXED_CAMERA)
-    side = track((0.3, 0.6), (-0.05, -0.1), sigma=0.08, age=1.0)
-    first = choose(belief([side]))
-    turned = choose(belief([side], pose=(0.0, 0.0, 0.2), time=0.06))
-    assert turned.body_direction == first.body_direction
-    assert turned.pan == pytest.approx(first.pan - 0.2)
-
-
-def test_a_head_leaves_the_body_alone(gaze, belief):
-    assert gaze()(belief()).body_direction is None

@@ -1,7 +1,5 @@
 """Properties of every mode of the gaze."""
 
-from copy import deepcopy
-from dataclasses import replace
 from typing import get_args
 
 import numpy as np
@@ -67,18 +65,6 @@ def test_the_same_memory_and_scene_give_the_same_gaze(mode, moved_by, gaze, crow
 
 
 @pytest.mark.parametrize("mode", MODES)
-def test_choosing_changes_neither_memory_nor_scene(mode, gaze, crowded):
-    choose = gaze(mode=mode)
-    for k in range(4):
-        choose(crowded(k), motion=WALK)
-    memory, scene = choose.memory, choose.scene(crowded(4), motion=WALK)
-    contents = scene.obstacles.position, scene.obstacles.age, scene.psi_ob, scene.s_oe
-    before = deepcopy((memory, contents))
-    choose.planner.choose(memory, scene, WALK)
-    assert same((memory, contents), before)
-
-
-@pytest.mark.parametrize("mode", MODES)
 def test_the_memory_of_the_start_holds_nothing_of_the_frames_before(mode, gaze, crowded):
     """After a relocalization, densities and directions of the former pose are wrong."""
     used, fresh = gaze(mode=mode), gaze(mode=mode)
@@ -129,17 +115,6 @@ def test_deliberate_gazes_and_stops_keep_their_direction_while_the_body_turns(mo
     assert gaze(mode=mode)(crowded(0)).stabilized == (mode not in ("fixed", "triangle"))
 
 
-@pytest.mark.parametrize("mode", [m for m in MODES if m not in DELIBERATE])
-def test_a_blind_gaze_has_one_map_of_zeros_and_the_partial_evaluations(mode, gaze, crowded):
-    """Displays show an empty map of the size of that of a deliberate gaze, recorded once."""
-    choose = gaze(mode=mode)
-    first, second = choose(crowded(0)), choose(crowded(1))
-    assert first.gaze_map.shape == gaze(mode="risk")(crowded(0)).gaze_map.shape
-    assert not first.gaze_map.any()
-    assert second.gaze_map is first.gaze_map
-    assert min(first.psi_lm, first.psi_sf, first.psi_ob) > 0.0
-
-
 def same(one, other):
     """Return whether two values, tuples or arrays have the same content."""
     if hasattr(one, "__slots__") and type(one).__module__.startswith("navigation"):
@@ -150,13 +125,3 @@ def same(one, other):
     if isinstance(one, np.ndarray):
         return one.tobytes() == other.tobytes()
     return one == other
-
-
-def test_contents_are_compared(gaze, crowded):
-    one, other = gaze(), gaze()
-    decisions = one(crowded(0)), other(crowded(0))
-    assert same(*decisions)
-    assert same(one.memory, other.memory)
-    assert not same(decisions[0], replace(decisions[1], pan=0.123))
-    other(crowded(1))
-    assert not same(one.memory, other.memory)

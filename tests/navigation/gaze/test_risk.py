@@ -180,14 +180,6 @@ def test_ground_where_movers_may_hide_is_visited_in_turn(gaze, look_around):
     assert min(pans) < -1.0
 
 
-def test_densities_do_not_survive_a_relocalization(gaze, look_around):
-    """The densities of the former pose belong to other ground; all ground is unseen again."""
-    used, fresh = gaze(beacons={}), gaze(beacons={})
-    look_around(used, pose=(0.4, 0.1, 0.7), frames=20)
-    used.memory = used.planner.begin()
-    assert look_around(used, frames=20) == look_around(fresh, frames=20)
-
-
 def test_a_fixation_lasts_for_its_minimum_duration(belief, track, gaze, view):
     """The head arrives at the first obstacle when the other one becomes urgent."""
     choose = gaze(known(), {})

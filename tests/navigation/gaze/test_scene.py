@@ -4,11 +4,10 @@ import numpy as np
 import pytest
 
 from navigation.decision import MotionDecision
-from navigation.gaze.scene import GazeScene, relative
+from navigation.gaze.scene import GazeScene
 from navigation.parameters.navigation import NavigationParameters
 from navigation.partial_evaluation import SamplePoints
 from navigation.scene import Scene
-from navigation.transform import points_to_world
 
 P = NavigationParameters.extended()
 SAMPLES = SamplePoints.polar(P.evaluation, np.pi / 2)
@@ -24,21 +23,9 @@ def scene(task):
     return make
 
 
-def test_relative_undoes_points_to_world():
-    rng = np.random.default_rng(0)
-    pose, points = np.array([1.0, -0.5, 2.0]), rng.normal(size=(40, 2))
-    bearing, distance = relative(points_to_world(pose, points), pose)
-    back = distance[:, None] * np.stack([np.cos(bearing), np.sin(bearing)], axis=1)
-    assert back == pytest.approx(points)
-
-
 def test_an_empty_fresh_world_asks_for_nothing(scene, belief):
     s = scene(belief(sigma=0.0, turn_sigma=0.0))
     assert (s.map.psi, s.psi_sf, s.psi_ob_max, s.psi_way) == (0.0, 0.0, 0.0, 1.0)
-
-
-def test_beacons_out_of_range_or_reach_are_dropped(scene, belief):
-    assert scene(belief()).beacon_bearing == pytest.approx([0.0])
 
 
 def test_psi_way_falls_before_an_obstacle_and_psi_ob_rises(scene, belief, track):

@@ -31,17 +31,6 @@ def test_a_head_that_accelerates_fully_arrives_in_the_time_of_the_move(angle, sp
     assert rate == pytest.approx(0.0, abs=0.1)
 
 
-def test_times_of_moves_are_symmetric_and_continuous_and_grow_with_the_angle():
-    angles = np.linspace(0.0, 2.0, 400)
-    times = np.array([move_time(a, 0.0, RATE, ACCELERATION) for a in angles])
-    assert times[0] == 0.0
-    assert np.all(np.diff(times) > 0.0)
-    assert np.abs(np.diff(times)).max() < 0.03
-    for angle, speed in ((0.7, 1.5), (0.02, 2.0), (-0.4, 3.0)):
-        mirrored = move_time(-angle, -speed, RATE, ACCELERATION)
-        assert move_time(angle, speed, RATE, ACCELERATION) == pytest.approx(mirrored)
-
-
 def look(x, y, weight=1.0, base=1.0, rate=0.0, *, top=0.0, credit=0.0):
     return np.array([(x, y, weight, base, rate, top, credit, False)], LOOK)
 

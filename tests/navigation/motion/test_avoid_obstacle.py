@@ -28,19 +28,6 @@ def test_inside_the_circle_the_spiral_is_outward():
     assert not spiral_turn([-0.3, -0.1, 0.0], 0.3, D_E, K_R).any()
 
 
-def test_every_obstacle_has_its_own_radius_and_offset():
-    rng = np.random.default_rng(0)
-    gaps, s_oe, d_e = rng.uniform((0.0, 0.1, 0.05), (1.0, 0.4, 0.3), (20, 3)).T
-    one_by_one = [spiral_turn(*each, K_R) for each in zip(gaps, s_oe, d_e, strict=True)]
-    assert spiral_turn(gaps, s_oe, d_e, K_R) == pytest.approx(np.array(one_by_one))
-
-
-def test_the_curvature_bends_only_the_outer_spiral():
-    gap = np.linspace(0.0, 1.0, 50)
-    same = spiral_turn(gap, 0.25, D_E, 0.3) == spiral_turn(gap, 0.25, D_E, 0.1)
-    assert np.array_equal(same, gap <= D_E)
-
-
 def test_the_turn_is_the_shorter_one_to_the_destination():
     p_od, p_or = np.random.default_rng(1).normal(size=(2, 500, 2))
     turn = wrap_array(np.arctan2(*p_od.T[::-1]) - np.arctan2(*p_or.T[::-1]))
@@ -52,10 +39,3 @@ def test_on_the_line_the_sign_is_minus():
     ahead = np.array([1.0, 0.0])
     assert turning_sign(ahead, -ahead) == -1.0
     assert turning_sign(ahead, 0.5 * ahead) == -1.0
-
-
-def test_the_side_is_mirrored_and_does_not_depend_on_the_frame(rotation):
-    p_od, p_or = np.random.default_rng(2).normal(size=(2, 100, 2))
-    sign, r = turning_sign(p_od, p_or), rotation(0.7)
-    assert np.array_equal(turning_sign(p_od @ r.T, p_or @ r.T), sign)
-    assert np.array_equal(turning_sign(p_od * [1, -1], p_or * [1, -1]), -sign)

@@ -47,19 +47,6 @@ def test_colliding_speeds_are_those_of_the_quadratic():
     assert signs == {True, False}
 
 
-def test_contact_time_is_the_first_touch():
-    rng = np.random.default_rng(1)
-    for e in encounters(rng, 500):
-        time = e.contact_time(0.15)
-        if isfinite(time):
-            x = e.along + (e.forward - 0.15) * time
-            y = e.across + e.left * time
-            assert hypot(x, y) == pytest.approx(e.radius, abs=1e-9)
-    inside = Encounter(0.1, 0.0, -0.1, 0.0, 0.3)
-    assert inside.contact_time(0.0) == 0.0
-    assert Encounter(0.1, 0.0, 0.1, 0.0, 0.3).contact_time(0.0) == inf
-
-
 def test_the_band_is_where_a_standing_robot_is_hit():
     rng = np.random.default_rng(3)
     for e in encounters(rng, 3000):

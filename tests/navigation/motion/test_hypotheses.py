@@ -1,5 +1,3 @@
-from dataclasses import replace
-
 import numpy as np
 import pytest
 
@@ -81,27 +79,6 @@ def test_only_discs_within_reach_are_kept(track):
     )
     near = within_reach(h.view(np.ndarray), np.zeros(2), 0.2)
     assert near["position"].tolist() == [h.position[0].tolist(), h.position[2].tolist()]
-
-
-def test_no_tracks_are_no_hypotheses():
-    assert len(build()) == 0
-
-
-def test_reversals_can_be_left_out(track):
-    mover = track((1, 0), (0.1, 0.0))
-    assert len(build(mover)) == 2
-    assert len(build(mover, p=replace(P, reversal_weight=0.0))) == 1
-
-
-def test_the_hypotheses_do_not_depend_on_the_order_of_the_tracks(track):
-    cloud = ([[1, 0], [2, 0]], [[0.1, 0], [-0.1, 0]], [0.25, 0.75])
-    tracks = [
-        track((1, 0), (0.1, 0.02)),
-        track((0, 1)),
-        track((1.5, 0), (0.1, 0), age=3.0, particles=cloud),
-    ]
-    one, other = (sorted(build(*t).tolist(), key=str) for t in (tracks, tracks[::-1]))
-    assert str(one) == str(other)
 
 
 @pytest.mark.parametrize("turn", [-1.3, 1e-5, 0.0, 0.4, np.pi])

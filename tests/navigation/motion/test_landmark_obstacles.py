@@ -24,19 +24,6 @@ def test_they_are_those_in_range(landmarks):
     assert counts >= {0, 1, 2}
 
 
-def test_they_are_static_and_certain_at_their_known_positions(landmarks):
-    near = landmarks.near(np.array([2.3, 0.1]))
-    assert near.position.tolist() == [list(PLACES["east"]), list(PLACES["by"])]
-    assert near.static.all()
-    assert not near.lost.any()
-    assert np.all(near.radius == 0.05)
-    assert np.all(near.sigma < 0.01)
-
-
-def test_a_map_without_landmarks_has_none_near():
-    assert len(LandmarkObstacles({}, 0.05, PARAMETERS).near(np.zeros(2))) == 0
-
-
 def test_their_ids_are_negative_and_stay_the_same(landmarks):
     def ids(point):
         return {t.label: t.id for t in landmarks.near(np.array(point))}

@@ -29,7 +29,7 @@ def straight(point, target, _):
     return np.arctan2(offset[..., 1], offset[..., 0])
 
 
-def arrivals(direction, limits, radius, r_goal=0.06, duration=60.0):
+def arrivals(direction, limits, radius=1.5, r_goal=0.06, duration=60.0):
     """Heading errors at arrival of 192 starts, NaN for those that never arrive."""
     errors = []
     for goal_heading in np.arange(4) * pi / 2 + 0.3:
@@ -61,12 +61,11 @@ def arrivals(direction, limits, radius, r_goal=0.06, duration=60.0):
 
 
 @EACH
-@pytest.mark.parametrize("radius", [1.0, 2.0])
-def test_all_of_192_starts_arrive(direction, limits, radius):
-    errors = arrivals(direction, limits, radius)
+def test_all_of_192_starts_arrive(direction, limits):
+    errors = arrivals(direction, limits)
     assert len(errors) == 192
     assert not np.isnan(errors).any()
-    assert np.median(errors) < 0.7 * np.median(arrivals(straight, limits, radius))
+    assert np.median(errors) < 0.7 * np.median(arrivals(straight, limits))
 
 
 @EACH
@@ -78,23 +77,6 @@ def test_far_away_and_on_the_line_it_points_at_the_destination(direction):
     for rho in (0.1, 0.5, 1.5):
         point = -rho * np.array([np.cos(0.7), np.sin(0.7)])
         assert direction(point, ORIGIN, 0.7) == pytest.approx(0.7)
-
-
-@EACH
-def test_mirror_symmetry(direction):
-    places = np.random.default_rng(1).normal(0, 0.6, (200, 2))
-    phi = direction(places, ORIGIN, 0.9)
-    mirrored = direction(places * [1, -1], ORIGIN, -0.9)
-    assert wrap_array(phi + mirrored) == pytest.approx(0.0, abs=1e-9)
-
-
-@EACH
-def test_rigid_motion_moves_the_field_along(direction, rotation):
-    places, a = np.random.default_rng(2).normal(0, 0.6, (100, 2)), 1.1
-    r, target, shift = rotation(a), np.array([0.2, -0.1]), np.array([5.0, 2.0])
-    phi = direction(places, target, 0.9)
-    moved = direction(places @ r.T + shift, r @ target + shift, 0.9 + a)
-    assert wrap_array(moved - phi - a) == pytest.approx(0.0, abs=1e-9)
 
 
 @EACH
@@ -160,25 +142,9 @@ def test_the_side_is_kept_while_beta_passes_pi():
     assert sides((2.0, 2.2, 2.0)) == [0, 0, 0]  # not beyond the upper threshold
 
 
-def test_the_side_does_not_depend_on_the_frame(rotation):
-    a, shift = 0.8, np.array([3.0, 2.0])
-    for beta, side in ((3.0, 0), (-3.0, 0), (-2.0, 1), (1.0, 1)):
-        task = leg(beta)
-        moved = replace(task, target=rotation(a) @ task.target + shift, heading=beta + a)
-        there = arrival_side(shift, moved, side, DEFAULT)
-        assert there == arrival_side(ORIGIN, task, side, DEFAULT)
-
-
 def test_a_remembered_side_turns_a_whole_turn_the_other_way():
     p = replace(DEFAULT, arrival_clamp=10.0, k_beta=-0.5, arrival_ramp=0.5, d_con=0.8)
     point = (0.1, 0.0)  # beyond the destination, which bears pi
     for side, beta in ((1, 3.0), (-1, 3.0 - 2 * pi)):
         phi = move_to_goal(point, ORIGIN, wrap_array(np.array(pi + 3.0)), p, side=side)
         assert wrap_array(phi - pi + 0.5 * beta) == pytest.approx(0.0, abs=1e-9)
-
-
-def test_a_remembered_side_decides_only_beyond_the_destination():
-    before, beyond = np.array([-0.3, 0.01]), np.array([0.3, 0.01])
-    for point, differs in ((before, False), (beyond, True)):
-        left, right = (move_to_goal(point, ORIGIN, 0.0, DEFAULT, side=s) for s in (1, -1))
-        assert (left != pytest.approx(float(right))) == differs

@@ -1,7 +1,6 @@
 """Pipeline of the planner: properties of every method."""
 
 import pickle
-from copy import deepcopy
 from dataclasses import replace
 from math import pi
 from typing import get_args
@@ -9,7 +8,6 @@ from typing import get_args
 import numpy as np
 import pytest
 
-from navigation.decision import MotionDecision
 from navigation.parameters.planner import Method
 
 METHODS = get_args(Method)
@@ -127,15 +125,6 @@ def test_the_same_memory_and_scene_give_the_same_decision_and_stay(method, steps
 
 
 @EACH
-def test_the_memory_can_be_stored_and_continued(method, steps, task):
-    t = task((1.5, 0.8), 0.4)
-    one, other = steps(method, 4), steps(method, 4)
-    for _ in range(6):
-        same(one.step(t), other.step(t))
-        other.memory = pickle.loads(pickle.dumps(deepcopy(other.memory)))
-
-
-@EACH
 def test_interleaved_memories_do_not_influence_each_other(method, steps, planner, task):
     """Nothing lives in the planner; `mppi` draws the same samples at every call here."""
     t, shared = task((1.5, 0.8), 0.4), planner(method)
@@ -240,14 +229,6 @@ def test_it_slows_down_at_the_goal_but_not_at_a_via_point(method, plan, belief, 
     assert via == pytest.approx(far)
 
 
-def test_near_the_goal_the_body_faces_the_goals_heading(plan, belief, task):
-    t = task((0.3, 0.0), pi / 2, is_goal=True)
-    assert plan("univector", belief(), t).velocity[2] > 0.5
-    via = replace(t, is_goal=False)
-    facing = plan("univector", belief(), via)
-    assert facing.velocity[2] == pytest.approx(max(-0.8, 1.5 * facing.direction), abs=1e-9)
-
-
 def test_the_body_turns_for_a_fixed_camera_and_keeps_its_course(plan, belief, task):
     ahead = plan("univector", belief(), task())
     left = plan("univector", belief(), task(), look=0.8)
@@ -302,25 +283,6 @@ def test_the_field_of_a_decision_has_its_direction(method, plan, belief, task, t
     decision = plan(method, belief([track((0.7, 0.15))]), task())
     u_x, u_y = decision.field.at(np.zeros(2))
     assert np.arctan2(u_y, u_x) == pytest.approx(decision.direction)
-
-
-@FIELDS
-def test_evaluation_of_the_field_changes_no_decision(method, steps, task):
-    looked, blind = steps(method, 7), steps(method, 7)
-    points = np.random.default_rng(0).uniform(-1.0, 2.0, (50, 2))
-    for _ in range(6):
-        one, other = looked.step(task()), blind.step(task())
-        before = one.field.at(points)
-        assert before.shape == points.shape
-        assert one.field.at(points).tolist() == before.tolist()
-        same(one, other)
-
-
-@EACH
-def test_a_robot_that_stands_has_neither_field_nor_obstacles(method, plan, belief, task, track):
-    decision = plan(method, belief([track((0.5, 0.1))]), task(done=True))
-    empty = MotionDecision(decision.velocity)
-    assert (decision.field, decision.extended_radii) == (empty.field, empty.extended_radii)
 
 
 def test_the_speed_of_a_decision_is_that_before_the_safety_filter(plan, belief, task, track):

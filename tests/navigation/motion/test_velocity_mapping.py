@@ -4,7 +4,6 @@ import pytest
 from navigation.motion.velocity_mapping import (
     arriving,
     body_velocity,
-    idle_velocity,
     target_heading,
     towards,
 )
@@ -33,21 +32,9 @@ def test_the_direction_is_kept_and_the_limits_respected(limits, mapped):
     assert np.abs(v[:, 2]).max() <= limits.wz
 
 
-def test_within_the_limits_the_speed_is_kept(mapped):
-    speeds = [np.hypot(*mapped(c, 0.07, 0.3, c)[:2]) for c in COURSES.tolist()]
-    assert speeds == pytest.approx([0.07] * len(speeds))
-    assert mapped(1.0, 0.0, 0.0, 0.0) == pytest.approx(0.0)
-
-
 def test_the_body_turns_to_its_target_heading(mapped):
     assert mapped(1.0, 0.1, 0.0, -0.2)[2] == pytest.approx(-0.3)
     assert mapped(0.0, 0.0, 3.0, -3.0)[2] > 0.0
-
-
-def test_an_idle_robot_stands_and_a_lost_one_turns_within_the_limits(limits):
-    assert idle_velocity(False, 0.5, limits).tolist() == [0.0, 0.0, 0.0]
-    assert idle_velocity(True, 0.5, limits).tolist() == [0.0, 0.0, 0.5]
-    assert idle_velocity(True, 9.0, limits).tolist() == [0.0, 0.0, limits.wz]
 
 
 @pytest.mark.parametrize("course", [-2.0, 0.0, 0.7])

@@ -95,19 +95,6 @@ def test_the_acceleration_is_that_of_the_offset(track):
     assert np.sqrt((error**2).mean()) < 0.05 * np.sqrt((rows[301:-1, 2:] ** 2).mean())
 
 
-def test_a_walk_in_another_direction_has_its_offsets_turned(track):
-    here, there = track(0.07, 300), track(0.07, 300, angle=0.8)
-    for columns in (slice(0, 2), slice(2, 4)):
-        one, other = (rows[:, columns] @ [1.0, 1j] for rows in (here, there))
-        np.testing.assert_allclose(other, np.exp(0.8j) * one, atol=1e-12)
-
-
-def test_offsets_stay_small_and_mirror(track):
-    right, left = track(0.07), track(0.07, side=-1.0)
-    assert np.abs(right[:, :2]).max() < 0.03
-    np.testing.assert_allclose(left[:, :2], right[:, :2] * (1.0, -1.0), atol=1e-12)
-
-
 def test_standing_the_pelvis_comes_back(model):
     limbs, standing = np.zeros(1, Limbs)[0], np.zeros(1, Plan)[0]
     for k in range(200):

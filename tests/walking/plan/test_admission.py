@@ -6,7 +6,7 @@ import pytest
 
 from walking.parameters import CONTROL_PERIOD
 from walking.plan.admission import admit_modified, remember
-from walking.plan.footsteps import STILL, foothold, landing_of, put
+from walking.plan.footsteps import foothold, landing_of, put
 from walking.plan.gait import start, support_foot
 from walking.plan.mwpg import admits_target, walking_target
 from walking.plan.reference import plan_walk
@@ -101,12 +101,3 @@ def test_without_a_plan_to_keep_the_wanted_one_is_taken(admission, strides_of):
     fraction = admission.admit(fast)
     assert fraction == 1.0
     assert admission.live.following.right.x == fast.right.x
-
-
-def test_a_plan_that_is_tried_changes_nothing_in_force(admission, strides_of):
-    slow = strides_of((0.1, 0.0, 0.0))
-    admission.on_reference(slow)
-    admission.admit(slow)
-    gait = admission.gait.copy()
-    admission.admit(strides_of(STILL))
-    assert admission.gait.clock.shift.item() == gait.clock.shift.item()

@@ -96,14 +96,6 @@ def test_the_capture_time_is_the_latest_sufficient_tick(model, off, ahead, reach
     assert int(time / CONTROL_PERIOD + 1e-6) == max(ticks, default=0)
 
 
-def test_the_capture_time_is_the_planned_one_within_reach_and_zero_if_none_is_short_enough(model):
-    omega = float(model.robot.omega)
-    assert capture_time(omega, 0.3, 0.01, 0.005, 0.2) == 0.3
-    assert capture_time(omega, 0.3, 0.0, -0.02, 0.0) == 0.3
-    assert capture_time(omega, 0.3, 0.05, -0.02, 0.01) == 0.0
-    assert capture_time(omega, 0.3, 0.05, 0.0, -0.01) == 0.0
-
-
 def test_the_ankles_push_the_zmp_beyond_the_error_within_the_sole(model, robot):
     margin = STABILIZER.sole_margin
     region = support_region(model.robot.support, LEFT, LEFT, margin)
@@ -276,15 +268,6 @@ def test_a_capture_step_follows_the_error_and_reports_balance(
     assert is_same(within, landing, robot)
 
 
-@pytest.mark.parametrize("generator", GENERATORS)
-def test_errors_within_the_dead_zone_move_no_landing(models, make_walk, generator):
-    walk, velocity = Walk(models[generator], make_walk), (0.1, 0.0, 0.0)
-    walk.to_swing(velocity)
-    walk.tick(velocity, (0.005, 0.003))
-    assert walk.moved == NONE
-    assert not walk.bound & BALANCE
-
-
 def test_during_a_capture_step_the_plan_goes_on_without_the_body_until_touchdown(models, make_walk):
     walk, velocity = Walk(models["mwpg"], make_walk), (0.1, 0.0, 0.0)
     alone = Walk(models["mwpg"], make_walk)
@@ -320,9 +303,3 @@ def test_a_plan_that_follows_the_body_keeps_body_and_dcm(model, pushed, off):
     assert pendulum.vy + error.vy == pytest.approx(0.6 * robot.omega * off[1])
     assert np.add(dcm, (error.dcm_x, error.dcm_y)) == pytest.approx(off)
     assert 0.0 < dcm[1] / off[1] < 1.0
-
-
-def test_a_plan_keeps_still_while_the_ankles_suffice(model, pushed):
-    pushed.error.x = pushed.error.dcm_x = 0.9 * STABILIZER.capture_dead_zone * 0.0425
-    follow_body(pushed, model.robot)
-    assert pushed.pendulum.x == pushed.pendulum.vx == 0.0

@@ -15,7 +15,6 @@ from walking.plan.corrections import (
     correct_offset,
     cycle_begins,
     detects_touchdown,
-    end_corrections,
     heading_rate,
     restart_cycle,
     speed_correction,
@@ -41,26 +40,8 @@ def test_a_cycle_begins_with_every_second_footstep(first):
     assert begun == [0, 20, 40]
 
 
-def test_after_a_rest_the_other_foot_may_be_the_first():
-    record = corrections()
-    assert cycle_begins(record, 0)
-    assert not cycle_begins(record, 1)
-    restart_cycle(record)
-    assert cycle_begins(record, 1)
-
-
 def turn(record, ahead, *, renew):
     return heading_rate(record, ahead, renew, PARAMETERS)
-
-
-def test_a_slip_of_the_body_is_turned_back():
-    record, plan, body = corrections(), 0.4, 0.3
-    record.held = plan - body
-    body -= 0.05
-    for tick in range(1000):
-        turned = turn(record, plan - body, renew=tick % CYCLE == 0) * CONTROL_PERIOD
-        plan, body = plan + turned, body + turned
-    assert body == pytest.approx(0.3, abs=1e-3)
 
 
 def test_a_steady_slip_is_held_although_one_footstep_turns_for_two_and_the_body_sways():
@@ -194,22 +175,6 @@ def test_the_offset_moves_slowly_and_within_its_limit():
 
 def test_footsteps_that_balance_do_not_change_the_offset():
     assert set(offsets((0.01, 0.0), disturbed=lambda tick: tick % CYCLE == 7)) == {(0.0, 0.0)}
-
-
-def test_the_offset_outlasts_a_rest():
-    record = corrections()
-    for tick in range(4 * CYCLE):
-        correct_offset(record, (0.01, 0.0), True, tick % CYCLE == 0, False, PARAMETERS)
-    before = float(record.com_offset[0])
-    assert before < 0.0
-    end_corrections(record)
-    correct_offset(record, (-0.3, 0.0), True, False, False, PARAMETERS)
-    assert record.com_offset[0] <= before
-
-
-def test_errors_of_an_even_floor_slow_nothing():
-    record, start = corrections(), LIMITS.slowdown_start_error
-    assert {speed_ratio(record, start * k / 10, PARAMETERS) for k in range(11)} == {1.0}
 
 
 def test_the_speed_ratio_falls_with_the_error_to_its_minimum():

@@ -1,6 +1,6 @@
 """Velocities and command states to strides, timing and footholds."""
 
-from dataclasses import asdict, replace
+from dataclasses import asdict
 from math import cos, pi, sin
 
 import numpy as np
@@ -14,7 +14,6 @@ from walking.data import StepCommand, Timing
 from walking.model import Strides
 from walking.parameters import CONTROL_PERIOD, GaitParameters, LimitParameters, WalkingParameters
 from walking.plan.footsteps import (
-    STILL,
     Foothold,
     clear_of,
     command_of,
@@ -22,8 +21,6 @@ from walking.plan.footsteps import (
     landing_of,
     mean_velocity,
     reachable,
-    tendency,
-    towards_strides,
     velocity_strides,
 )
 from walking.plan.timing import cadence, command_timing, put_timing
@@ -96,12 +93,6 @@ def test_a_mirrored_velocity_swaps_the_strides(strides_of, velocity):
         assert (a.x, a.y, a.yaw) == pytest.approx((b.x, -b.y, -b.yaw), abs=1e-15)
 
 
-def test_the_foot_on_the_side_of_the_motion_opens():
-    assert tendency((0.1, 0.05, 0.0), PARAMETERS) > 0.0
-    assert tendency((0.1, 0.0, -0.5), PARAMETERS) < 0.0
-    assert tendency((0.1, 0.0, 0.0), PARAMETERS) == 0.0
-
-
 @given(velocities)
 def test_a_walk_is_quickened_before_its_footsteps_are_cut(model, velocity):
     time = time_of(cadence(velocity, PARAMETERS))
@@ -126,21 +117,6 @@ def test_a_turn_that_must_keep_the_feet_apart_also_moves_sideways(model, strides
     assert rate == pytest.approx(1.5)
 
 
-def test_a_slow_walk_keeps_the_usual_time():
-    for velocity in (STILL, (0.2, 0.0, 0.0), (-0.1, 0.08, 0.0), (0.2, 0.0, 0.8)):
-        assert time_of(cadence(velocity, PARAMETERS)) == pytest.approx(GAIT.footstep_time)
-
-
-@pytest.mark.parametrize("time", [1e-9, 0.008, 0.34])
-@pytest.mark.parametrize("fraction", [1e-9, 0.5, 1.0 - 1e-9])
-def test_the_shortest_footstep_has_a_tick_of_either_support(time, fraction):
-    gait = GaitParameters(footstep_time=time, min_footstep_time=time, double_support=fraction)
-    parameters = parameters_record(replace(WalkingParameters(), gait=gait))[0]
-    double, single, _ = cadence((0.1, 0.0, 0.0), parameters)
-    assert double >= 1
-    assert single >= 1
-
-
 @pytest.mark.parametrize("forward", [-0.05, 0.1])
 @pytest.mark.parametrize("direction", [-0.1, 0.0, 0.1])
 def test_strides_and_timing_are_read_back_as_the_command_state(model, forward, direction):
@@ -153,12 +129,3 @@ def test_strides_and_timing_are_read_back_as_the_command_state(model, forward, d
     put_timing(timing, ticks)
     assert late == 0
     assert command_of(strides, timing) == pytest.approx(command.item())
-
-
-def test_strides_between_two_others_are_linear(strides_of):
-    one, other, between = strides_of(STILL), strides_of((0.2, 0.1, 0.3)), strides_of(STILL)
-    towards_strides(between, one, other, 0.25)
-    for foot in ("right", "left"):
-        ends = (np.array(s[foot].item()) for s in (one, other))
-        start, end = ends
-        assert between[foot].item() == pytest.approx(start + 0.25 * (end - start))

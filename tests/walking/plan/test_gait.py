@@ -95,15 +95,6 @@ def single_support(ticks):
     return single
 
 
-def test_the_swing_fills_its_window_of_single_support():
-    single = single_support(60)
-    assert (single.first, single.last) == (3, 58)
-    phases = [swing_phase(single, t) for t in range(61)]
-    assert phases[3] == 0.0 < phases[4]
-    assert phases[57] < 1.0 == phases[58]
-    assert phases == sorted(phases)
-
-
 @pytest.mark.parametrize("ticks", [1, 35, 60, 90])
 @pytest.mark.parametrize("elapsed", [2, 20, 30])
 def test_a_swing_retimed_goes_on_from_its_phase_and_has_time_to_come_down(elapsed, ticks):
@@ -144,20 +135,6 @@ def test_feet_move_without_jumps_and_only_in_the_air(walk):
         assert (height[1:][moved] > 0.0).all()
 
 
-def test_the_zmp_reference_is_continuous_and_ends_between_the_feet(walk):
-    walk.start()
-    for k in range(START + 5 * STEP):
-        ramps = walk.tick(FORWARD, moving=k < 300)
-        for a, b in pairwise(ramps):
-            assert (a.bx, a.by) == (b.ax, b.ay)
-    for _ in range(3 * STEP):
-        ramps = walk.tick(moving=False)
-    assert not walk.gait.stepping
-    left, right = walk.gait.footholds
-    assert ramps[-1].by == pytest.approx(0.5 * (left.y + right.y))
-    assert left.x == pytest.approx(right.x)
-
-
 def test_the_landing_may_change_in_the_air_until_it_is_frozen(walk):
     walk.start().swing_to(0.5)
     planned = walk.landing.x
@@ -168,16 +145,6 @@ def test_the_landing_may_change_in_the_air_until_it_is_frozen(walk):
     while walk.gait.completed == 0:
         walk.tick(FORWARD)
     assert foothold(walk.gait.footholds[1]) == frozen
-
-
-def test_early_contact_leaves_the_foot_where_it_is(walk):
-    walk.start().swing_to(0.7)
-    x, height = float(walk.feet[1].x), float(walk.feet[1].height)
-    touch_down(walk.gait, walk.feet, walk.model.robot)
-    while walk.gait.completed == 0:
-        walk.tick(FORWARD)
-    assert walk.gait.footholds[1].x == pytest.approx(x)
-    assert 0.0 < walk.feet[1].height < height
 
 
 def test_a_support_that_ends_at_an_early_contact_begins_the_next_footstep(walk):
@@ -238,13 +205,6 @@ def test_single_support_stretched_or_cut_in_mid_swing_keeps_the_foot_smooth(walk
         heights.append(float(walk.feet[1].height))
     assert np.abs(np.diff(heights)).max() < 0.008
     assert heights[-1] == 0.0
-
-
-def test_a_frozen_landing_keeps_its_time(walk):
-    walk.start().swing_to(0.85, STILL)
-    left = phase_of(walk.gait).ticks_left
-    assert not walk.retime(14, 100)
-    assert phase_of(walk.gait).ticks_left == left
 
 
 def test_a_double_support_under_way_changes_its_length(walk):

@@ -7,7 +7,7 @@ from hypothesis import strategies as st
 
 from walking.command import ACCELERATION, BALANCE, STRIDE_LIMITS
 from walking.constants import parameters_record
-from walking.data import Data, Steering, Timing
+from walking.data import Data, Steering
 from walking.parameters import CONTROL_PERIOD, WalkingParameters
 from walking.plan.footsteps import STILL, mean_velocity
 from walking.plan.steering import (
@@ -16,7 +16,6 @@ from walking.plan.steering import (
     moves,
     set_wanted_strides,
     twist_of,
-    use_next_timing,
 )
 from walking.plan.timing import cadence, duration, put_timing
 from walking.published import Published, publish_limits
@@ -167,16 +166,3 @@ def test_a_robot_off_balance_keeps_its_motion(steer):
     assert steering.bound == BALANCE
     steering.follow((0.2, 0.0, 0.0), balanced=False)
     assert steering.bound == 0
-
-
-def test_footsteps_that_close_the_stance_keep_the_time_of_the_walk(steer):
-    steering, timing = steer("mwpg"), np.zeros(1, Timing)[0]
-    record = steering.record
-    usual = cadence(STILL, PARAMETERS)
-    steering.follow((LIMITS.vx, 0.0, 0.0), ticks=LONG)
-    quick = np.zeros(1, Timing)[0]
-    put_timing(quick, record.timing.item())
-    steering.follow(STILL)
-    for stepping, expected in ((True, quick.item()), (False, usual)):
-        use_next_timing(timing, record, quick, stepping)
-        assert timing.item() == expected

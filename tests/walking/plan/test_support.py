@@ -71,21 +71,7 @@ def test_soles_that_are_almost_parallel_lose_no_corner(sole, ahead, exponent, si
         assert depth(hull, x, y) == pytest.approx(expected, abs=1e-7)
 
 
-def test_the_polygon_of_one_foot_is_its_sole(sole):
-    foot = Foothold(True, 0.2, -0.1, 0.4)
-    corners_of_foot = polygon(sole, RIGHT, foot, True)
-    assert len(corners_of_foot) == 4
-    centre = corners_of_foot.mean(axis=0)
-    assert depth(corners_of_foot, *centre.tolist()) == pytest.approx(sole.half_width)
-    middle = sole.centre
-    assert centre == pytest.approx([0.2 + middle * np.cos(0.4), -0.1 + middle * np.sin(0.4)])
-
-
 SOLE = Sole(0.01, 0.11, 0.05)
-
-
-def test_strong_ankles_press_the_whole_sole():
-    assert SOLE.pressed(0.13, 0.06) is SOLE
 
 
 @pytest.mark.parametrize("forward", [0.03, 0.08, 0.11, 0.115, 0.2])
@@ -96,8 +82,3 @@ def test_weak_ankles_press_the_part_within_their_torque(forward, side):
     assert front == pytest.approx(min(0.12, forward))
     assert back == pytest.approx(max(-0.10, -forward))
     assert part.half_width == min(0.05, side)
-
-
-def test_what_is_pressed_can_be_pressed():
-    part = SOLE.pressed(0.06, 0.03)
-    assert part.pressed(0.06, 0.03) is part

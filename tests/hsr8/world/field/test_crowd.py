@@ -1,4 +1,5 @@
 from dataclasses import replace
+from math import hypot
 
 import numpy as np
 import pytest
@@ -10,6 +11,7 @@ from hsr8.world.field.generator import draw_layout
 from hsr8.world.field.layout import Layout, Obstacle, Reactions
 from hsr8.world.field.motion import Passage, Shuttle
 from hsr8.world.field.moving_field import moving_field
+from navigation.baselines.half_planes import orca_plane, solve
 
 PERIOD, FAR = 0.02, (9.0, 9.0)
 SPEED, RADIUS = 0.2, 0.12
@@ -166,3 +168,65 @@ def test_one_decision_is_that_of_the_reference_implementation():
             sim.do_step()
             reference = [sim.get_agent_velocity(i).to_tuple() for i in range(10)]
             assert field.velocities(k * 0.5) == pytest.approx(np.array(reference), abs=3e-5)
+
+
+STEP, DISC = 0.25, 0.3  # of CrowdNav [s, m]
+
+
+def crowdnav_start(seed):
+    """Starts and goals (6, 2) of one of its test cases, robot first."""
+    rng = np.random.RandomState(seed)
+    starts, goals = [np.array([0.0, -4.0])], [np.array([0.0, 4.0])]
+    while len(starts) < 6:
+        angle, *noise = rng.random_sample(3).tolist()
+        angle *= 2.0 * np.pi
+        start = 4.0 * np.array([np.cos(angle), np.sin(angle)]) + np.array(noise) - 0.5
+        if min(hypot(*(start - other)) for other in starts + goals) >= 2.0 * DISC + 0.2:
+            starts.append(start)
+            goals.append(-start)
+    return np.array(starts), np.array(goals)
+
+
+def crowdnav_decision(i, positions, velocities, goal):
+    """Velocity of disc `i` by ORCA; the people do not see the robot."""
+    offsets, relative = positions - positions[i], velocities[i] - velocities
+    others = [j for j in range(6) if j != i and (i == 0 or j != 0)]
+    planes = [
+        orca_plane(
+            offsets[j].tolist(), relative[j].tolist(), velocities[i].tolist(),
+            radius=2.0 * (DISC + 0.01), horizon=5.0, footstep=STEP, responsibility=0.5,
+        )
+        for j in sorted(others, key=lambda j: hypot(*offsets[j]))
+    ]  # fmt: skip
+    preferred = goal - positions[i]
+    return solve(planes, 0, (preferred / max(1.0, hypot(*preferred))).tolist(), 1.0)
+
+
+def crowdnav_episode(seed):
+    """Time of arrival of the robot; NaN after a collision, infinite after the time limit."""
+    positions, goals = crowdnav_start(seed)
+    velocities = np.zeros((6, 2))
+    for step in range(1, 98):
+        decided = np.array(
+            [crowdnav_decision(i, positions, velocities, goals[i]) for i in range(6)]
+        )
+        # It detects collisions of the next position of the robot with the old velocities of people.
+        gap, moved = positions[1:] - positions[0], STEP * (velocities[1:] - decided[0])
+        part = -(gap * moved).sum(axis=1) / np.maximum((moved * moved).sum(axis=1), 1e-12)
+        nearest = gap + np.clip(part, 0.0, 1.0)[:, None] * moved
+        positions, velocities = positions + STEP * decided, decided
+        if (np.hypot(*nearest.T) < 2.0 * DISC).any():
+            return np.nan
+        if hypot(*(positions[0] - goals[0])) < DISC:
+            return STEP * step
+    return np.inf
+
+
+@pytest.mark.slow
+def test_orca_reaches_the_published_row():
+    """Chen et al., ICRA 2019, invisible robot: success 0.43, collision 0.57, 10.86 s."""
+    times = np.array([crowdnav_episode(1000 + case) for case in range(500)])
+    arrived = times[np.isfinite(times)]
+    assert len(arrived) / 500 == pytest.approx(0.43, abs=0.005)
+    assert np.isnan(times).mean() == pytest.approx(0.57, abs=0.005)
+    assert arrived.mean() == pytest.approx(10.86, abs=0.005)

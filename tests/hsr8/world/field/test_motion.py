@@ -6,7 +6,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from hsr8.scenario.track import Track
-from hsr8.world.field.motion import Appearing, Circle, Line, Movers, Passage, Shuttle, pace
+from hsr8.world.field.motion import ALWAYS, Circle, Line, Movers, Passage, Shuttle, pace
 from hsr8.world.field.wander import CORNERS, MIN_BEND_RADIUS, draw_wander
 
 coordinate = st.floats(-3.0, 3.0)
@@ -14,6 +14,9 @@ point = st.tuples(coordinate, coordinate)
 speed = st.floats(0.02, 0.5)
 times = st.floats(0.0, 600.0)
 PASSAGE = Passage((-1.0, 0.0), (1.0, 1.5), 0.25, depart=4.0)
+EXTENT = 1.4
+LAWS = [draw_wander(np.random.default_rng(k), (0.5, -0.2), EXTENT, 0.12) for k in range(12)]
+laws = st.sampled_from(LAWS)
 
 
 @st.composite
@@ -87,15 +90,24 @@ TRACK = Track(
 )
 
 
-@given(st.lists(st.sampled_from([TRACK, Appearing(TRACK, 3.0), PASSAGE]), max_size=5), times)
+@given(st.lists(st.sampled_from([TRACK, PASSAGE, *LAWS[:2]]), min_size=1, max_size=5), times)
 def test_recorded_movers_are_evaluated_with_the_others(chosen, time):
-    movers = Movers(tuple(chosen))
+    movers = Movers(chosen)
     for instant in (time, 0.01 * time):
         positions = np.array([motion.position(instant) for motion in chosen]).reshape(-1, 2)
         velocities = np.array([motion.velocity(instant) for motion in chosen]).reshape(-1, 2)
         assert movers.positions(instant) == pytest.approx(positions, abs=1e-9)
         assert movers.velocities(instant) == pytest.approx(velocities, abs=1e-9)
     assert movers.top_speeds().tolist() == [pace(motion) for motion in chosen]
+
+
+@given(motions, times, st.floats(0.1, 600.0))
+def test_a_mover_is_away_outside_its_interval(motion, time, begin):
+    movers = Movers([motion, motion], [ALWAYS, (begin, 2.0 * begin)], away=50.0)
+    (nominal, appearing), (velocity, shown) = movers.positions(time), movers.velocities(time)
+    present = begin <= time + 1e-6 < 2.0 * begin
+    assert appearing - nominal == pytest.approx((0.0, 0.0) if present else (50.0, 0.0))
+    assert shown == pytest.approx(present * velocity)
 
 
 @given(motions, times)
@@ -137,7 +149,6 @@ def _to_end(motion: Shuttle, time: float) -> float:
 def test_a_mover_goes_at_its_pace_or_rests(motion, time):
     speed = hypot(*motion.velocity(time))
     assert speed == pytest.approx(pace(motion)) or speed == 0.0
-    assert pace(Appearing(motion, time)) == pace(motion)
 
 
 def test_a_passage_waits_moves_and_stays():
@@ -147,11 +158,6 @@ def test_a_passage_waits_moves_and_stays():
     assert PASSAGE.position(4.0 + 10.0) == pytest.approx(PASSAGE.end)
     assert PASSAGE.position(50.0) == PASSAGE.end
     assert PASSAGE.velocity(50.0) == (0.0, 0.0)
-
-
-EXTENT = 1.4
-LAWS = [draw_wander(np.random.default_rng(k), (0.5, -0.2), EXTENT, 0.12) for k in range(12)]
-laws = st.sampled_from(LAWS)
 
 
 @given(laws, times)
