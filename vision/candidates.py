@@ -20,6 +20,7 @@ from vision.tables import (
     add_rim,
     copy_side,
     count_next_to,
+    mean_height,
     set_obstacle,
 )
 
@@ -80,7 +81,7 @@ def _set_obstacle(
     set_obstacle(candidate, p)
     add_rim(candidate, blob.rims[FOOT], 0, points, 0.0, NEAR)
     if camera_height > p.obstacle_height:
-        add_rim(candidate, blob.rims[HEAD], ANY, points, candidate.height, FAR)
+        add_rim(candidate, blob.rims[HEAD], ANY, points, mean_height(candidate), FAR)
     for j in range(2):
         copy_side(candidate.sides[j], blob.sides[j])
     _set_occluded(candidate, blob, points, p)
@@ -109,7 +110,7 @@ def _set_beacon(
     if not (sides[LEFT].trusted or sides[RIGHT].trusted):
         return False
     middle, height = 0.5 * p.beacon_height, float(p.beacon_height / p.unit)
-    candidate.height = height
+    candidate.height, candidate.height_sigma = height, 0.0
     candidate.prior[0] = p.beacon_radius / p.unit
     candidate.prior[1] = p.known_radius_sigma / p.unit
     candidate.rim_count = 0

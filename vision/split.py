@@ -14,6 +14,7 @@ from vision.envelope import MAX_CELLS, MIN_COLUMNS, Grid, add_envelopes, borders
 from vision.tables import (
     FAR,
     FOOT,
+    HALF_WIDTH,
     HEAD,
     LEFT,
     NEAR,
@@ -22,6 +23,7 @@ from vision.tables import (
     Points,
     add_rim,
     count_next_to,
+    mean_height,
     set_obstacle,
 )
 
@@ -68,7 +70,8 @@ def split(
         stepped = False
         for rim in (FOOT, HEAD):
             first = used + rim * grid[0]
-            drop = view.clearance - (p.obstacle_height / p.unit if rim == HEAD else 0.0)
+            head = (p.obstacle_height - HALF_WIDTH * p.height_sigma) / p.unit
+            drop = view.clearance - (head if rim == HEAD else 0.0)
             if drop < MIN_CLEARANCE:
                 continue
             envelope = points[1][first : first + grid[0]]
@@ -150,7 +153,8 @@ def _set_rim(
     if count_next_to(piece, 0, points) < MIN_COLUMNS:
         return False
     set_obstacle(part, p)
-    add_rim(part, piece, 0, points, part.height * (rim == HEAD), FAR if rim == HEAD else NEAR)
+    height = mean_height(part) * (rim == HEAD)
+    add_rim(part, piece, 0, points, height, FAR if rim == HEAD else NEAR)
     if piece.middle >= 0.0:
         return False
     distance, width = (piece.height - h) / piece.middle, 2.0 * part.prior[0]

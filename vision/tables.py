@@ -1,5 +1,6 @@
 """Tables of one image: blobs with their edges, and candidates of cylinders."""
 
+from math import sqrt
 from typing import Annotated
 
 import numpy as np
@@ -21,6 +22,7 @@ LEFT, RIGHT = range(2)  # sides
 FOOT, HEAD = range(2)  # rims of a blob
 NEAR, FAR = 1.0, -1.0  # half of the circle of a rim
 MAX_RIMS = 3  # a beacon shows three
+HALF_WIDTH = sqrt(3.0)  # of a uniform distribution [standard deviations]
 
 
 @record_class
@@ -72,13 +74,14 @@ class Candidate:
     """Candidate of one cylinder, and its fit."""
 
     upper: int  # blob
-    lower: int  # blob, that of an obstacle the same
+    lower: int  # blob, `upper` for an obstacle
     occluded: bool  # partly
     reported: bool
     sides: Annotated[Records[Side], 2]  # left and right
     rims: Annotated[Records[Rim], MAX_RIMS]  # from low to high
     rim_count: int
-    height: float  # [unit]
+    height: float  # maximum [unit]
+    height_sigma: float  # standard deviation of its uniform prior, 0 if it is known [unit]
     prior: Annotated[Array, 2]  # known or typical radius and its standard deviation [unit]
     # Fit: azimuth of the axis from the heading of the camera [rad], horizontal distance from the
     # camera to the axis [m] and radius [m]; their covariance.
@@ -100,8 +103,15 @@ def copy_side(side: np.record, other: np.record) -> None:
 def set_obstacle(candidate: np.record, p: np.record) -> None:
     """Set height and typical radius of a candidate without rims to those of an obstacle."""
     candidate.height = p.obstacle_height / p.unit
+    candidate.height_sigma = p.height_sigma / p.unit
     candidate.prior[0], candidate.prior[1] = p.radius / p.unit, p.radius_sigma / p.unit
     candidate.rim_count = 0
+
+
+@compiled
+def mean_height(candidate: np.record) -> float:
+    """Return the mean of the prior of a candidate's height [unit]."""
+    return float(candidate.height - HALF_WIDTH * candidate.height_sigma)
 
 
 @compiled

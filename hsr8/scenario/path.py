@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 from compilation import compiled
 
 Array = NDArray[np.float64]
+Point = tuple[float, float]
 
 CLOCK = np.dtype(
     [(name, float) for name in ("offset", "speed", "depart", "unit", "first", "period")]
@@ -52,6 +53,32 @@ class Path:
     period: float = inf
     window: tuple[float, float] = (-inf, inf)
     away: tuple[float, float] = (inf, inf)
+
+
+class Law:
+    """Motion of a mover: along its path, or on a circle, which has none."""
+
+    __slots__ = ()
+
+    @property
+    def path(self) -> Path:
+        """Path of the mover."""
+        raise NotImplementedError
+
+    def position(self, time: float) -> Point:
+        """Return the position at `time` [s]."""
+        x, y = self.state(time)[:2].tolist()
+        return x, y
+
+    def velocity(self, time: float) -> Point:
+        """Return the velocity at `time` [m/s]; where it jumps, the velocity after it."""
+        x, y = self.state(time)[2:4].tolist()
+        return x, y
+
+    def state(self, time: float) -> Array:
+        """Return the state at `time` [s], see `Paths.states` (6,)."""
+        state: Array = Paths([self.path]).states(np.array([time]))[0]
+        return state
 
 
 class Paths:

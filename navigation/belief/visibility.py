@@ -206,7 +206,7 @@ class Viewpoint(NamedTuple):
         position = to_world @ view.position
         position[0] += x
         position[1] += y
-        half, top = 0.5 * view.horizontal_fov, view.model.top
+        half, top = 0.5 * view.horizontal_fov, view.model.min_top
         panoramic = half >= 0.5 * pi
         row = (
             position,
