@@ -74,7 +74,7 @@ class Candidate:
     """Candidate of one cylinder, and its fit."""
 
     upper: int  # blob
-    lower: int  # blob, that of an obstacle the same
+    lower: int  # blob, `upper` for an obstacle
     occluded: bool  # partly
     reported: bool
     sides: Annotated[Records[Side], 2]  # left and right
