@@ -20,7 +20,7 @@ Array = NDArray[np.float64]
 Report = Callable[[str], None]
 
 STEADY_TIME, RANDOM_TIME = 12.0, 60.0  # of a walk, in the time scale of HSR-VIII [s]
-RANDOM_SEEDS = range(16)
+RANDOM_SEEDS = range(8)
 MAX_ERROR = 0.05  # of a steady velocity, relative [1]
 SHRINK = 0.85  # of a speed that failed
 SLOW = 0.5  # of the rehearsed speed, below which a warning names the joint [1]

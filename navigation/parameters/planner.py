@@ -31,7 +31,7 @@ class PaperParameters:
     omega_dist: float = 3.74  # length of the virtual path in (11) [1]
     horizon: Annotated[float, "s"] = 7.5  # maximum time to collision in velocity modification
     min_speed: Annotated[float, "m/s"] = 0.015  # speed below which an obstacle has no virtual path
-    nominal: float = 0.741  # desired speed of a free path, ratio to the maximum [1]
+    nominal: float = 0.75  # desired speed of a free path, ratio to the maximum [1]
 
 
 @dataclass(frozen=True)
