@@ -4,7 +4,7 @@ import csv
 from collections.abc import Sequence
 from pathlib import Path
 
-from hsr8.recording.code_digest import code_digest
+from hsr8.recording.manifest import code_digest
 
 KEYS = ("robot", "walker", "study", "level")
 COLUMNS = (*KEYS, "result", "code")
