@@ -99,7 +99,7 @@ class Page:
         return table
 
     def measured(self) -> list[str]:
-        """Return the table of a CSV file that a study of its own wrote, if the page names one.
+        """Return the table of the CSV file of a separate study, if the page names one.
 
         One row per robot and walker, one column per study and level.
         """

@@ -1,4 +1,4 @@
-"""CSV file of results that a study of its own measures, for a page of `make benchmarks`."""
+"""CSV file of results of a separate study, for a page of `make benchmarks`."""
 
 import csv
 from collections.abc import Sequence
