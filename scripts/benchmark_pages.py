@@ -101,21 +101,22 @@ class Page:
     def measured(self) -> list[str]:
         """Return the table of the CSV file of a separate study, if the page names one.
 
-        One row per robot and walker, one column per study and level.
+        One row per study and level, one column per robot and walker.
         """
         page = self.table
         file = self.data.parent / page.get("measured", "")
         if not file.is_file():
             return []
-        cells = read_results(file)
-        levels = list(dict.fromkeys((cell["study"], cell["level"]) for cell in cells))
-        table = _header(["", *(f"{study}, {level}" for study, level in levels)])
-        for name in dict.fromkeys((cell["robot"], cell["walker"]) for cell in cells):
-            of = {(c["study"], c["level"]): c for c in cells if (c["robot"], c["walker"]) == name}
-            row = (of[level]["result"] if level in of else "" for level in levels)
-            table.append(f"| {', '.join(name)} | {' | '.join(row)} |")
-        codes = ", ".join(dict.fromkeys(cell["code"] for cell in cells))
-        return [page["measured_text"], "", *table, "", f"Code {codes}.", ""]
+        cells = {
+            ((c["study"], c["level"]), (c["robot"], c["walker"])): c for c in read_results(file)
+        }
+        walkers = list(dict.fromkeys(walker for _, walker in cells))
+        table = _header(["", *(", ".join(walker) for walker in walkers)])
+        for level in dict.fromkeys(level for level, _ in cells):
+            results = (cells[level, w]["result"] if (level, w) in cells else "" for w in walkers)
+            table.append(f"| {' = '.join(level)} | {' | '.join(results)} |")
+        codes = ", ".join(dict.fromkeys(cell["code"] for cell in cells.values()))
+        return [page["measured_text"], "", *table, "", f"Code {codes}. {page['measured_by']}", ""]
 
     def filled(self, text: str, runs: Sequence[Run]) -> str:
         """Return a text with its ``{ARM.COLUMN}``, with ``@LEVEL`` or ``/SCENARIO`` after the arm.
