@@ -87,7 +87,9 @@ class CameraModel:
         yaw_sigma: standard deviation of the camera's yaw [rad]. All bearings of a frame share
             this error; their covariances include it.
         blind_above: rate of the camera above which its images show nothing [rad/s].
-        top: height of the obstacles, whose tops are seen from above; 0: only the foot counts [m].
+        top: maximum height of the obstacles, whose tops are seen from above; 0: only the foot
+            counts [m].
+        min_top: their minimum height: an image of that point or the foot shows every obstacle [m].
         seam: height at which the two colours of a beacon meet [m].
         shadow: distance from the camera up to which the robot's own body hides the floor, in equal
             steps of the bearing in R, from 0 to the left (n,) [m].
@@ -98,6 +100,7 @@ class CameraModel:
     yaw_sigma: float = 0.0
     blind_above: float = inf
     top: float = 0.0
+    min_top: float = 0.0
     seam: float = 0.30
     shadow: Array = field(default_factory=partial(np.zeros, 1))
 

@@ -112,7 +112,7 @@ def psi_obstacle(
 def _psi_ob(
     tracks: Rows, position: Array, velocity: Array, omega: float, gamma: float, nearest: float
 ) -> Array:
-    """Return psi_ob of records of type `TRACK`; see `psi_obstacle`."""
+    """Return psi_ob of records of type `TrackRecord`; see `psi_obstacle`."""
     psi = np.empty(len(tracks))
     for i in range(len(tracks)):
         track = tracks[i]
@@ -151,7 +151,7 @@ def attended(tracks: Rows, pose: Array, velocity: Array, reach: float) -> Mask:
     """Return the set O of eqs. (2)-(6): obstacles ahead, or approaching from behind.
 
     Args:
-        tracks: records of type `TRACK` (n,).
+        tracks: records of type `TrackRecord` (n,).
         pose: pose of the robot (3,) [m, m, rad].
         velocity: velocity of the robot in W (2,) [m/s].
         reach: maximum distance [m].

@@ -12,6 +12,7 @@ import pyarrow as pa
 import pyarrow.parquet as pq
 from benchmark_runs import Cell, Definition
 from benchmark_table import COLUMNS, Run, row
+from measured import read_results
 
 ROOT = Path(__file__).resolve().parents[1]
 RESULTS = ROOT / "docs" / "results"
@@ -69,6 +70,7 @@ class Page:
         page = self.table
         lines = [MARK, "", f"# {page['title']}", "", f"**{page['question']}**", ""]
         lines += [self.filled(page["answer"], runs), "", *self.rows(runs), ""]
+        lines += self.measured()
         lines += ["**Setup.** " + page["setup"], ""]
         lines += ["**Caveats.**", "", *(f"- {text}" for text in page["caveats"]), ""]
         made_by = f"[Data](data/{self.name}.parquet): `make benchmarks ONLY={self.name}`."
@@ -95,6 +97,26 @@ class Page:
             shown = page.get("labels", {}).get(label, label)
             table.append(f"| {shown} | {' | '.join(cells)} |")
         return table
+
+    def measured(self) -> list[str]:
+        """Return the table of the CSV file of a separate study, if the page names one.
+
+        One row per study and level, one column per robot and walker.
+        """
+        page = self.table
+        file = self.data.parent / page.get("measured", "")
+        if not file.is_file():
+            return []
+        cells = {
+            ((c["study"], c["level"]), (c["robot"], c["walker"])): c for c in read_results(file)
+        }
+        walkers = list(dict.fromkeys(walker for _, walker in cells))
+        table = _header(["", *(", ".join(walker) for walker in walkers)])
+        for level in dict.fromkeys(level for level, _ in cells):
+            results = (cells[level, w]["result"] if (level, w) in cells else "" for w in walkers)
+            table.append(f"| {' = '.join(level)} | {' | '.join(results)} |")
+        codes = ", ".join(dict.fromkeys(cell["code"] for cell in cells.values()))
+        return [page["measured_text"], "", *table, "", f"Code {codes}. {page['measured_by']}", ""]
 
     def filled(self, text: str, runs: Sequence[Run]) -> str:
         """Return a text with its ``{ARM.COLUMN}``, with ``@LEVEL`` or ``/SCENARIO`` after the arm.

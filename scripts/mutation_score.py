@@ -104,9 +104,8 @@ def concerned(module, files):
     imports = re.compile(rf"\b{package}\.{name}\b|from {package} import .*\b{name}\b")
     own = [file for file in files if file.name == f"test_{name}.py"]
     users = [file for file in files if imports.search(file.read_text())]
-    return list(
-        dict.fromkeys([*own, *users, *(f for f in files if own and f.parent == own[0].parent)])
-    )
+    neighbours = [file for file in files if not own or file.parent == own[0].parent]
+    return list(dict.fromkeys([*own, *users, *neighbours]))
 
 
 def main():

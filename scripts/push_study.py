@@ -8,14 +8,15 @@ A push acts on the trunk for 50 ms, at a random phase of the gait and from a ran
 from the seed, while the robot walks forward at 0.1 m/s times its speed scale. A level is the
 impulse over m √(g h), with mass m and height h of the centre of mass in the ready posture, or the
 change of velocity it causes. Sensors are noisy. ``--policy`` takes a network of MuJoCo Playground,
-see `policy_walk`; pushes and seeds are those of the engine. Tune on seeds 0 to 99; the results are
-from seeds 1000 and above.
+see `policy_walk`, with the pushes and seeds of the engine. ``--record`` puts the results into a CSV
+file, see `measured`. Tune on seeds 0 to 99; the results are from seeds 1000 and above.
 """
 
 import argparse
 from collections.abc import Callable
 from dataclasses import dataclass
 from math import pi, sqrt
+from pathlib import Path
 
 from hsr8.errors import Hsr8Error
 from hsr8.robots.loaded import LoadedRobot, load_robot
@@ -27,6 +28,7 @@ from walking.dimension import HSR_VIII, SPEED
 from walking.parameters import CONTROL_PERIOD, GRAVITY
 
 import numpy as np
+from measured import record
 from numpy.typing import NDArray
 from policy_walk import PolicyWalker
 from study import seeds
@@ -41,6 +43,11 @@ PUSH_TIME = 0.05  # duration of a push [s]
 WARM_UP = 3.0  # earliest push [s]
 WATCHED = 3.0  # time after a push in which a fall counts [s]
 TRACKING = 20.0  # duration of a walk of the study `velocity` [s]
+STUDIES = {  # and whether pushes are changes of velocity
+    ("pushes", False): "J / (m √(g h))",
+    ("pushes", True): "Δv [m/s]",
+    ("velocity", False): "v [m/s]",
+}
 
 
 @dataclass(frozen=True, slots=True)
@@ -128,6 +135,7 @@ def main() -> None:
     parser.add_argument("--delta-v", type=numbers, help="levels by change of velocity [m/s]")
     parser.add_argument("--speeds", type=numbers, default=[0.0, 0.1, 0.2, 0.4, 0.6, 0.8])
     parser.add_argument("--noise", type=float, default=1.0, help="multiple of the sensor noise")
+    parser.add_argument("--record", metavar="FILE", help="CSV file to add the results to")
     parser.add_argument("--policy", metavar="FILE", help="learned policy of T1 or G1 (ONNX)")
     parser.add_argument("--set", action="append", default=[], help="KEY=VALUE of a scenario")
     options = parser.parse_args()
@@ -140,24 +148,31 @@ def main() -> None:
             walker, stride = engine_walker(robot, options.set, options.noise)
     except Hsr8Error as error:
         parser.exit(2, f"{error}\n")
-    if options.study == "pushes":
-        for level in options.delta_v or options.levels:
+    walked_by = "policy" if options.policy else "hsr8"
+    kind, results = STUDIES[options.study, options.delta_v is not None], []
+    for level in _levels(options):
+        if options.study == "pushes":
             fallen = push_robot(walker, stride, robot, level, options)
-            total = len(options.seeds)
-            print(
-                f"{robot.name}, level {level:g}: {total - len(fallen)} of {total} survived; "
-                f"fell: {','.join(map(str, fallen)) or '-'}",
-                flush=True,
-            )
-        return
-    for speed in options.speeds:
-        for seed in options.seeds:
-            fell, velocity = walker(speed, TRACKING, seed, ())
-            print(
-                f"{robot.name}, {speed:g} m/s, seed {seed}: {velocity.round(3).tolist()}"
-                f"{', fell' if fell else ''}",
-                flush=True,
-            )
+            result = f"{len(options.seeds) - len(fallen)} of {len(options.seeds)}"
+            note = f"fell: {','.join(map(str, fallen)) or '-'}"
+        else:
+            walks = [walker(level, TRACKING, seed, ()) for seed in options.seeds]
+            velocity = np.mean([velocity for _, velocity in walks], axis=0)
+            fell = sum(fell for fell, _ in walks)
+            result = f"{velocity[0]:.2f}" if not fell else f"{fell} of {len(walks)} fell"
+            note = f"velocity {velocity.round(3).tolist()}"
+        print(f"{robot.name}, {walked_by}, {kind}, {level:g}: {result}; {note}", flush=True)
+        results.append((robot.name, walked_by, kind, f"{level:g}", result))
+    if options.record:
+        record(Path(options.record), results)
+
+
+def _levels(options: argparse.Namespace) -> list[float]:
+    """Return the levels of a study: impulses, changes of velocity, or speeds."""
+    levels: list[float] = (
+        options.speeds if options.study == "velocity" else options.delta_v or options.levels
+    )
+    return levels
 
 
 if __name__ == "__main__":

@@ -81,6 +81,7 @@ PAPER: Ranges = {
     "navigation.planner.paper.k_r": (0.05, 0.3, 1.0),
     "navigation.planner.paper.omega_dist": (2.0, 12.0, 24.0),
     "navigation.planner.paper.horizon": (2.0, 6.0, 10.0),
+    "navigation.planner.paper.nominal": (0.5, 0.75, 1.0),
 }
 PROFILE = ("navigation.profile=paper", "camera.source=omnidirectional")
 

@@ -4,7 +4,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from compilation import compiled
-from vision.tables import BLOB
+from vision.tables import Blob
 
 Table = NDArray[np.int32]
 
@@ -82,7 +82,7 @@ def _measure(runs: Table, parent: Table, min_area: Table, shape: tuple[int, int]
         table[k, BOTTOM] = runs[i, ROW] + 1
         table[k, AREA] += runs[i, STOP] - runs[i, START]
         table[k, RUNS] += 1
-    blobs = np.zeros(count, BLOB)
+    blobs = np.zeros(count, Blob)
     m = first_run = first_extent = 0
     for label in range(1, len(min_area) + 1):
         for k in range(count):
@@ -112,7 +112,7 @@ def find_blobs(labels: Labels, min_area: Table) -> tuple[Rows, Table, Table]:
         min_area: minimum area of blobs of label 1, 2, ... (k,) [pixel].
 
     Returns:
-        Blobs by label, top, left, records of type `BLOB` (n,); the runs of all: row, first and
+        Blobs by label, top, left, records of type `Blob` (n,); the runs of all: row, first and
         last (exclusive) column and label, by row, then column for each blob (m, 4) [pixel]; the
         extents of all [pixel].
 

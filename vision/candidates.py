@@ -9,17 +9,18 @@ from numpy.typing import NDArray
 from compilation import compiled
 from vision.tables import (
     ANY,
-    CANDIDATE,
     FAR,
     FOOT,
     HEAD,
     LEFT,
     NEAR,
     RIGHT,
+    Candidate,
     Points,
     add_rim,
     copy_side,
     count_next_to,
+    mean_height,
     set_obstacle,
 )
 
@@ -33,10 +34,10 @@ MIN_SPAN = 1e-3  # added to the span of a side for its weight [1]
 def candidates_of(
     blobs: Rows, points: Points, beacon: Bools, camera_height: float, p: np.record
 ) -> Rows:
-    """Return the candidates of an image, obstacles first, records of type `CANDIDATE`.
+    """Return the candidates of an image, obstacles first, records of type `Candidate`.
 
     Args:
-        blobs: records of type `BLOB`.
+        blobs: records of type `Blob`.
         points: points of their rims.
         beacon: whether each colour class is one of beacons, by label.
         camera_height: above the floor [m].
@@ -47,7 +48,7 @@ def candidates_of(
         count += not beacon[blobs[i].label]
         for j in range(len(blobs)):
             count += i != j and _stacked(blobs[i], blobs[j], beacon)
-    candidates = np.zeros(count, CANDIDATE)
+    candidates = np.zeros(count, Candidate)
     count = 0
     for k in range(len(blobs)):
         if not beacon[blobs[k].label]:
@@ -80,7 +81,7 @@ def _set_obstacle(
     set_obstacle(candidate, p)
     add_rim(candidate, blob.rims[FOOT], 0, points, 0.0, NEAR)
     if camera_height > p.obstacle_height:
-        add_rim(candidate, blob.rims[HEAD], ANY, points, candidate.height, FAR)
+        add_rim(candidate, blob.rims[HEAD], ANY, points, mean_height(candidate), FAR)
     for j in range(2):
         copy_side(candidate.sides[j], blob.sides[j])
     _set_occluded(candidate, blob, points, p)
@@ -109,7 +110,7 @@ def _set_beacon(
     if not (sides[LEFT].trusted or sides[RIGHT].trusted):
         return False
     middle, height = 0.5 * p.beacon_height, float(p.beacon_height / p.unit)
-    candidate.height = height
+    candidate.height, candidate.height_sigma = height, 0.0
     candidate.prior[0] = p.beacon_radius / p.unit
     candidate.prior[1] = p.known_radius_sigma / p.unit
     candidate.rim_count = 0

@@ -93,7 +93,7 @@ def _rim_distance(candidate: np.record, h: float) -> float:
     if lowest < 0:
         return 0.0
     low, high = rims[lowest], rims[highest]
-    if low.middle > FAR_SLOPE and high.middle > low.middle:
+    if low.middle > FAR_SLOPE and high.middle > low.middle and candidate.height_sigma == 0.0:
         # Far away the difference of the slopes is more robust against a tilt error.
         return float(min((high.height - low.height) / (high.middle - low.middle), MAX_DISTANCE))
     for j in range(lowest, highest + 1):
@@ -130,7 +130,7 @@ def guess(candidate: np.record, h: float) -> tuple[float, float]:
     """Set the first cylinder of a candidate.
 
     Args:
-        candidate: record of type `CANDIDATE`.
+        candidate: record of type `Candidate`.
         h: height of the camera [unit].
 
     Returns:

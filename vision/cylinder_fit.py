@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 from compilation import compiled
 from vision.cylinder import MAX_DISTANCE, MIN_CLEARANCE, MIN_DISTANCE, guess
 from vision.outline import independent
-from vision.tables import ANY, MAX_RIMS, Points
+from vision.tables import ANY, MAX_RIMS, Points, mean_height
 
 Array = NDArray[np.float64]
 Bools = NDArray[np.bool_]
@@ -79,6 +79,42 @@ def _keep_inner(
 
 
 @compiled
+def _unknown(candidate: np.record, j: int) -> bool:
+    """Return whether a rim is the head of an obstacle of unknown height."""
+    return bool(candidate.height_sigma > 0.0 and candidate.rims[j].height > 0.0)
+
+
+@compiled
+def _add_shape(
+    shape: Array, products: Array, total: Array, count: int, variance: float, unknown: bool
+) -> None:
+    """Add the deviations of the points of a rim from their mean to the normal equations.
+
+    An unknown height scales all slopes of a head, whose shape then measures nothing along its own
+    slopes.
+
+    Args:
+        shape: matrix and right side (3, 4).
+        products: sums of products of azimuth, distance, radius, slope and residual (4, 5).
+        total: sums (5,).
+        count: number of points.
+        variance: variance of the deviation of a point.
+        unknown: whether the height is unknown.
+    """
+    for a in range(5):
+        for b in range(4):
+            products[b, a] -= total[b] * total[a] / count
+    unknown = unknown and products[3, 3] > 0.0
+    for b in range(3):
+        for a in range(4):
+            column = a if a < 3 else 4
+            deviation = products[b, column]
+            if unknown:
+                deviation -= products[3, b] * products[3, column] / products[3, 3]
+            shape[b, a] += deviation / variance
+
+
+@compiled
 def _linearise(
     H: Array,
     residual: Array,
@@ -102,7 +138,7 @@ def _linearise(
     H[:] = 0.0
     residual[:] = 0.0
     shape[:] = 0.0
-    row, total, products = np.empty(4), np.empty(4), np.empty((3, 4))
+    row, total, products = np.empty(5), np.empty(5), np.empty((4, 5))
     reach, half = sqrt(d * d - r * r), asin(r / d)
     residual[0] = candidate.sides[0].azimuth - theta - half
     residual[1] = candidate.sides[1].azimuth - theta + half
@@ -134,20 +170,32 @@ def _linearise(
             row[0] = gain * d * (sine - lean * cosine)
             row[1] = gain * (cosine + lean * sine)
             row[2] = -gain * sign / c
-            row[3] = point_residual[i]
+            row[3], row[4] = predicted, point_residual[i]
             count += 1
-            for a in range(4):
+            for a in range(5):
                 total[a] += row[a]
-                for b in range(3):
+                for b in range(4):
                     products[b, a] += row[b] * row[a]
         if count:
-            for a in range(4):
-                for b in range(3):
-                    deviation = products[b, a] - total[b] * total[a] / count
-                    shape[b, a] += deviation / point_variance[j]
+            _add_shape(shape, products, total, count, point_variance[j], _unknown(candidate, j))
             k = SIDES + j
             H[k, 0], H[k, 1], H[k, 2] = total[0] / count, total[1] / count, total[2] / count
-            residual[k] = total[3] / count
+            residual[k] = total[4] / count
+
+
+@compiled
+def _raise_head(candidate: np.record, residual: Array) -> None:
+    """Move a head of unknown height to its rim; its mean residual becomes that of the prior.
+
+    The height of the head scales the shape of the rim. Its mean slope measures the distance by the
+    prior of the height alone.
+    """
+    run, high = candidate.cylinder[1] + candidate.cylinder[2], candidate.height
+    for j in range(candidate.rim_count):
+        if _unknown(candidate, j):
+            rim, mean = candidate.rims[j], mean_height(candidate)
+            residual[SIDES + j] += (rim.height - mean) / run
+            rim.height = min(max(mean + residual[SIDES + j] * run, 2.0 * mean - high), high)
 
 
 @compiled
@@ -186,6 +234,9 @@ def _covariance(
         G[k, 0], G[k, 1], G[k, 3] = -lift * c, lift * s, -1.0 / d
         rough = slope * roundness * r / d
         R[k, k] = mean_sigma[j] * mean_sigma[j] + rough * rough + lift * lift * smear[1]
+        if _unknown(candidate, j):
+            unsure = candidate.height_sigma / (d + r)
+            R[k, k] += unsure * unsure
     R[PRIOR, PRIOR] = candidate.prior[1] * candidate.prior[1]
     R[SPAN, SPAN] = span_sigma * span_sigma if span_sigma > 0.0 else 1.0
     for i in range(PRIOR):
@@ -270,9 +321,9 @@ def fit(candidates: Rows, points: Points, view: np.record, p: np.record) -> None
     """Set the least-squares cylinder of each candidate.
 
     Args:
-        candidates: records of type `CANDIDATE` with at least one rim or one trusted side.
+        candidates: records of type `Candidate` with at least one rim or one trusted side.
         points: points of their rims.
-        view: record of type `VIEW`.
+        view: record of type `View`.
         p: parameters.
     """
     n = len(points[0])
@@ -299,6 +350,7 @@ def fit(candidates: Rows, points: Points, view: np.record, p: np.record) -> None
             )
             for j in range(MAX_RIMS):
                 means[j] = residual[SIDES + j]
+            _raise_head(candidate, residual)
             # A side visible beyond foot or head is not an edge of the cylinder.
             reach = sqrt(x[1] * x[1] - x[2] * x[2])
             for j in range(SIDES):

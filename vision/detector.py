@@ -140,6 +140,7 @@ def parameter_record(parameters: VisionParameters, sizes: Sizes = SIZES) -> Rows
     return record(
         parameters,
         obstacle_height=sizes.top,
+        height_sigma=sizes.height_sigma,
         min_radius=sizes.obstacle_radius[0],
         max_radius=sizes.obstacle_radius[1],
         beacon_height=sizes.beacon_height,

@@ -34,10 +34,10 @@ def add_envelopes(
     Args:
         points: output; the label is 0 where the envelope is an edge of an object, else `OUTSIDE`.
         first: index of the first point.
-        blob: record of type `BLOB`, traced.
+        blob: record of type `Blob`, traced.
         runs: runs of all blobs.
         padded: labels of the image with a border of `OUTSIDE` one pixel wide (h + 2, w + 2).
-        view: record of type `VIEW`.
+        view: record of type `View`.
     """
     left, top, right, bottom = blob.box
     mask = np.zeros((bottom - top, right - left), np.bool_)

@@ -40,12 +40,12 @@ def locate(
         extents: extents of all blobs.
         padded: labels of the image with a border of `OUTSIDE` one pixel wide (h + 2, w + 2).
         masked: whether there may be a self mask.
-        views: record of type `VIEW` (1,).
+        views: record of type `View` (1,).
         beacon: whether each colour class is one of beacons, by label.
         parameters: parameters (1,).
 
     Returns:
-        Candidates and parts, records of type `CANDIDATE`, of which some are reported.
+        Candidates and parts, records of type `Candidate`, of which some are reported.
     """
     view, p = views[0], parameters[0]
     if masked:

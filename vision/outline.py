@@ -145,10 +145,10 @@ def trace(
     vertical lines in the image decides which two of them are the sides.
 
     Args:
-        blobs: records of type `BLOB` (n,).
+        blobs: records of type `Blob` (n,).
         extents: extents of the blobs.
         padded: labels of the image with a border of `OUTSIDE` one pixel wide (h + 2, w + 2).
-        view: record of type `VIEW`.
+        view: record of type `View`.
         edge_sigma: standard deviation of one point of an edge [pixel].
     """
     points, outer = np.empty((len(extents), 3)), np.empty(len(extents), np.uint8)

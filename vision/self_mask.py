@@ -45,7 +45,7 @@ def apply_self_mask(
     Args:
         parts: parts of the body.
         labels: labels of the image (h, w).
-        view: camera of the image, a record of type `VIEW` (1,).
+        view: camera of the image, a record of type `View` (1,).
         label: label of the self mask.
 
     Returns:
@@ -79,7 +79,7 @@ def silhouette(centres: Array, radii: Array, views: Rows) -> Array:
     Args:
         centres: centres of the spheres (n, 3) [m].
         radii: radii of the spheres (n,) [m].
-        views: camera of the image, a record of type `VIEW` (1,).
+        views: camera of the image, a record of type `View` (1,).
     """
     position, rotation = views[0].position, views[0].rotation
     middle, focal = views[0].middle, views[0].focal

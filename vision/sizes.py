@@ -28,6 +28,12 @@ class Sizes:
         return self.obstacle_height[1]
 
     @property
+    def height_sigma(self) -> float:
+        """Standard deviation of the uniform prior of an obstacle's height [m]."""
+        low, high = self.obstacle_height
+        return (high - low) / sqrt(12.0)
+
+    @property
     def radius_prior(self) -> Range:
         """Mean and standard deviation of the uniform prior of an obstacle's radius [m]."""
         low, high = self.obstacle_radius

@@ -12,16 +12,18 @@ from compilation import compiled
 from vision.cylinder import MIN_CLEARANCE, MIN_DISTANCE
 from vision.envelope import MAX_CELLS, MIN_COLUMNS, Grid, add_envelopes, borders
 from vision.tables import (
-    CANDIDATE,
     FAR,
     FOOT,
+    HALF_WIDTH,
     HEAD,
     LEFT,
     NEAR,
     RIGHT,
+    Candidate,
     Points,
     add_rim,
     count_next_to,
+    mean_height,
     set_obstacle,
 )
 
@@ -44,21 +46,21 @@ def split(
     """Segment merged blobs.
 
     Args:
-        candidates: records of type `CANDIDATE`.
+        candidates: records of type `Candidate`.
         merged: indices of those that are merged blobs (n,).
-        blobs: records of type `BLOB`, traced.
+        blobs: records of type `Blob`, traced.
         runs: runs of all blobs.
         padded: labels of the image with a border of `OUTSIDE` one pixel wide (h + 2, w + 2).
-        view: record of type `VIEW`.
+        view: record of type `View`.
         p: parameters.
 
     Returns:
-        Parts, records of type `CANDIDATE`; the points of their rims; the number of parts of each
+        Parts, records of type `Candidate`; the points of their rims; the number of parts of each
         blob (n,), 0 where the envelopes have no steps.
     """
     n = len(merged)
     size = 2 * MAX_CELLS * n
-    parts = np.empty(size // MIN_COLUMNS, CANDIDATE)
+    parts = np.empty(size // MIN_COLUMNS, Candidate)
     points = np.empty(size), np.empty(size), np.empty(size, np.uint8)
     counts = np.zeros(n, np.int64)
     count = used = 0
@@ -68,7 +70,8 @@ def split(
         stepped = False
         for rim in (FOOT, HEAD):
             first = used + rim * grid[0]
-            drop = view.clearance - (p.obstacle_height / p.unit if rim == HEAD else 0.0)
+            head = (p.obstacle_height - HALF_WIDTH * p.height_sigma) / p.unit
+            drop = view.clearance - (head if rim == HEAD else 0.0)
             if drop < MIN_CLEARANCE:
                 continue
             envelope = points[1][first : first + grid[0]]
@@ -101,7 +104,7 @@ def _set_sides(
     """Set the sides of a part from the ends of its rim; return whether one of them is visible.
 
     Args:
-        part: record of type `CANDIDATE`, of which the points of the rim are set.
+        part: record of type `Candidate`, of which the points of the rim are set.
         rim: `FOOT` or `HEAD`.
         blob: blob of the part.
         first: first point of the envelope.
@@ -134,7 +137,7 @@ def _set_rim(
     """Set the rim of a part whose sides are set; return whether enough of it is visible.
 
     Args:
-        part: record of type `CANDIDATE`.
+        part: record of type `Candidate`.
         rim: `FOOT` or `HEAD`.
         first: first point of the envelope.
         grid: columns of the envelope.
@@ -150,7 +153,8 @@ def _set_rim(
     if count_next_to(piece, 0, points) < MIN_COLUMNS:
         return False
     set_obstacle(part, p)
-    add_rim(part, piece, 0, points, part.height * (rim == HEAD), FAR if rim == HEAD else NEAR)
+    height = mean_height(part) * (rim == HEAD)
+    add_rim(part, piece, 0, points, height, FAR if rim == HEAD else NEAR)
     if piece.middle >= 0.0:
         return False
     distance, width = (piece.height - h) / piece.middle, 2.0 * part.prior[0]

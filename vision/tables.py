@@ -1,12 +1,16 @@
 """Tables of one image: blobs with their edges, and candidates of cylinders."""
 
+from math import sqrt
+from typing import Annotated
+
 import numpy as np
 from numpy.typing import NDArray
 
 from compilation import compiled
-from compilation.record import record_type
+from compilation.record import Records, record_class
 
 Array = NDArray[np.float64]
+Ints = NDArray[np.int64]
 Labels = NDArray[np.uint8]
 Points = tuple[Array, Array, Labels]
 """Points of rims: azimuth from the heading of the camera (n,) [rad], slope (n,) [1] and label of
@@ -18,78 +22,73 @@ LEFT, RIGHT = range(2)  # sides
 FOOT, HEAD = range(2)  # rims of a blob
 NEAR, FAR = 1.0, -1.0  # half of the circle of a rim
 MAX_RIMS = 3  # a beacon shows three
+HALF_WIDTH = sqrt(3.0)  # of a uniform distribution [standard deviations]
 
-SIDE = record_type(
-    azimuth=float,
-    sigma=float,
-    points=float,
-    low=float,
-    high=float,
-    trusted=bool,
-    occluded=bool,
-)
-"""One side edge: azimuth from the heading of the camera, standard deviation of one point of it
-[rad], number of independent points averaged; minimum and maximum slope of the visible edge [1];
-whether it is an edge of the object, neither of an occluding object nor of the image, and whether it
-is partly occluded by a nearer object."""
 
-RIM = record_type(
-    first=int,
-    last=int,
-    sigma=float,
-    outer=int,
-    height=float,
-    half=float,
-    middle=float,
-)
-"""Lower or upper edge of a blob, without its ends and cut parts: first and last (exclusive) of its
-points and standard deviation of one slope [1]. Of the rim of a candidate also the outer label of
-the points in use or `ANY`, height above the floor [unit], `NEAR` or `FAR`, and the slope of the
-middle point [1]."""
+@record_class
+class Side:
+    """One side edge of a blob."""
 
-BLOB = record_type(
-    box=(int, 4),
-    label=int,
-    first_run=int,
-    last_run=int,
-    first_extent=int,
-    cut=bool,
-    azimuth=(float, 2),
-    slope=(float, 2),
-    sides=(SIDE, 2),
-    rims=(RIM, 2),
-)
-"""Connected component of one colour class.
+    azimuth: float  # from the heading of the camera [rad]
+    sigma: float  # standard deviation of one point of it [rad]
+    points: float  # number of independent points averaged
+    low: float  # minimum slope of the visible edge [1]
+    high: float  # maximum slope of the visible edge [1]
+    trusted: bool  # an edge of the object, neither of an occluding object nor of the image
+    occluded: bool  # partly occluded by a nearer object
 
-Box: left, top, right, bottom pixel, right and bottom exclusive. Label of the colour class.
-First and last (exclusive) of its runs. First of its extents: first and last (exclusive)
-column of each row, then first and last (exclusive) row of each column [pixel]. Whether it touches
-the border of the image or the self mask. Minimum and maximum azimuth from the heading of the camera
-[rad] and slope [1] of its edges. Left and right side; lower and upper rim."""
 
-CANDIDATE = record_type(
-    upper=int,
-    lower=int,
-    occluded=bool,
-    reported=bool,
-    sides=(SIDE, 2),
-    rims=(RIM, MAX_RIMS),
-    rim_count=int,
-    height=float,
-    prior=(float, 2),
-    cylinder=(float, 3),
-    covariance=(float, 3, 3),
-    misfit=float,
-    outlier_fraction=float,
-)
-"""Candidate of one cylinder, and its fit.
+@record_class
+class Rim:
+    """Lower or upper edge of a blob or candidate, without its ends and cut parts."""
 
-Upper and lower blob, the same for an obstacle. Whether it is partly occluded, and whether it is
-reported. Left and right side; rims from low to high, and their number; height [unit]; known or
-typical radius and its standard deviation [unit]. Fit: azimuth of the axis from the heading of the
-camera [rad], horizontal distance from the camera to the axis [m] and radius [m]; their covariance;
-sum of squared normalized residuals of the edges [1]; fraction of outliers among the points of the
-rims [1]."""
+    first: int  # of its points
+    last: int  # of its points, exclusive
+    sigma: float  # standard deviation of one slope [1]
+    outer: int  # of a candidate: outer label of the points in use, or `ANY`
+    height: float  # of a candidate: above the floor [unit]
+    half: float  # of a candidate: `NEAR` or `FAR`
+    middle: float  # of a candidate: slope of the middle point [1]
+
+
+@record_class
+class Blob:
+    """Connected component of one colour class."""
+
+    box: Annotated[Ints, 4]  # left, top, right, bottom, right and bottom exclusive [pixel]
+    label: int  # of the colour class
+    first_run: int
+    last_run: int  # exclusive
+    # First of its extents: first and last (exclusive) column of each row, then first and last
+    # (exclusive) row of each column [pixel].
+    first_extent: int
+    cut: bool  # whether it touches the border of the image or the self mask
+    azimuth: Annotated[Array, 2]  # minimum and maximum, from the heading of the camera [rad]
+    slope: Annotated[Array, 2]  # minimum and maximum of its edges [1]
+    sides: Annotated[Records[Side], 2]  # left and right
+    rims: Annotated[Records[Rim], 2]  # lower and upper
+
+
+@record_class
+class Candidate:
+    """Candidate of one cylinder, and its fit."""
+
+    upper: int  # blob
+    lower: int  # blob, `upper` for an obstacle
+    occluded: bool  # partly
+    reported: bool
+    sides: Annotated[Records[Side], 2]  # left and right
+    rims: Annotated[Records[Rim], MAX_RIMS]  # from low to high
+    rim_count: int
+    height: float  # maximum [unit]
+    height_sigma: float  # standard deviation of its uniform prior, 0 if it is known [unit]
+    prior: Annotated[Array, 2]  # known or typical radius and its standard deviation [unit]
+    # Fit: azimuth of the axis from the heading of the camera [rad], horizontal distance from the
+    # camera to the axis [m] and radius [m]; their covariance.
+    cylinder: Annotated[Array, 3]
+    covariance: Annotated[Array, 3, 3]
+    misfit: float  # sum of squared normalized residuals of the edges [1]
+    outlier_fraction: float  # of the points of the rims [1]
 
 
 @compiled
@@ -104,8 +103,15 @@ def copy_side(side: np.record, other: np.record) -> None:
 def set_obstacle(candidate: np.record, p: np.record) -> None:
     """Set height and typical radius of a candidate without rims to those of an obstacle."""
     candidate.height = p.obstacle_height / p.unit
+    candidate.height_sigma = p.height_sigma / p.unit
     candidate.prior[0], candidate.prior[1] = p.radius / p.unit, p.radius_sigma / p.unit
     candidate.rim_count = 0
+
+
+@compiled
+def mean_height(candidate: np.record) -> float:
+    """Return the mean of the prior of a candidate's height [unit]."""
+    return float(candidate.height - HALF_WIDTH * candidate.height_sigma)
 
 
 @compiled
@@ -126,7 +132,7 @@ def add_rim(
     """Add a rim of a blob to a candidate, unless it has no points next to a label.
 
     Args:
-        candidate: record of type `CANDIDATE`.
+        candidate: record of type `Candidate`.
         rim: rim of a blob.
         label: outer label of the points to use, `ANY` for all.
         points: points of the rims.

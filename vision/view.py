@@ -6,39 +6,37 @@ measured in (azimuth, slope).
 """
 
 from math import atan2, cos, pi, sin, sqrt
+from typing import Annotated
 
 import numpy as np
 from numpy.typing import NDArray
 
 from compilation import compiled
-from compilation.record import record_type
+from compilation.record import record_class
 from vision.camera import CameraPose, PinholeCamera
 from vision.parameters import PoseParameters
 
+Array = NDArray[np.float64]
 Rows = NDArray[np.record]
 
 MIN_DEPTH = 1e-3  # of a direction in front of the camera
 MIN_RUN = 1e-6  # minimum horizontal part of a ray
 EXACT = PoseParameters(0.0, 0.0, 0.0, 0.0)
 
-VIEW = record_type(
-    position=(float, 3),
-    rotation=(float, 3, 3),
-    middle=(float, 2),
-    focal=float,
-    heading=float,
-    ahead=(float, 2),
-    clearance=float,
-    variance=(float, 4),
-    smear=(float, 2),
-)
-"""Camera of one image.
 
-Position in R [m]; R_RC, columns right, down, forward; middle of the image (u, v) [pixel] and focal
-length [pixel]; heading in R [rad], its cosine and sine; height above the floor [unit of length].
-Variances of tilt, roll, yaw [rad²] and height [unit²], and of the motion blur by pan and tilt
-[rad²].
-"""
+@record_class
+class View:
+    """Camera of one image."""
+
+    position: Annotated[Array, 3]  # in R [m]
+    rotation: Annotated[Array, 3, 3]  # R_RC, columns right, down, forward
+    middle: Annotated[Array, 2]  # of the image (u, v) [pixel]
+    focal: float  # focal length [pixel]
+    heading: float  # in R [rad]
+    ahead: Annotated[Array, 2]  # cosine and sine of the heading
+    clearance: float  # height above the floor [unit of length]
+    variance: Annotated[Array, 4]  # of tilt, roll, yaw [rad²] and height [unit²]
+    smear: Annotated[Array, 2]  # variance of the motion blur by pan and tilt [rad²]
 
 
 def view_of(
@@ -48,7 +46,7 @@ def view_of(
     shutter: float = 0.0,
     unit: float = 1.0,
 ) -> Rows:
-    """Return the camera of one image, a record of type `VIEW` (1,).
+    """Return the camera of one image, a record of type `View` (1,).
 
     Args:
         camera: intrinsics of the camera.
@@ -80,7 +78,7 @@ def view_of(
         variance,
         smear,
     )
-    return np.array([row], VIEW)
+    return np.array([row], View)
 
 
 @compiled

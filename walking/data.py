@@ -225,6 +225,7 @@ class Placing:
     applied: Twist  # velocity that the footsteps follow
     moved_x: float  # shift of the landing by a capture step [m]
     moved_y: float  # [m]
+    shift: Planar  # of the present landing against the plan [m]
 
 
 # Body
@@ -291,8 +292,7 @@ class Corrections:
     pose: Pose  # last pose by odometry
     planned: Pose  # last planned pose of the pelvis
     slip: Planar  # planned minus measured displacement of the cycle, forward and left [m]
-    ticks: int  # of the cycle [1]
-    whole: bool  # whether the cycle is undisturbed so far
+    ticks: int  # of the cycle, -1 for a discarded one [1]
     goal: Planar  # of the CoM offset [m]
     error_sum: Planar  # of the centre of pressure [m]
     errors: int  # their number, -1 for a discarded cycle [1]

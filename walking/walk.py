@@ -186,7 +186,7 @@ def set_setpoints(
     measured: Array,
     setpoint: Array,
 ) -> None:
-    """Set the setpoints of the servos.
+    """Set the setpoints of the servos; a fallen robot is compliant, only damping acts.
 
     Args:
         walks: state (1,).
@@ -199,6 +199,9 @@ def set_setpoints(
         setpoint: set (n,) [rad].
     """
     walk, robot = walks[0], robots[0]
+    if is_fallen(walk.body, robot):
+        setpoint[:] = measured
+        return
     gait = walk.plan.gait
     left, right = foothold(gait.footholds[LEFT]), foothold(gait.footholds[RIGHT])
     zmps = (zmp_under(left, robot), zmp_under(right, robot))

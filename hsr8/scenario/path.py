@@ -8,19 +8,31 @@ last knot the mover stands at that end. Outside a window of the phase it is away
 from collections.abc import Sequence
 from dataclasses import dataclass
 from math import inf
+from typing import Annotated
 
 import numpy as np
 from numpy.typing import NDArray
 
 from compilation import compiled
+from compilation.record import Records, record_class, records
 
 Array = NDArray[np.float64]
+Point = tuple[float, float]
 
-CLOCK = np.dtype(
-    [(name, float) for name in ("offset", "speed", "depart", "unit", "first", "period")]
-    + [("window", float, 2), ("away", float, 2), ("end", np.int64)]
-)
-"""Clock of a mover: attributes of its `Path`, and the index after its last piece."""
+
+@record_class
+class Clock:
+    """Clock of a mover: attributes of its `Path`, and its pieces."""
+
+    offset: float
+    speed: float
+    depart: float  # [s]
+    unit: float
+    first: float
+    period: float
+    window: Annotated[Array, 2]
+    away: Annotated[Array, 2]  # [m]
+    end: int  # index after its last piece
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -54,6 +66,32 @@ class Path:
     away: tuple[float, float] = (inf, inf)
 
 
+class Law:
+    """Motion of a mover: along its path, or on a circle, which has none."""
+
+    __slots__ = ()
+
+    @property
+    def path(self) -> Path:
+        """Path of the mover."""
+        raise NotImplementedError
+
+    def position(self, time: float) -> Point:
+        """Return the position at `time` [s]."""
+        x, y = self.state(time)[:2].tolist()
+        return x, y
+
+    def velocity(self, time: float) -> Point:
+        """Return the velocity at `time` [m/s]; where it jumps, the velocity after it."""
+        x, y = self.state(time)[2:4].tolist()
+        return x, y
+
+    def state(self, time: float) -> Array:
+        """Return the state at `time` [s], see `Paths.states` (6,)."""
+        state: Array = Paths([self.path]).states(np.array([time]))[0]
+        return state
+
+
 class Paths:
     """Paths of several movers, evaluated together, each at its own time or all at one time.
 
@@ -62,11 +100,13 @@ class Paths:
     """
 
     def __init__(self, paths: Sequence[Path]) -> None:
-        self._clocks: NDArray[np.record] = np.zeros(len(paths), CLOCK)
+        self._clocks = records(Clock, len(paths))
+        pieces = 0
         for clock, path in zip(self._clocks, paths, strict=True):
             for name in ("offset", "speed", "depart", "unit", "first", "period", "window", "away"):
-                clock[name] = getattr(path, name)
-        self._clocks["end"] = np.cumsum([len(path.cubics) for path in paths])
+                setattr(clock, name, getattr(path, name))
+            pieces += len(path.cubics)
+            clock.end = pieces
         knots = [np.stack([p.knots[:-1], p.knots[1:], p.origins], axis=1) for p in paths]
         self._knots = np.concatenate(knots)
         self._cubics = np.concatenate([path.cubics for path in paths])
@@ -77,7 +117,7 @@ class Paths:
         Args:
             times: times (..., n or 1) [s].
         """
-        n, rows = len(self._clocks), np.ascontiguousarray(times, dtype=float)
+        n, rows = self._clocks.size, np.ascontiguousarray(times, dtype=float)
         states = np.empty((*times.shape[:-1], n, 6))
         _evaluate(
             self._clocks,
@@ -99,7 +139,7 @@ class Paths:
 
 @compiled
 def _evaluate(
-    clocks: NDArray[np.record], knots: Array, cubics: Array, times: Array, states: Array
+    clocks: Records[Clock], knots: Array, cubics: Array, times: Array, states: Array
 ) -> None:
     """Set the states of all movers at some times.
 
@@ -112,7 +152,7 @@ def _evaluate(
     """
     for i in range(len(times)):
         first = 0
-        for j in range(len(clocks)):
+        for j in range(clocks.size):
             clock, last = clocks[j], clocks[j].end - 1
             time = times[i, j] if times.shape[1] > 1 else times[i, 0]
             phase = (clock.offset + clock.speed * (time - clock.depart)) / clock.unit

@@ -22,7 +22,7 @@ from math import ceil, inf
 import numpy as np
 from numpy.typing import NDArray
 
-from hsr8.scenario.path import Path, Paths, hermite_pieces
+from hsr8.scenario.path import Law, Path, Paths, hermite_pieces
 from hsr8.scenario.schema import Scenario
 from hsr8.scenario.section import Point
 from hsr8.scenario.track_file import RecordedTrack, recorded_tracks
@@ -37,7 +37,7 @@ SPACING = 0.05  # of samples along a track, in a world of scale 1 [m]
 
 
 @dataclass(frozen=True)
-class Track:
+class Track(Law):
     """Recorded track; its times are those of the recording in units of the world.
 
     Attributes:
@@ -84,31 +84,13 @@ class Track:
         """Upper bound of the speed [m/s]."""
         return float(speed_bounds(self.path).max())
 
-    @cached_property
-    def _alone(self) -> Paths:
-        return Paths([self.path])
-
     def present(self, time: float) -> bool:
         """Return whether the mover is in the world at `time` [s]."""
-        return bool(self._state(time)[5])
+        return bool(self.state(time)[5])
 
     def recorded_time(self, time: float) -> float:
         """Return the time of the recording at `time` [s]."""
-        return float(self._state(time)[4])
-
-    def position(self, time: float) -> Point:
-        """Return the position at `time` [s]."""
-        x, y = self._state(time)[:2].tolist()
-        return x, y
-
-    def velocity(self, time: float) -> Point:
-        """Return the velocity at `time` [m/s]; zero while the mover stands or is away."""
-        x, y = self._state(time)[2:4].tolist()
-        return x, y
-
-    def _state(self, time: float) -> Array:
-        state: Array = self._alone.states(np.array([time]))[0]
-        return state
+        return float(self.state(time)[4])
 
     def sampled(self, low: float, high: float, spacing: float) -> tuple[Array, Array]:
         """Return times (n,) [s] and positions (n, 2) [m] between two times of the recording.

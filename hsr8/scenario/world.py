@@ -227,6 +227,13 @@ class World(Section):
         0.05,
         0.12,
     )
+    height: Annotated[
+        LengthRange | None,
+        doc(
+            "Minimum and maximum height of the obstacles, which the seed draws; default: 0.3 m "
+            "times `scale` [m]."
+        ),
+    ] = None
     speed_ratio: Annotated[
         RatioRange,
         doc(

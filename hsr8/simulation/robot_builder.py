@@ -69,6 +69,7 @@ def camera_model(scenario: Scenario, sizes: Sizes) -> CameraModel:
         scenario.vision.pose.yaw_sigma,
         inf if camera.panoramic else camera.blind_above,
         sizes.top,
+        sizes.obstacle_height[0],
         0.5 * sizes.beacon_height,
         ground_shadow(humanoid.arms, height),
     )

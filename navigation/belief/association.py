@@ -32,9 +32,9 @@ def association_costs(
     colour are infinite.
 
     Args:
-        objects: records of type `OBJECT` (n,).
+        objects: records of type `ObjectRecord` (n,).
         clouds: their particles (n, 6, k).
-        detections: records of type `DETECTION` (m,).
+        detections: records of type `DetectionRecord` (m,).
         labels: colour classes of the detections (m,).
         birth: cost of the birth of a track at each detection (m,).
         time: time of the frame [s].
@@ -87,7 +87,7 @@ def distinct(objects: Rows, time: float, parameters: Rows) -> Mask:
     """Return which tracks stay if, of two of a colour that overlap too much, the worse one goes.
 
     Args:
-        objects: records of type `OBJECT` (n,).
+        objects: records of type `ObjectRecord` (n,).
         time: time of the frame [s]; two tracks detected in it are two obstacles.
         parameters: record of the parameters of tracking (1,).
     """

@@ -2,40 +2,37 @@
 
 from collections.abc import Sequence
 from math import cos, inf, sin, tanh
-from typing import NamedTuple
+from typing import Annotated, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from compilation import compiled
-from compilation.record import record_type
+from compilation.record import record_class
 from navigation.observation import Observation
 
 Array = NDArray[np.float64]
 Rows = NDArray[np.record]
 
-DETECTION = record_type(
-    position=(float, 2),
-    covariance=(float, 2, 2),
-    radius=float,
-    radius_sigma=float,
-    by_radius=(float, 2),
-    distance=float,
-    partial=bool,
-)
-"""Detection in W.
 
-Position [m] and its covariance, including the pose uncertainty [m²]; radius and its standard
-deviation [m]; partial derivatives of the position with respect to the radius [1]; distance from the
-robot [m]; whether the obstacle is visible in part only.
-"""
+@record_class
+class DetectionRecord:
+    """Detection in W."""
+
+    position: Annotated[Array, 2]  # [m]
+    covariance: Annotated[Array, 2, 2]  # of the position, pose uncertainty included [m²]
+    radius: float  # [m]
+    radius_sigma: float  # standard deviation of the radius [m]
+    by_radius: Annotated[Array, 2]  # partial derivatives of the position by the radius [1]
+    distance: float  # from the robot [m]
+    partial: bool  # whether the obstacle is visible in part only
 
 
 class Detections(NamedTuple):
     """Obstacle detections of one frame in W.
 
     Attributes:
-        rows: records of type `DETECTION` (m,).
+        rows: records of type `DetectionRecord` (m,).
         labels: colour classes (m).
     """
 
@@ -92,7 +89,7 @@ def in_world(
         position, covariance = (x + d * c, y + d * s), ((xx, xy), (xy, yy))
         partial = o.cut or o.occluded
         rows.append((position, covariance, o.radius, o.radius_sigma, slope, d, partial))
-    return Detections(np.array(rows, DETECTION), tuple(o.label for o in obstacles))
+    return Detections(np.array(rows, DetectionRecord), tuple(o.label for o in obstacles))
 
 
 @compiled
@@ -100,7 +97,7 @@ def given_radius(d: np.record, radius: float, sigma: float) -> tuple[Array, Arra
     """Return position (2,) [m] and covariance (2, 2) [m²] of a detection, given its radius.
 
     Args:
-        d: record of type `DETECTION`.
+        d: record of type `DetectionRecord`.
         radius: known radius [m].
         sigma: standard deviation of `radius` [m].
     """

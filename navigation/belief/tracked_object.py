@@ -1,46 +1,43 @@
 """One tracked obstacle: filters, detection history and motion class."""
 
+from typing import Annotated
+
 import numpy as np
 from numpy.typing import NDArray
 
 from compilation import compiled
-from compilation.record import record_type
+from compilation.record import record_class
 from navigation.belief import imm, particles
 from navigation.belief.detections import given_radius, variance_inflation
 from navigation.belief.mode_filter import SIZE
-from navigation.belief.tracks import MOVING, STATIC, TRACK, UNKNOWN, deviation, measure
+from navigation.belief.tracks import MOVING, STATIC, UNKNOWN, TrackRecord, deviation, measure
 
 Array = NDArray[np.float64]
 Rows = NDArray[np.record]
 
-OBJECT = record_type(
-    id=int,
-    label=int,  # index in the labels of the tracker
-    weights=(float, 3),
-    states=(float, 3, SIZE),
-    covariances=(float, 3, SIZE, SIZE),
-    best=(float, 2, 2),
-    radius=float,
-    radius_sigma=float,
-    first_time=float,
-    last_time=float,
-    last_seen=(float, 2),
-    detection_reach=float,
-    motion=int,
-    hits=int,
-    misses=int,
-    unseen_time=float,
-    lost=bool,
-    existence=float,
-)
-"""State of one obstacle between frames.
 
-Number and colour class; filters (see `imm`) and covariance of the most precise detection [m²];
-radius and its standard deviation [m]; times of the first and latest detection [s], position of the
-latter [m] and radius of its confidence disc [m]; motion class; number of detections and of
-successive misses; time in clear view since the last detection or miss [s]; whether it is lost and
-has particles, and the likelihood of the missed detections, given the particles [1].
-"""
+@record_class
+class ObjectRecord:
+    """State of one obstacle between frames."""
+
+    id: int
+    label: int  # index in the labels of the tracker
+    weights: Annotated[Array, 3]  # of the filters, see `imm` [1]
+    states: Annotated[Array, 3, SIZE]
+    covariances: Annotated[Array, 3, SIZE, SIZE]
+    best: Annotated[Array, 2, 2]  # covariance of the most precise detection [m²]
+    radius: float  # [m]
+    radius_sigma: float  # [m]
+    first_time: float  # of the first detection [s]
+    last_time: float  # of the latest detection [s]
+    last_seen: Annotated[Array, 2]  # position of the latest detection [m]
+    detection_reach: float  # radius of its confidence disc [m]
+    motion: int
+    hits: int  # detections
+    misses: int  # successive misses
+    unseen_time: float  # time in clear view since the last detection or miss [s]
+    lost: bool  # whether it is lost and has particles
+    existence: float  # likelihood of the missed detections, given the particles [1]
 
 
 @compiled
@@ -70,8 +67,8 @@ def begin(o: np.record, d: np.record, on_free_floor: bool, time: float, p: np.re
     """Set an object to a tentative track at a detection.
 
     Args:
-        o: record of type `OBJECT`, whose number and colour class are set elsewhere.
-        d: record of type `DETECTION`.
+        o: record of type `ObjectRecord`, whose number and colour class are set elsewhere.
+        d: record of type `DetectionRecord`.
         on_free_floor: whether the floor there was seen empty before: a new obstacle has moved.
         time: time of the frame [s].
         p: parameters of tracking.
@@ -92,8 +89,8 @@ def correct(o: np.record, d: np.record, time: float, p: np.record) -> None:
     """Update filter, motion class and radius of an object by its detection.
 
     Args:
-        o: record of type `OBJECT`.
-        d: record of type `DETECTION`.
+        o: record of type `ObjectRecord`.
+        d: record of type `DetectionRecord`.
         time: time of the frame [s].
         p: parameters of tracking.
     """
@@ -163,8 +160,8 @@ def set_estimate(track: np.record, o: np.record, cloud: Array, p: np.record) -> 
     """Set position, velocity, their covariance and turn rate of a track, given its motion class.
 
     Args:
-        track: record of type `TRACK`.
-        o: record of type `OBJECT`.
+        track: record of type `TrackRecord`.
+        o: record of type `ObjectRecord`.
         cloud: its particles (6, m), which count while it is lost.
         p: parameters of tracking.
     """
@@ -193,16 +190,16 @@ def set_estimate(track: np.record, o: np.record, cloud: Array, p: np.record) -> 
 
 @compiled
 def published(objects: Rows, clouds: Array, time: float, parameters: Rows) -> tuple[Rows, Array]:
-    """Return the confirmed tracks, records of type `TRACK` (k,), and their clouds (l, 6, m).
+    """Return the confirmed tracks, records of type `TrackRecord` (k,), and their clouds (l, 6, m).
 
     Args:
-        objects: records of type `OBJECT` (n,).
+        objects: records of type `ObjectRecord` (n,).
         clouds: their particles (n, 6, m).
         time: time of the frame [s].
         parameters: record of the parameters of tracking (1,).
     """
     p = parameters[0]
-    tracks, lost = np.empty(len(objects), TRACK), np.empty_like(clouds)
+    tracks, lost = np.empty(len(objects), TrackRecord), np.empty_like(clouds)
     count = count_lost = 0
     for i in range(len(objects)):
         o, track = objects[i], tracks[count]

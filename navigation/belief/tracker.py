@@ -15,7 +15,7 @@ from navigation.belief import imm, particles
 from navigation.belief.association import assign, association_costs, distinct
 from navigation.belief.detections import Detections
 from navigation.belief.tracked_object import (
-    OBJECT,
+    ObjectRecord,
     begin,
     correct,
     position_of,
@@ -62,7 +62,7 @@ class Tracker:
 
     def clear(self) -> None:
         """Delete all tracks."""
-        self._objects: Rows = np.zeros(0, OBJECT)
+        self._objects: Rows = np.zeros(0, ObjectRecord)
         self._clouds: Array = np.zeros((0, 6, self._parameters.particles))
 
     def update(
@@ -215,8 +215,8 @@ def births(
     """Return a tentative track, without a number, at each unassigned detection.
 
     Args:
-        objects: records of type `OBJECT` (n,).
-        detections: records of type `DETECTION` (m,).
+        objects: records of type `ObjectRecord` (n,).
+        detections: records of type `DetectionRecord` (m,).
         labels: colour classes of the detections (m,).
         assigned: detections of known objects (m,).
         on_free_floor: detections on floor seen empty before (m,).
@@ -224,7 +224,7 @@ def births(
         parameters: record of the parameters of tracking (1,).
     """
     p = parameters[0]
-    born, count = np.zeros(len(detections), OBJECT), 0
+    born, count = np.zeros(len(detections), ObjectRecord), 0
     for j in range(len(detections)):
         d = detections[j]
         part = assigned[j] or d.distance > p.birth_range
@@ -244,9 +244,9 @@ def occluders(objects: Rows, detections: Rows, eyes: Rows, parameters: Rows) -> 
     """Return detections and static objects as discs relative to the camera, see `relative_discs`.
 
     Args:
-        objects: records of type `OBJECT` (n,).
-        detections: records of type `DETECTION` (m,).
-        eyes: camera, record of type `EYE` (1,).
+        objects: records of type `ObjectRecord` (n,).
+        detections: records of type `DetectionRecord` (m,).
+        eyes: camera, record of type `Eye` (1,).
         parameters: record of the parameters of tracking (1,).
     """
     m, size = len(detections), len(detections) + len(objects)
@@ -277,10 +277,10 @@ def misses(
     """Handle a frame without the detection of some objects, in place.
 
     Args:
-        objects: records of type `OBJECT` (n,).
+        objects: records of type `ObjectRecord` (n,).
         clouds: their particles (n, 6, k).
-        detections: records of type `DETECTION` (m,).
-        eyes: camera, record of type `EYE` (1,).
+        detections: records of type `DetectionRecord` (m,).
+        eyes: camera, record of type `Eye` (1,).
         shadow: see `in_view`.
         time: time of the frame [s].
         dt: time since the last frame [s].

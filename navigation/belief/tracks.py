@@ -2,13 +2,13 @@
 
 from collections.abc import Iterator, Sequence
 from math import sqrt
-from typing import overload
+from typing import Annotated, overload
 
 import numpy as np
 from numpy.typing import NDArray
 
 from compilation import compiled
-from compilation.record import record_type
+from compilation.record import record_class
 from navigation.belief.belief import Motion, Particles, Track
 
 Array = NDArray[np.float64]
@@ -20,27 +20,30 @@ MOTIONS = (Motion.STATIC, Motion.MOVING, Motion.UNKNOWN)
 STATIC, MOVING, UNKNOWN = range(3)
 X, Y, VX, VY, TURN_RATE, WEIGHT = range(6)  # rows of a cloud of particles
 
-TRACK = record_type(
-    id=int,
-    label=int,  # index in the labels of the set
-    position=(float, 2),
-    velocity=(float, 2),
-    covariance=(float, 4, 4),
-    radius=float,
-    radius_sigma=float,
-    motion=int,  # index in MOTIONS
-    hits=int,
-    age=float,
-    last_seen=(float, 2),
-    visible=bool,
-    cloud=int,  # index in the clouds of the set, -1 for none
-    reach=float,
-    turn_rate=float,
-    speed=float,
-    sigma=float,
-    speed_sigma=float,
-)
-"""Record of a track: the fields of `Track`, speed and major standard deviations [m/s, m, m/s]."""
+
+@record_class
+class TrackRecord:
+    """Record of a track: the fields of `Track`, speed and major standard deviations."""
+
+    id: int
+    label: int  # index in the labels of the set
+    position: Annotated[Array, 2]  # [m]
+    velocity: Annotated[Array, 2]  # [m/s]
+    covariance: Annotated[Array, 4, 4]  # of position and velocity
+    radius: float  # [m]
+    radius_sigma: float  # [m]
+    motion: int  # index in MOTIONS
+    hits: int
+    age: float  # [s]
+    last_seen: Annotated[Array, 2]  # [m]
+    visible: bool
+    cloud: int  # index in the clouds of the set, -1 for none
+    reach: float  # [m]
+    turn_rate: float  # [rad/s]
+    speed: float  # [m/s]
+    sigma: float  # major standard deviation of the position [m]
+    speed_sigma: float  # major standard deviation of the velocity [m/s]
+
 
 NUMBERS = ("id", "radius", "radius_sigma", "hits", "age", "visible", "reach", "turn_rate")
 VECTORS = ("position", "velocity", "covariance", "last_seen")
@@ -77,7 +80,7 @@ class Tracks(Sequence[Track]):
     """n tracks in the field frame W, the input of all decisions.
 
     Args:
-        rows: records of type `TRACK` (n,), not changed later.
+        rows: records of type `TrackRecord` (n,), not changed later.
         clouds: particles of the lost tracks: x, y, vx, vy, turn rate, weight (k, 6, m).
         labels: colour classes, to which the records refer.
 
@@ -95,7 +98,7 @@ class Tracks(Sequence[Track]):
     """
 
     def __init__(self, rows: Rows, clouds: Array, labels: Sequence[str]) -> None:
-        self.rows, self.clouds, self.labels = rows.view(TRACK), clouds, labels
+        self.rows, self.clouds, self.labels = rows.view(TrackRecord), clouds, labels
         self.ids: Ints = rows["id"]
         self.position: Array = rows["position"]
         self.velocity: Array = rows["velocity"]
@@ -113,7 +116,7 @@ class Tracks(Sequence[Track]):
         if isinstance(tracks, Tracks):
             return tracks
         labels = sorted({t.label for t in tracks})
-        rows, clouds = np.zeros(len(tracks), TRACK), list[Array]()
+        rows, clouds = np.zeros(len(tracks), TrackRecord), list[Array]()
         for row, t in zip(rows, tracks, strict=True):
             row.id, row.label, row.motion = t.id, labels.index(t.label), MOTIONS.index(t.motion)
             row.position, row.velocity, row.covariance = t.position, t.velocity, t.covariance

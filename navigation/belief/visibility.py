@@ -1,13 +1,13 @@
 """Visibility of points of the floor: field of view, range and occlusion of the camera."""
 
 from math import atan2, cos, pi, sqrt, tan
-from typing import NamedTuple
+from typing import Annotated, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from compilation import compiled
-from compilation.record import record_type
+from compilation.record import record_class
 from navigation.observation import CameraView, shadow_at
 from navigation.transform import yaw_rotation
 
@@ -18,23 +18,21 @@ Rows = NDArray[np.record]
 
 UNSEEN, FREE, OCCUPIED = 0, 1, 2
 
-EYE = record_type(
-    position=(float, 3),
-    rotation=(float, 3, 3),
-    heading=float,
-    width=float,
-    height=float,
-    range=float,
-    top=float,
-    panoramic=bool,
-)
-"""Camera of one frame in W.
 
-Position [m]; R_WC, columns right, down, forward; heading of the robot [rad]; tangents of half the
-fields of view, of a panoramic camera the cosine of half its horizontal one [1]; maximum distance of
-a detection along the floor [m]; height of the top of an obstacle above the camera, 0 where only the
-foot counts [m].
-"""
+@record_class
+class Eye:
+    """Camera of one frame in W."""
+
+    position: Annotated[Array, 3]  # [m]
+    rotation: Annotated[Array, 3, 3]  # R_WC, columns right, down, forward
+    heading: float  # of the robot [rad]
+    width: (
+        float  # tangent of half the horizontal field of view, of a panoramic camera its cosine [1]
+    )
+    height: float  # tangent of half the vertical field of view [1]
+    range: float  # maximum distance of a detection along the floor [m]
+    top: float  # of an obstacle above the camera, 0 where only the foot counts [m]
+    panoramic: bool
 
 
 @compiled
@@ -56,7 +54,7 @@ def in_view(dx: float, dy: float, eye: np.record, shadow: Array) -> bool:
     Args:
         dx: position from the camera along x of W [m].
         dy: position from the camera along y [m].
-        eye: record of type `EYE`.
+        eye: record of type `Eye`.
         shadow: distance up to which the body hides the floor, see `CameraModel` (n,) [m].
     """
     square = dx * dx + dy * dy
@@ -101,7 +99,7 @@ def relative_discs(eye: np.record, centres: Array, radii: Array, margin: float) 
     """Return discs relative to the camera: x, y, squared distance and radius (m, 4) [m, m²].
 
     Args:
-        eye: record of type `EYE`.
+        eye: record of type `Eye`.
         centres: centres in W (m, 2) [m].
         radii: radii (m,) [m].
         margin: enlargement of every disc [m].
@@ -133,7 +131,7 @@ def clear_points(
 
     Args:
         points: points in W (n, 2) [m].
-        eyes: record of type `EYE` (1,).
+        eyes: record of type `Eye` (1,).
         shadow: see `in_view`.
         centres: centres of the occluding discs in W (m, 2) [m].
         radii: their radii (m,) [m].
@@ -153,7 +151,7 @@ def observed_cells(
         corner: index of the first column and row, counted from the origin of W (2,).
         cell: side of a cell [m].
         count: cells along a side.
-        eyes: record of type `EYE` (1,).
+        eyes: record of type `Eye` (1,).
         shadow: see `in_view`.
         centres: centres of the detected discs in W (m, 2) [m].
         radii: their radii (m,) [m].
@@ -186,7 +184,7 @@ class Viewpoint(NamedTuple):
     """Camera of one frame in the field frame W, as compiled functions take it.
 
     Attributes:
-        eye: record of type `EYE` (1,).
+        eye: record of type `Eye` (1,).
         shadow: distance up to which the body hides the floor, see `CameraModel` (n,) [m].
     """
 
@@ -208,7 +206,7 @@ class Viewpoint(NamedTuple):
         position = to_world @ view.position
         position[0] += x
         position[1] += y
-        half, top = 0.5 * view.horizontal_fov, view.model.top
+        half, top = 0.5 * view.horizontal_fov, view.model.min_top
         panoramic = half >= 0.5 * pi
         row = (
             position,
@@ -220,4 +218,4 @@ class Viewpoint(NamedTuple):
             top - float(position[2]) if top > 0.0 else 0.0,
             panoramic,
         )
-        return cls(np.array([row], EYE), view.model.shadow)
+        return cls(np.array([row], Eye), view.model.shadow)

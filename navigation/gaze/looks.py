@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 from compilation import compiled
 from navigation.belief.tracks import MOVING, STATIC, UNKNOWN, WEIGHT, X, Y
 from navigation.belief.visibility import occluded
-from navigation.gaze.views import LOOK
+from navigation.gaze.views import Look
 from navigation.observation import shadow_at
 from navigation.transform import in_robot
 
@@ -25,7 +25,7 @@ def set_look(
     """Set a look of constant urgency 1 at an upright object; return its distance [m].
 
     Args:
-        look: record of type `LOOK`.
+        look: record of type `Look`.
         point: position in R [m].
         weight: weight of the look [1].
         shadow: distance up to which the body hides the floor, see `CameraModel` (n,) [m].
@@ -43,7 +43,7 @@ def set_urgency(look: np.record, age: float, contact_time: float, p: np.record) 
     """Set the urgency of a look: the age over a fraction of the time to collision.
 
     Args:
-        look: record of type `LOOK`.
+        look: record of type `Look`.
         age: time since the object was seen [s].
         contact_time: worst-case time to collision [s].
         p: parameters.
@@ -83,8 +83,8 @@ def track_looks(
     """Write the looks at tracks, and at the particles of lost ones; return their number.
 
     Args:
-        looks: records of type `LOOK`, enough for all.
-        tracks: records of type `TRACK` (n,).
+        looks: records of type `Look`, enough for all.
+        tracks: records of type `TrackRecord` (n,).
         clouds: particles of the lost tracks (k, 6, m).
         robot: x, y, heading of R in W (3,) [m, m, rad], and direction of the planned velocity in
             R [rad].
@@ -123,7 +123,7 @@ def ground_looks(
     """Write the looks at the ground ahead: its age over the time until the robot is there.
 
     Args:
-        looks: records of type `LOOK`, enough for all.
+        looks: records of type `Look`, enough for all.
         ground: points in W (n, 2) [m].
         ages: times since they were seen (n,) [s].
         pose: x, y, heading of R in W (3,) [m, m, rad].
@@ -143,7 +143,7 @@ def beacon_looks(looks: Rows, beacons: Array, pose: Array, value: float, p: np.r
     """Write the looks at beacons, of which a view must show the seam of both colours halfway up.
 
     Args:
-        looks: records of type `LOOK`, enough for all.
+        looks: records of type `Look`, enough for all.
         beacons: known positions in W (n, 2) [m].
         pose: x, y, heading of R in W (3,) [m, m, rad].
         value: weight of all beacons in reach together [1].
@@ -188,10 +188,10 @@ def looks_of(
     shadow: Array,
     parameters: Rows,
 ) -> Rows:
-    """Return all looks that no obstacle hides, records of type `LOOK`.
+    """Return all looks that no obstacle hides, records of type `Look`.
 
     Args:
-        tracks: records of type `TRACK` (n,).
+        tracks: records of type `TrackRecord` (n,).
         clouds: particles of the lost tracks (k, 6, m).
         cells: position in W [m] and risk of cells with undetected obstacles (c, 3).
         ground: points of the path in W (g, 2) [m], and times since they were seen (g,) [s].
@@ -204,7 +204,7 @@ def looks_of(
     p = parameters[0]
     pose, _ = robot
     size = len(cells) + len(tracks) * max(1, clouds.shape[2]) + len(ground[0]) + len(beacons[0])
-    looks, count = np.empty(size, LOOK), 0
+    looks, count = np.empty(size, Look), 0
     for i in range(len(cells)):
         point = in_robot(pose, cells[i, 0], cells[i, 1])
         set_look(looks[i], point, cells[i, 2], shadow, p)

@@ -133,7 +133,7 @@ class RiskGaze(GazePolicy[RiskMemory]):
         return np.array([rate, self._parameters.gaze.max_pan + PAN_TOLERANCE])
 
     def _looks(self, memory: RiskMemory, scene: GazeScene) -> Rows:
-        """Return all looks, records of type `LOOK`."""
+        """Return all looks, records of type `Look`."""
         assert memory.undetected is not None
         belief, tracks, course = scene.belief, scene.obstacles, scene.course
         pose = belief.pose

@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from compilation import compiled
-from compilation.record import record_type
+from compilation.record import record_class
 
 Array = NDArray[np.float64]
 Looks = NDArray[np.record]
@@ -14,22 +14,19 @@ Looks = NDArray[np.record]
 MIN_DEPTH = 0.05  # of a visible point, relative to its distance [1]
 WIDER = 1.002  # margin for rounding, of the squared half width of an image at any tilt [1]
 
-LOOK = record_type(
-    x=float,
-    y=float,
-    weight=float,
-    urgency=float,
-    rate=float,
-    top=float,
-    foot_value=float,
-    tall=bool,
-)
-"""Request of a look.
 
-Position in R [m], weight, urgency now [1] and its rate [1/s], height of the point that a view must
-show [m], the value of a view of the foot without that point, and whether the point is above the
-obstacles, which then never hide it.
-"""
+@record_class
+class Look:
+    """Request of a look."""
+
+    x: float  # position in R [m]
+    y: float
+    weight: float  # [1]
+    urgency: float  # now [1]
+    rate: float  # of the urgency [1/s]
+    top: float  # height of the point that a view must show [m]
+    foot_value: float  # value of a view of the foot without that point [1]
+    tall: bool  # whether the point is above the obstacles, which then never hide it
 
 
 @compiled
@@ -107,7 +104,7 @@ def add_look(
     Args:
         values: values of the views (pans, tilts).
         times: durations of the saccades (pans, tilts) [s].
-        look: record of type `LOOK`.
+        look: record of type `Look`.
         panned: cosines and sines of the pans (2, pans).
         tilted: cosines and sines of the tilts (2, tilts).
         eye: distance of the camera from the pan axis, and its height [m] (2,).
@@ -161,7 +158,7 @@ def view_values(
     Args:
         pans: pans of the views [rad].
         tilts: tilts of the views [rad].
-        looks: records of type `LOOK` (n,).
+        looks: records of type `Look` (n,).
         eye: distance of the camera from the pan axis, and its height [m] (2,).
         lens: tangents of half the fields of view (2,).
         neck: present pan [rad] and its rate [rad/s], the same of the tilt, maximum rate [rad/s]

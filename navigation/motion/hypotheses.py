@@ -1,29 +1,28 @@
 """Collision hypotheses of the safety filter: tracks, particles of lost movers, reversals."""
 
 from math import cos, sin, sqrt
+from typing import Annotated
 
 import numpy as np
 from numpy.typing import NDArray
 
 from compilation import compiled
-from compilation.record import record_type
+from compilation.record import record_class
 from navigation.belief.tracks import MOVING, STATIC, TURN_RATE, VX, VY, WEIGHT, X, Y
 
 Array = NDArray[np.float64]
 Rows = NDArray[np.record]
 
-DISC = record_type(
-    position=(float, 2),
-    velocity=(float, 2),
-    radius=float,
-    horizon=float,
-    weight=float,
-)
-"""Disc at constant velocity.
 
-Position in W [m], velocity [m/s], distance of the robot's centre that counts as a collision [m],
-maximum time to collision [s] and weight of the penalty [1].
-"""
+@record_class
+class Disc:
+    """Disc at constant velocity."""
+
+    position: Annotated[Array, 2]  # in W [m]
+    velocity: Annotated[Array, 2]  # [m/s]
+    radius: float  # distance of the robot's centre that counts as a collision [m]
+    horizon: float  # maximum time to collision [s]
+    weight: float  # of the penalty [1]
 
 
 @compiled
@@ -59,19 +58,19 @@ def set_disc(
 
 @compiled
 def collision_discs(tracks: Rows, clouds: Array, s_robot: float, parameters: Rows) -> Rows:
-    """Return the hypotheses of all tracks, records of type `DISC`.
+    """Return the hypotheses of all tracks, records of type `Disc`.
 
     A lost mover counts as its particles; a visible one also as its reversal. A turning mover
     follows the chord of its arc over `bend_time`.
 
     Args:
-        tracks: records of type `TRACK` (n,).
+        tracks: records of type `TrackRecord` (n,).
         clouds: particles of the lost tracks (k, 6, m).
         s_robot: radius of the robot [m].
         parameters: record of the parameters of the safety filter (1,).
     """
     p = parameters[0]
-    discs, count = np.empty(2 * len(tracks) + clouds.shape[0] * clouds.shape[2], DISC), 0
+    discs, count = np.empty(2 * len(tracks) + clouds.shape[0] * clouds.shape[2], Disc), 0
     for reversed_ in (False, True):
         for i in range(len(tracks)):
             track = tracks[i]
@@ -110,7 +109,7 @@ def within_reach(discs: Rows, position: Array, speed: float) -> Rows:
     """Return the discs that a robot can reach in time, in a new array.
 
     Args:
-        discs: records of type `DISC` (m,).
+        discs: records of type `Disc` (m,).
         position: position of the robot (2,) [m].
         speed: maximum speed of the robot [m/s].
     """

@@ -136,7 +136,7 @@ def contact_times(
         velocity: velocities of the footsteps of n paths (n, steps, 2) [m/s].
         footstep: duration of a footstep [s].
         position: start of the paths (2,) [m].
-        discs: records of type `DISC` (m,).
+        discs: records of type `Disc` (m,).
 
     Returns:
         Time to collision (n, m) [s], infinite for none; minimum distance of the centre from the
@@ -183,7 +183,7 @@ def losses(
     Args:
         contacts: result of `contact_times` for n paths and m discs.
         position: start of the paths (2,) [m].
-        discs: records of type `DISC` (m,).
+        discs: records of type `Disc` (m,).
         speed: maximum speed of the robot [m/s].
         parameters: record of the parameters of the safety filter (1,).
     """

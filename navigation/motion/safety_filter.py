@@ -72,7 +72,7 @@ class SafetyFilter:
         Args:
             start: start of the rollout.
             desired: desired velocity in W (2,) [m/s].
-            discs: collision hypotheses, records of type `DISC` (m,).
+            discs: collision hypotheses, records of type `Disc` (m,).
         """
         near = within_reach(discs, start.pose[:2], self._limits.vx)
         if len(near) == 0 or self.risk(start, desired[None], near)[0] == 0.0:

@@ -71,5 +71,7 @@ class NavigationParameters:
                 w_ob=0.33,
             ),
             planner=PlannerParameters(method="paper"),
-            univector=UnivectorParameters(margin=0.03, eta_vo=0.5, holonomic_distance=0.0),
+            univector=UnivectorParameters(
+                margin=0.0865, eta_vo=0.108, eta_imp=0.021, holonomic_distance=0.0
+            ),
         )

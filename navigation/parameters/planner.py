@@ -23,13 +23,13 @@ class PaperParameters:
         float, Gt(0.0), Lt(1.0), doc("Convexity of the dynamic virtual obstacle [1].")
     ] = 0.6
 
-    d_con: Annotated[float, "m"] = 0.8  # distance within which (8) arrives with a heading
+    d_con: Annotated[float, "m"] = 0.38  # distance within which (8) arrives with a heading
     k_beta: float = -0.5  # arrival gain on the remaining heading error, negative [1]
-    d_e: Annotated[float, "m"] = 0.15  # radius offset of the spiral (9)
-    d_b: Annotated[float, "m"] = 0.30  # width of the outer band of (9)
-    k_r: Annotated[float, "m"] = 0.30  # curvature of the outer spiral (9)
-    omega_dist: float = 12.0  # length of the virtual path in (11) [1]
-    horizon: Annotated[float, "s"] = 6.0  # maximum time to collision in velocity modification
+    d_e: Annotated[float, "m"] = 0.059  # radius offset of the spiral (9)
+    d_b: Annotated[float, "m"] = 0.242  # width of the outer band of (9)
+    k_r: Annotated[float, "m"] = 0.495  # curvature of the outer spiral (9)
+    omega_dist: float = 3.74  # length of the virtual path in (11) [1]
+    horizon: Annotated[float, "s"] = 7.5  # maximum time to collision in velocity modification
     min_speed: Annotated[float, "m/s"] = 0.015  # speed below which an obstacle has no virtual path
     nominal: float = 0.75  # desired speed of a free path, ratio to the maximum [1]
 

@@ -348,8 +348,8 @@ class _Walker:
 def walker():
     """Builds a closed loop of a method from a pose; the samples of `mppi` follow seed 0."""
 
-    def walker(method="univector", pose=(0.0, 0.0, 0.0), **constants):
-        p = _parameters(method, **constants)
+    def walker(method="univector", pose=(0.0, 0.0, 0.0), parameters=None, **constants):
+        p = parameters or _parameters(method, **constants)
         return _Walker(_planner(method, rng=np.random.default_rng(0), parameters=p), p, pose)
 
     return walker

@@ -9,11 +9,16 @@ import pytest
 from navigation.decision import SpeedLimits
 from navigation.motion.collision_band import Encounter
 from navigation.paper import PaperMethod, modified_speed, oval
+from navigation.parameters.motion import UnivectorParameters
 from navigation.parameters.navigation import NavigationParameters
-from navigation.parameters.planner import PaperParameters
+from navigation.parameters.planner import PaperParameters, PlannerParameters
 
-PROFILE = NavigationParameters.paper()
-P = PaperParameters()
+P = PaperParameters(d_con=0.8, d_e=0.15, d_b=0.3, k_r=0.3, omega_dist=12.0, horizon=6.0)
+PROFILE = replace(
+    NavigationParameters.paper(),
+    planner=PlannerParameters(method="paper", paper=P),
+    univector=UnivectorParameters(margin=0.03, eta_vo=0.5, holonomic_distance=0.0),
+)
 TARGET = np.array([2.0, 0.0])
 V_MAX, DESIRED = 0.2, 0.15
 BOTH = pytest.mark.parametrize("weights", ["printed", "exchanged"])
@@ -258,7 +263,9 @@ def test_a_mover_head_on_is_passed_with_the_scheme(weights, lateral, walker, tra
     """Fig. 4 (c) in closed loop; with the printed weights the field alone runs into the mover."""
     least = []
     for min_speed in (P.min_speed, 1.0):  # with the second one no obstacle is a mover
-        walk, gaps = walker("paper", weights=weights, min_speed=min_speed), []
+        method = replace(P, weights=weights, min_speed=min_speed)
+        planner = replace(PROFILE.planner, paper=method)
+        walk, gaps = walker("paper", parameters=replace(PROFILE, planner=planner)), []
         for step in range(60):
             x = 3.0 - 0.034 * step
             walk.step(task((4.5, 0.0)), [track((x, lateral), (-0.1, 0.0), radius=0.1)])

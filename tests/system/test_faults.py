@@ -28,7 +28,7 @@ FALL = {  # magnitudes that make it fall
     "attitude-bias": "magnitude=0.4",
     "encoder-offset": "magnitude=0.2",
     "servo-weak": "magnitude=0.05",
-    "servo-stuck": 'joint="l_ankle_pitch"',
+    "servo-stuck": 'joint="l_hip_pitch"',
     "push": "magnitude=5.0",
 }
 NO_FALL = {  # permanent faults that slow down or turn a walk without a fall

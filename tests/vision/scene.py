@@ -12,7 +12,7 @@ from vision.camera import PinholeCamera
 from vision.color import COLOR_CLASSES, ColorTable
 from vision.outline import trace
 from vision.parameters import PoseParameters, VisionParameters
-from vision.tables import ANY, BLOB, CANDIDATE, OUTSIDE, Points, add_rim, copy_side
+from vision.tables import ANY, OUTSIDE, Blob, Candidate, Points, add_rim, copy_side
 from vision.view import view_of
 
 FLOOR = (0.62, 0.61, 0.58)
@@ -153,7 +153,7 @@ def traced_in(
     padded = np.pad(labels, 1, constant_values=OUTSIDE)
     view = view_of(CAMERA, gaze)
     points = trace(blobs, extents, padded, view[0], edge_sigma)
-    return Traced(blobs.view(BLOB), runs, extents, padded, points, view)
+    return Traced(blobs.view(Blob), runs, extents, padded, points, view)
 
 
 def candidate_of(
@@ -163,7 +163,7 @@ def candidate_of(
     prior: tuple[float, float],
 ) -> NDArray[np.record]:
     """A candidate 0.3 m high from two sides and from rims with heights and halves."""
-    candidates = np.zeros(1, CANDIDATE)
+    candidates = np.zeros(1, Candidate)
     candidate = candidates[0]
     candidate.height, candidate.prior = 0.30, prior
     for j in range(2):

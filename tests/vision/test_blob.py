@@ -4,7 +4,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from vision.blob import find_blobs
-from vision.tables import BLOB
+from vision.tables import Blob
 
 SMALLEST = np.full(7, 1, np.int32)
 
@@ -29,7 +29,7 @@ def test_blobs_partition_the_colored_pixels(seed: int, share: float) -> None:
     labels[rng.random(labels.shape) < share] = 0
     covered = np.zeros(labels.shape, dtype=int)
     blobs, runs, _ = find_blobs(labels, SMALLEST)
-    for blob in blobs.view(BLOB):
+    for blob in blobs.view(Blob):
         left, top, right, bottom = blob.box
         mask = mask_of(blob, runs, labels.shape)
         assert (labels[mask] == blob.label).all()
@@ -46,7 +46,7 @@ def test_extents_bound_every_row_and_column() -> None:
     labels[2, 3] = 0
     labels[7, 9] = 2
     blobs, _, extents = find_blobs(labels, SMALLEST)
-    blob, other = blobs.view(BLOB)
+    blob, other = blobs.view(Blob)
     assert (blob.first_extent, other.first_extent, len(extents)) == (0, 16, 20)
     first, last, high, low = extents[:16].reshape(4, 4).tolist()
     assert first == [4, 3, 3, 3]
@@ -78,7 +78,7 @@ def test_blobs_are_the_components_that_opencv_finds(seed: int, share: float) -> 
     labels = rng.integers(1, 3, (14, 19)).astype(np.uint8)
     labels[rng.random(labels.shape) < share] = 0
     table, runs, _ = find_blobs(labels, np.array([2, 2], np.int32))
-    blobs = table.view(BLOB)
+    blobs = table.view(Blob)
     order = [(b.label, b.box[1]) for b in blobs]
     assert order == sorted(order)
     for label in (1, 2):

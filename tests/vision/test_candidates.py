@@ -7,7 +7,7 @@ from vision.color import COLOR_CLASSES
 from vision.detector import parameter_record
 from vision.parameters import VisionParameters
 from vision.sizes import Sizes
-from vision.tables import CANDIDATE, FAR, NEAR
+from vision.tables import FAR, NEAR, Candidate
 
 NAMES = ("", *COLOR_CLASSES)
 BEACON = np.array([False, *(c.kind == "beacon" for c in COLOR_CLASSES.values())])
@@ -19,7 +19,7 @@ def candidates(obstacles: list[Cylinder], gaze=GAZE):
     tables = traced(obstacles, gaze, min_area=5)
     p = parameter_record(VisionParameters())[0]
     rows = candidates_of(tables.blobs, tables.points, BEACON, HEIGHT, p)
-    return tables.blobs, rows.view(CANDIDATE)
+    return tables.blobs, rows.view(Candidate)
 
 
 def rims(candidate) -> list[tuple[float, float]]:

@@ -6,8 +6,8 @@ import pytest
 from vision.cylinder_fit import OUTER, fit
 from vision.detector import parameter_record
 from vision.parameters import VisionParameters
-from vision.tables import ANY, CANDIDATE, RIM, SIDE, add_rim, copy_side
-from vision.view import VIEW
+from vision.tables import ANY, Candidate, Rim, Side, add_rim, copy_side
+from vision.view import View
 
 HEIGHT, TILT_VARIANCE = 0.47, 8e-7
 OPTIONS = VisionParameters(roundness_sigma=0.008, edge_correlation=0.02, edge_sigma=0.3125)
@@ -45,7 +45,7 @@ def candidates(seed, n, share=0.7):
 
 def fitted(made):
     """Fits of candidates: azimuth, distance, radius, misfit and outlier fraction; covariances."""
-    rows, view = np.zeros(len(made), CANDIDATE), np.zeros(1, VIEW)[0]
+    rows, view = np.zeros(len(made), Candidate), np.zeros(1, View)[0]
     view.clearance, view.variance = HEIGHT, (TILT_VARIANCE, 6e-7, 2.5e-7, 9e-8)
     rims = [rim for candidate in made for rim in candidate["rims"]]
     azimuth, slope = (np.concatenate([np.empty(0), *(rim[k] for rim in rims)]) for k in (3, 4))
@@ -54,9 +54,9 @@ def fitted(made):
     for row, candidate in zip(rows, made, strict=True):
         *row.prior, row.height = candidate["known"]
         for side, values in zip(row.sides, candidate["sides"], strict=True):
-            copy_side(side, np.array([(*values, False)], SIDE)[0])
+            copy_side(side, np.array([(*values, False)], Side)[0])
         for height, half, sigma, edge, _ in candidate["rims"]:
-            rim = np.zeros(1, RIM)[0]
+            rim = np.zeros(1, Rim)[0]
             rim.first, rim.last, rim.sigma = used, used + len(edge), sigma
             used += len(edge)
             add_rim(row, rim, ANY, points, height, half)

@@ -1,3 +1,4 @@
+from dataclasses import replace
 from math import degrees, hypot, radians
 
 import numpy as np
@@ -15,6 +16,7 @@ from vision.parameters import PoseParameters, VisionParameters
 from vision.sizes import Sizes
 
 DETECTOR = Detector(CAMERA, VisionParameters())
+UNSURE = Detector(CAMERA, VisionParameters(), sizes=Sizes(obstacle_height=(0.09, 0.27)))
 
 
 def see(obstacles, view=None, brightness=1.0) -> tuple[Detection, ...]:
@@ -185,6 +187,17 @@ def test_an_error_of_the_tilt_is_within_its_uncertainty() -> None:
         assert_located(detection, obstacle, sigmas=3.0)
 
 
+def test_a_detection_is_as_certain_as_required() -> None:
+    view, limit, counts = pose(tilt=-0.25), 0.003, set()
+    image = paint([at(0.9, 8.0, "red")], view)
+    for sigma in (0.0, 0.02):
+        parameters = replace(uncertain(sigma), max_relative_sigma=limit)
+        detections = Detector(CAMERA, parameters).detect(image, view)
+        assert all(d.covariance[0, 0] <= (limit * d.distance) ** 2 for d in detections)
+        counts.add(len(detections))
+    assert counts == {0, 1}
+
+
 @pytest.mark.parametrize("unknown", [{"tilt_sigma": 1e7}, {"height_sigma": 1e8}])
 def test_an_infinite_uncertainty_gives_no_detection(unknown) -> None:
     view = pose(tilt=-0.1)
@@ -241,3 +254,23 @@ def test_every_detection_in_an_arbitrary_image_is_valid(size, view, boxes, small
         assert np.linalg.eigvalsh(result.covariance)[0] > 0.0
         assert 0 <= result.box[0] < result.box[2] <= width
         assert 0 <= result.box[1] < result.box[3] <= height
+
+
+@settings(max_examples=60)
+@given(
+    distance=st.floats(0.4, 2.5),
+    bearing=st.floats(-30.0, 30.0),
+    radius=st.floats(0.055, 0.115),
+    height=st.floats(0.095, 0.265),
+    tilt=st.floats(-0.55, -0.1),
+)
+def test_an_obstacle_of_unknown_height_is_located_by_its_foot(
+    distance, bearing, radius, height, tilt
+) -> None:
+    """Without its foot, the prior of the height makes the distance uncertain, not wrong."""
+    obstacle = replace(at(distance, bearing, "green", radius), high=height)
+    view = pose(0.0, tilt)
+    for detection in UNSURE.detect(paint([obstacle], view), view):
+        assert_located(detection, obstacle, sigmas=6.0)
+        if not detection.cut:
+            assert abs(detection.distance - distance) < 0.02 + 0.03 * distance

@@ -7,7 +7,7 @@ from tests.vision.scene import CAMERA, Cylinder, at, paint, pose, traced, true_p
 from vision.detector import Detector, parameter_record
 from vision.parameters import VisionParameters
 from vision.split import split
-from vision.tables import CANDIDATE, FAR, NEAR
+from vision.tables import FAR, NEAR, Candidate
 
 GAZE = pose(tilt=-0.4)
 
@@ -18,10 +18,10 @@ def parts_of(obstacles: list[Cylinder]):
     assert len(image.blobs) == 1
     tables = image.blobs, image.runs, image.padded
     parts, _, counts = split(
-        np.zeros(1, CANDIDATE), np.zeros(1, np.int64), *tables, image.view[0], p
+        np.zeros(1, Candidate), np.zeros(1, np.int64), *tables, image.view[0], p
     )
     assert counts.tolist() == [len(parts)]
-    return parts.view(CANDIDATE)
+    return parts.view(Candidate)
 
 
 @pytest.mark.parametrize("offset", [-4.0, -2.0, 0.0, 2.0, 4.0])

@@ -94,10 +94,12 @@ def test_a_robot_that_falls_while_walking_takes_no_more_steps(robot, ideal_body)
     )
     while not engine.fallen:
         engine.step(lying, VelocityCommand(0.2), AHEAD)
-    held = [engine.step(lying, VelocityCommand(0.2), AHEAD).position for _ in range(400)]
+    fallen = [engine.step(lying, VelocityCommand(0.2), AHEAD) for _ in range(400)]
+    held = [targets.position for targets in fallen]
     assert steps > 0
     assert engine.state().step_count <= steps + 1
     assert np.ptp(held, axis=0).max() == 0.0
+    assert all((targets.setpoint == lying.joint_position).all() for targets in fallen)
     assert engine.limits == (Limit.FALLEN,)
 
 

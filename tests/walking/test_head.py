@@ -4,7 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from hypothesis import given
+from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from walking.body.posture import advance_head
@@ -38,6 +38,7 @@ def follow(head):
     return run
 
 
+@settings(max_examples=30)
 @given(
     st.lists(
         st.tuples(st.floats(-2.0, 2.0), st.floats(-2.0, 2.0), st.integers(1, 60)),

@@ -340,6 +340,7 @@ def _capture(walk: Data, landing: Foothold, limited: bool, robot: Model) -> int:
         placing.moved_x, placing.moved_y = goal.x - landing.x, goal.y - landing.y
     put(gait.landing, aimed(gait, foothold(gait.landing), goal, robot))
     now, nominal = foothold(gait.landing), landing_of(support_foot(gait), steering.wanted)
+    placing.shift.x, placing.shift.y = now.x - landing.x, now.y - landing.y
     if not keeps_plan(gait, robot) and not equal(now, landing):
         plan_walk(plan, now, steering.wanted, moves(steering), robot)
     if gait.shortened or not is_same(goal, landing, robot):

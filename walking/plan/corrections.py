@@ -7,13 +7,13 @@ one foot and closes it with the other one; only the mean over both is the comman
 from math import exp
 
 from compilation import compiled
-from walking.data import Corrections, Pose
+from walking.data import Corrections, Planar, Pose
 from walking.model import Model
 from walking.parameters import CONTROL_PERIOD
 from walking.plane import Point, Vector, clamp, rotate_back, within
 
 NO_FOOT = -1
-DISCARDED = -1  # number of errors of a discarded cycle
+DISCARDED = -1  # number of errors or ticks of a discarded cycle
 
 
 @compiled
@@ -30,6 +30,20 @@ def cycle_begins(corrections: Corrections, support: int) -> bool:
     begins: bool = support == corrections.first and support != corrections.support
     corrections.support = support
     return begins
+
+
+@compiled
+def landed_shift(corrections: Corrections, shift: Planar, support: int) -> Point:
+    """Return the shift of a foot that landed in this tick [m], zero in other ticks.
+
+    Args:
+        corrections: of the last tick.
+        shift: shift of the last landing by balance [m].
+        support: present support foot.
+    """
+    if corrections.support in (NO_FOOT, support):
+        return 0.0, 0.0
+    return shift.x, shift.y
 
 
 @compiled
@@ -69,8 +83,8 @@ def heading_rate(corrections: Corrections, ahead: float, renew: bool, robot: Mod
 @compiled
 def end_corrections(corrections: Corrections) -> None:
     """Discard the correction of the speed and the present cycle of the CoM offset."""
-    corrections.errors = DISCARDED
-    corrections.posed = corrections.whole = False
+    corrections.errors = corrections.ticks = DISCARDED
+    corrections.posed = False
     corrections.speed.x = corrections.speed.y = 0.0
 
 
@@ -79,14 +93,17 @@ def speed_correction(
     corrections: Corrections,
     pose: Vector,
     planned: Vector,
+    shift: Point,
     begins: bool,
-    disturbed: bool,
     robot: Model,
 ) -> Point:
     """Return the correction of (vx, vy) [m/s, m/s] against slip and short landings of the feet.
 
     Mean of the planned minus the measured velocity, updated once per gait cycle. Planned footsteps
-    follow any change of the command, so it does not show as slip. Displacements are summed in the
+    follow any change of the command, so it does not show as slip. The plan follows the landings,
+    too: their shifts by balance do not count as planned, so those of every cycle, of a robot with
+    compliant joints, do not change the mean velocity. A push changes the correction little, since
+    its change per cycle is limited. Displacements are summed in the
     present heading: a robot turns in one of two footsteps, so its heading at the begin of a cycle
     differs from the mean.
 
@@ -95,28 +112,29 @@ def speed_correction(
         pose: pose by odometry, heading unwrapped [m, m, rad].
         planned: centre of mass and heading in the plan frame [m, m, rad]; a robot that turns on the
             spot turns about it.
+        shift: shift of a foot that landed in this tick by balance [m].
         begins: whether a gait cycle begins.
-        disturbed: whether balance changes the footsteps.
         robot: constants.
     """
     c = corrections
-    if c.posed:
+    if c.posed and c.ticks >= 0:
         planned_x, planned_y = _displacement(c.planned, planned)
         x, y = _displacement(c.pose, pose)
-        c.slip.x, c.slip.y = c.slip.x + planned_x - x, c.slip.y + planned_y - y
+        shift_x, shift_y = rotate_back(planned[2], *shift)
+        c.slip.x += planned_x - shift_x - x
+        c.slip.y += planned_y - shift_y - y
         c.ticks += 1
     c.posed = True
     c.pose.x, c.pose.y, c.pose.yaw = pose
     c.planned.x, c.planned.y, c.planned.yaw = planned
-    c.whole = c.whole and not disturbed
     if begins:
-        if c.whole:
+        if c.ticks > 0:
             p, time = robot.stabilizer, c.ticks * CONTROL_PERIOD
-            x = c.speed.x + p.speed_gain * (c.slip.x / time - c.speed.x)
-            y = c.speed.y + p.speed_gain * (c.slip.y / time - c.speed.y)
-            limit = p.max_speed_correction
+            limit, change = p.max_speed_correction, p.max_speed_change
+            x = c.speed.x + clamp(p.speed_gain * (c.slip.x / time - c.speed.x), change)
+            y = c.speed.y + clamp(p.speed_gain * (c.slip.y / time - c.speed.y), change)
             c.speed.x, c.speed.y = clamp(x, limit), clamp(y, limit)
-        c.whole, c.ticks = True, 0
+        c.ticks = 0
         c.slip.x = c.slip.y = 0.0
     return c.speed.x, c.speed.y
 
@@ -151,6 +169,8 @@ def correct_offset(
         robot: constants.
     """
     c, p = corrections, robot.stabilizer
+    if disturbed:
+        c.errors = DISCARDED
     if begins:
         if c.errors > 0:
             x = c.goal.x - p.com_offset_gain * c.error_sum.x / c.errors
@@ -158,9 +178,7 @@ def correct_offset(
             c.goal.x, c.goal.y = clamp(x, p.max_com_offset), clamp(y, p.max_com_offset)
         c.error_sum.x = c.error_sum.y = 0.0
         c.errors = 0
-    if disturbed:
-        c.errors = DISCARDED
-    elif c.errors >= 0 and pressed:
+    if c.errors >= 0 and pressed:
         x, y = error
         c.error_sum.x, c.error_sum.y = c.error_sum.x + x, c.error_sum.y + y
         c.errors += 1

@@ -12,6 +12,7 @@ from walking.plan.corrections import (
     detects_touchdown,
     end_corrections,
     heading_rate,
+    landed_shift,
     restart_cycle,
     speed_correction,
     speed_ratio,
@@ -70,14 +71,14 @@ def want_strides(walk: Data, odometry: DeadReckoning, robot: Model) -> None:
         end_corrections(corrections)
         set_wanted_strides(steering, STILL, robot)
         return
+    shift = landed_shift(corrections, walk.placing.shift, gait.support)
     begins = cycle_begins(corrections, gait.support)
-    shift = norm(walk.placing.moved_x, walk.placing.moved_y)
-    disturbed = gait.shortened or shift > robot.stabilizer.max_steady_shift
+    disturbed = gait.shortened or norm(*shift) > robot.stabilizer.max_steady_shift
     pressure = (error.pressure_x, error.pressure_y)
     correct_offset(corrections, pressure, error.pressed, begins, disturbed, robot)
     pose = (odometry.x, odometry.y, odometry.yaw)
     planned = (walk.pendulum.x, walk.pendulum.y, walk.limbs.pelvis.yaw)
-    vx, vy = speed_correction(corrections, pose, planned, begins, disturbed, robot)
+    vx, vy = speed_correction(corrections, pose, planned, shift, begins, robot)
     wz = heading_rate(corrections, ahead, begins or disturbed, robot)
     set_wanted_strides(steering, (vx, vy, wz), robot)
 

@@ -72,7 +72,14 @@ WHEELS = (
         "example-robot-data==6.0.0",
         "cmeel",
         ("../cmeel.prefix/share/example-robot-data/robots",),
-        ("alexander_description",),
+        ("alexander_description", "talos_data"),
+    ),
+    _Wheel(
+        "Fourier",
+        "fourier-robot-descriptions==0.2.7",
+        "fourier_robot_descriptions",
+        ("..",),
+        ("fourier_robot_descriptions",),
     ),
 )
 

@@ -23,7 +23,7 @@ from navigation.angles import wrap
 from navigation.observation import CameraModel, shadow_at
 from vision.color import COLOR_CLASSES
 from vision.detection import Detection
-from vision.view import VIEW
+from vision.view import View
 
 Array = NDArray[np.float64]
 Rows = NDArray[np.record]
@@ -88,7 +88,7 @@ class AnalyticCamera:
         self._moving = slice(len(layout.static), len(layout.obstacles))
         self._sizes = np.array([(c.radius, c.height) for c in self._cylinders]).reshape(-1, 2)
         self._beacon = np.array([isinstance(c, Beacon) for c in self._cylinders], dtype=bool)
-        self._view: Rows = np.zeros(1, VIEW)
+        self._view: Rows = np.zeros(1, View)
         self._view["middle"] = 0.5 * settings.width, 0.5 * settings.height
         self._view["focal"] = settings.pinhole.focal
 
@@ -316,7 +316,7 @@ def project(
         height: [m].
         beacon: whether the cylinder is a beacon, recognised by its seam with a part of both
             colours in the image.
-        view: camera in W, a record of type `VIEW`.
+        view: camera in W, a record of type `View`.
         panoramic: whether the camera is panoramic.
     """
     width, rows = 2.0 * view.middle[0], 2.0 * view.middle[1]
@@ -344,7 +344,7 @@ def project_all(
         positions: axes of the cylinders in W, sorted by distance from the camera (n, 2) [m].
         sizes: radii and heights (n, 2) [m].
         beacon: whether each cylinder is a beacon (n,).
-        cameras: camera in W, a record of type `VIEW` (1,).
+        cameras: camera in W, a record of type `View` (1,).
         panoramic: whether the camera is panoramic.
 
     Returns:

@@ -15,14 +15,7 @@ from hsr8.scenario.world import Mover, TrackMover
 from hsr8.world.field.circle_crossing import draw_crossing
 from hsr8.world.field.encounter import NominalWalk, course_to, passage_through, starts_near
 from hsr8.world.field.lane import Lane, apart_at_all_times, distance, motion_law
-from hsr8.world.field.layout import (
-    Beacon,
-    Layout,
-    Obstacle,
-    sizes_of,
-    standard_beacons,
-    with_first_moved,
-)
+from hsr8.world.field.layout import Layout, Obstacle, beacons_of, sizes_of
 from hsr8.world.field.motion import Circle, MotionLaw, Point, Shuttle
 from hsr8.world.field.wander import draw_wander
 
@@ -135,7 +128,7 @@ class Attempt:
         return Layout(
             field_size=world.size,
             obstacles=(*self._static, *(lane.obstacle for lane in self._lanes)),
-            beacons=self._beacons(),
+            beacons=beacons_of(world, self._sizes),
             start=(*start, self._start_heading(start, points)),
             waypoints=np.array(points, dtype=float).reshape(-1, 2),
             goal_heading=self._goal_heading(),
@@ -174,13 +167,6 @@ class Attempt:
         """Return a mover with its lane."""
         mover = self._cylinder(motion.position(0.0), radius, color, motion)
         return Lane.of(mover, self._world.scale, self._scenario.time_scale)
-
-    def _beacons(self) -> tuple[Beacon, ...]:
-        world = self._world
-        if not world.beacons:
-            return ()
-        beacons = standard_beacons(world.size, self._sizes, world.scale)
-        return with_first_moved(beacons, world.beacon_displacement, world.size)
 
     def _given_points(self) -> list[Point] | None:
         mission = self._scenario.mission

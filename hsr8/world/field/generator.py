@@ -79,14 +79,14 @@ def draw_world(scenario: Scenario, seed: int) -> FairWorld:
             continue
         if scenario.world.crowd != "none":
             # A crowd reacts: no path is certain to be free.
-            layout = _with_reactions(layout, scenario, seed)
+            layout = _completed(layout, scenario, seed)
             points = len(layout.waypoints)
             return FairWorld(layout, Certificate(False, 0, points, 0.0), 0, crowded.total())
         reached = scenario.navigation.mission.r_via
         certificate = certify(layout, scenario.robot, reached, MAX_WORK - work)
         work += certificate.work
         if certificate.solvable or not _draws(scenario):
-            layout = with_faults(_with_reactions(layout, scenario, seed), scenario.fault)
+            layout = with_faults(_completed(layout, scenario, seed), scenario.fault)
             return FairWorld(layout, certificate, rejected, crowded.total())
         rejected += 1
         if work >= MAX_WORK:
@@ -103,8 +103,16 @@ def draw_world(scenario: Scenario, seed: int) -> FairWorld:
     )
 
 
-def _with_reactions(layout: Layout, scenario: Scenario, seed: int) -> Layout:
-    """Return a layout whose movers react; the seed draws which of them yield."""
+def _completed(layout: Layout, scenario: Scenario, seed: int) -> Layout:
+    """Return a layout with drawn heights, whose movers react; the seed draws which of them yield.
+
+    Places, sizes and motions are those of a world of one height without reactions.
+    """
+    low, high = layout.sizes.obstacle_height
+    if low < high:
+        heights = named_rng(seed, "height").uniform(low, high, len(layout.obstacles)).tolist()
+        obstacles = zip(layout.obstacles, heights, strict=True)
+        layout = replace(layout, obstacles=tuple(replace(o, height=h) for o, h in obstacles))
     rng, fraction = named_rng(seed, "yield"), scenario.world.yield_fraction
     reactions = Reactions(
         crowd=scenario.world.crowd != "none",
@@ -112,11 +120,11 @@ def _with_reactions(layout: Layout, scenario: Scenario, seed: int) -> Layout:
         robot_radius=scenario.robot.radius,
         time_scale=scenario.time_scale,
     )
-    obstacles = (
+    reacting = (
         *layout.static,
         *(replace(m, yields=bool(rng.random() < fraction)) for m in layout.movers),
     )
-    return replace(layout, obstacles=obstacles, reactions=reactions)
+    return replace(layout, obstacles=reacting, reactions=reactions)
 
 
 def _draws(scenario: Scenario) -> bool:

@@ -79,7 +79,8 @@ class Lane:
         if isinstance(motion, Track):
             _, path = motion.sampled(-inf, inf, SPACING * scale)
             return cls(obstacle, path, path[[0, -1]], crosses=True)
-        path = motion.positions(np.linspace(0.0, OPEN_TIME * time_scale, SAMPLES))
+        times = np.linspace(0.0, OPEN_TIME * time_scale, SAMPLES)
+        path = Movers([motion]).positions(times)[:, 0]
         return cls(obstacle, path, path[:1])
 
 

@@ -142,11 +142,19 @@ def sizes_of(world: World) -> Sizes:
         radii.append(world.circle.radius)
     low, high = SIZES.obstacle_height
     return Sizes(
-        obstacle_height=(low * world.scale, high * world.scale),
+        obstacle_height=world.height or (low * world.scale, high * world.scale),
         obstacle_radius=(min(radii), max(radii)),
         beacon_height=SIZES.beacon_height * world.scale,
         beacon_radius=SIZES.beacon_radius * world.scale,
     )
+
+
+def beacons_of(world: World, sizes: Sizes) -> tuple[Beacon, ...]:
+    """Return the beacons of a world."""
+    if not world.beacons:
+        return ()
+    beacons = standard_beacons(world.size, sizes, world.scale)
+    return with_first_moved(beacons, world.beacon_displacement, world.size)
 
 
 def standard_beacons(

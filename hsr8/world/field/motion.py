@@ -3,12 +3,11 @@
 from collections.abc import Sequence
 from dataclasses import dataclass
 from math import hypot, inf
-from typing import cast
 
 import numpy as np
 from numpy.typing import NDArray
 
-from hsr8.scenario.path import Path, Paths, straight_pieces
+from hsr8.scenario.path import Law, Path, Paths, straight_pieces
 from hsr8.scenario.track import AWAY, Track
 
 Array = NDArray[np.float64]
@@ -19,32 +18,8 @@ ALWAYS: Interval = (-inf, inf)
 SAME_TIME = 1e-6  # times closer than this are equal [s]
 
 
-class _Law:
-    """Motion law, evaluated as the only one of `Movers`."""
-
-    __slots__ = ()
-
-    def positions(self, times: Array) -> Array:
-        """Return the positions at `times` (...) [s] (..., 2) [m]."""
-        positions: Array = self._alone().positions(times)[..., 0, :]
-        return positions
-
-    def position(self, time: float) -> Point:
-        """Return the position at `time` [s]."""
-        x, y = self.positions(np.asarray(time)).tolist()
-        return x, y
-
-    def velocity(self, time: float) -> Point:
-        """Return the velocity at `time` [m/s]; where it jumps, the velocity after it."""
-        x, y = self._alone().velocities(time)[0].tolist()
-        return x, y
-
-    def _alone(self) -> "Movers":
-        return Movers([cast("MotionLaw", self)])  # every subclass is one
-
-
 @dataclass(frozen=True, slots=True)
-class Line(_Law):
+class Line(Law):
     """Straight line at constant velocity.
 
     Attributes:
@@ -65,7 +40,7 @@ class Line(_Law):
 
 
 @dataclass(frozen=True, slots=True)
-class _Segment(_Law):
+class _Segment(Law):
     """Line between two points.
 
     Attributes:
@@ -125,7 +100,7 @@ class Passage(_Segment):
 
 
 @dataclass(frozen=True, slots=True)
-class Circle(_Law):
+class Circle(Law):
     """Circle at constant speed.
 
     Attributes:
@@ -140,9 +115,15 @@ class Circle(_Law):
     speed: float
     angle: float = 0.0
 
+    def state(self, time: float) -> Array:
+        """Return the state at `time` [s], see `Paths.states` (6,)."""
+        alone, times = _Circles([self]), np.array([time])
+        state: Array = np.hstack([alone.positions(times)[0], alone.velocities(times)[0], time, 1.0])
+        return state
+
 
 @dataclass(frozen=True, slots=True)
-class Wander(_Law):
+class Wander(Law):
     """Closed polygon with short sides of equal length, at constant speed.
 
     Attributes:
@@ -197,8 +178,8 @@ class Movers:
         away: float = AWAY,
     ) -> None:
         self.motions = motions
-        circles = {k: law for k, law in enumerate(motions) if isinstance(law, Circle)}
-        paths = {k: law.path for k, law in enumerate(motions) if not isinstance(law, Circle)}
+        circles = {k: m for k, m in enumerate(motions) if isinstance(m, Circle)}
+        paths = {k: m.path for k, m in enumerate(motions) if not isinstance(m, Circle)}
         self._kinds: list[tuple[list[int], Paths | _Circles]] = []
         if circles:
             self._kinds.append((list(circles), _Circles(list(circles.values()))))

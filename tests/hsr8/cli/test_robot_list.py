@@ -53,4 +53,4 @@ def test_a_table_is_printed(monkeypatch, capsys):
     for name in robot_names():
         assert name in printed
     assert "mass [kg]" in printed
-    assert printed.count("missing     ") == 4
+    assert printed.count("missing     ") == 5

@@ -281,7 +281,7 @@ def test_the_parts_of_a_urdf_robot_are_found_in_any_frames(tmp_path, hip, turn, 
         "hsr8",
         pytest.param("icub", marks=ICUB),
         *(pytest.param(n, marks=MENAGERIE) for n in ("op3", "t1", "g1", "apollo", "berkeley")),
-        *(pytest.param(n, marks=installed(n)) for n in ("jvrc1", "alexander")),
+        *(pytest.param(n, marks=installed(n)) for n in ("jvrc1", "alexander", "talos", "gr3")),
     ],
 )
 def test_the_parts_of_the_shipped_robots_are_found(name):

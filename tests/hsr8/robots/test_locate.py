@@ -11,7 +11,19 @@ from hsr8.robots.file.description import RobotDescription, read_description
 from hsr8.robots.file.files import models_dir
 from hsr8.robots.loaded import load_robot
 
-NAMES = ["alexander", "apollo", "berkeley", "g1", "hsr8", "icub", "jvrc1", "op3", "t1"]
+NAMES = [
+    "alexander",
+    "apollo",
+    "berkeley",
+    "g1",
+    "gr3",
+    "hsr8",
+    "icub",
+    "jvrc1",
+    "op3",
+    "t1",
+    "talos",
+]
 MODEL = "some_robot/robot.xml"
 
 
@@ -72,7 +84,7 @@ def test_a_file_is_its_own_description(tmp_path, name):
     ("name", "reason"),
     [
         ("hsr9", "did you mean 'hsr8'"),
-        ("zebra", "alexander, apollo, berkeley, g1, hsr8, icub, jvrc1, op3, t1"),
+        ("zebra", ", ".join(NAMES)),
         ("robot.xlm", "expected a .toml, .xml, .mjcf or .urdf file"),
         ("", "unknown robot ''"),
         ("x" * 300, "unknown robot"),

@@ -13,6 +13,7 @@ from hsr8.scenario.loader import dump, load_scenario, loads
 from hsr8.scenario.scaling import is_complete, scaled
 from hsr8.scenario.schema import Scenario
 from hsr8.scenario.section import Section
+from navigation.parameters.navigation import NavigationParameters
 
 SCALE = RobotScale(length=2.0, speed=1.5, turn=0.5, weight=8.0)
 BIG = ["robot.model=big"]
@@ -139,8 +140,9 @@ def test_the_table_of_a_robot_is_a_default(defaults):
     assert paper.robot.radius == 0.25
     assert paper.navigation.univector.s_robot == 0.25
     assert paper.navigation.gaze.max_pan == 1.0
-    assert paper.navigation.univector.margin == 0.06
-    assert paper.navigation.planner.paper.d_e == 0.3
+    usual = NavigationParameters.paper()
+    assert paper.navigation.univector.margin == 2.0 * usual.univector.margin
+    assert paper.navigation.planner.paper.d_e == 2.0 * usual.planner.paper.d_e
 
 
 def test_the_camera_of_a_robot_takes_precedence_over_a_preset(monkeypatch):

@@ -4,7 +4,7 @@ import numpy as np
 
 from compilation.record import record
 from navigation.belief.association import assign, distinct
-from navigation.belief.tracked_object import OBJECT
+from navigation.belief.tracked_object import ObjectRecord
 from navigation.parameters.belief import TrackingParameters
 
 
@@ -30,7 +30,7 @@ def test_nothing_is_paired_at_a_loss():
 def test_of_two_overlapping_tracks_of_a_colour_the_one_with_weaker_evidence_goes():
     rng = np.random.default_rng(1)
     p = TrackingParameters()
-    objects = np.zeros(12, OBJECT)
+    objects = np.zeros(12, ObjectRecord)
     objects["weights"] = (1.0, 0.0, 0.0)
     objects["states"][:, 0, :2] = centres = rng.uniform(-0.6, 0.6, (12, 2))
     objects["motion"], objects["radius"] = 0, rng.uniform(0.1, 0.3, 12)

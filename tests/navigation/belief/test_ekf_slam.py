@@ -132,6 +132,19 @@ def test_landmarks_that_move_are_deleted(observe, frame, track):
     assert np.array_equal(slam.covariance, covariance)
 
 
+def test_the_landmarks_that_remain_keep_their_positions(observe, frame, track):
+    here, slam = (0.0, 0.0, 0.0), EkfSlam(BeliefParameters(), np.zeros(3))
+    posts = [observe(here, (x, y), label=label, sigma=SIGMA) for x, y, label in POSTS]
+    first = frame(0.0, here, posts)
+    slam.update(first)
+    slam.map_landmarks(first, tracks(track, range(8)))
+    slam.map_landmarks(frame(0.1, here, []), tracks(track, [4, 6], visible=False))
+    again = frame(9.0, here, [posts[4], posts[6]])
+    slam.update(replace(again, motion_covariance=1e-2 * np.eye(3)))
+    assert slam.pose == pytest.approx(np.zeros(3), abs=1e-6)
+    assert np.diag(slam.covariance).max() < 2e-3
+
+
 PLACES = [  # no two arrangements of these are alike
     (1.2, 0.1, "red"),
     (1.5, 0.9, "green"),

@@ -68,10 +68,10 @@ def walk(rng, start, seconds, names_at, parameters=None, speed=0.15, turn=0.4):
 
 def test_is_consistent_for_every_heading():
     nees = []
-    for seed in range(12):
+    for seed in range(6):
         rng = np.random.default_rng(seed)
         start = (0.0, 0.0, pi - 0.01 + 0.02 * (seed % 2))
-        turn = 0.0 if seed < 6 else 0.4
+        turn = 0.0 if seed < 3 else 0.4
         names = list(BEACONS)
         for k, (localizer, pose) in enumerate(
             walk(rng, start, 20.0, lambda k, n=names: [n[k % 8]], turn=turn, speed=0.05)

@@ -5,9 +5,9 @@ import pytest
 
 from compilation.record import record
 from navigation.belief.belief import Motion
-from navigation.belief.detections import DETECTION
+from navigation.belief.detections import DetectionRecord
 from navigation.belief.tracked_object import (
-    OBJECT,
+    ObjectRecord,
     classify,
     correct,
     detection_reach,
@@ -59,7 +59,7 @@ def make(modes=None, **changes):
     }
     values |= (modes or filters()) | changes
     values["motion"] = MOTIONS.index(values["motion"])
-    objects = np.zeros(1, OBJECT)
+    objects = np.zeros(1, ObjectRecord)
     for name, value in values.items():
         objects[name] = value
     return objects
@@ -123,7 +123,7 @@ def test_a_mover_that_may_have_reversed_has_not_stopped():
 @pytest.mark.parametrize("last_time", [5.0, 9.99])
 def test_a_detection_outside_the_gate_counts_once(last_time):
     """The filters start again at the detection, as those of a new track."""
-    d = np.zeros(1, DETECTION)[0]
+    d = np.zeros(1, DetectionRecord)[0]
     d.position, d.covariance, d.radius, d.radius_sigma = (2.0, 2.0), SHARP, 0.08, 0.01
     objects = make(filters(0.7), motion=Motion.MOVING, last_time=last_time)
     o = objects[0]
@@ -137,7 +137,7 @@ def test_a_detection_outside_the_gate_counts_once(last_time):
 
 
 def test_two_equally_certain_radii_are_averaged():
-    d = np.zeros(1, DETECTION)[0]
+    d = np.zeros(1, DetectionRecord)[0]
     d.position, d.covariance, d.radius, d.radius_sigma = (0.95, 2.0), SHARP, 0.10, 0.02
     o = make(radius=0.08, radius_sigma=0.02)[0]
     correct(o, d, 100.0, LIMITS[0])  # so late that the errors are independent

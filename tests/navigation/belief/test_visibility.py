@@ -47,7 +47,7 @@ def scene(view):
         rng = np.random.default_rng(seed)
         shadow = rng.uniform(0.0, 1.5, 36)
         camera = view(pan=rng.uniform(-1, 1), tilt=-0.6, hfov=1.5, vfov=0.8)
-        camera = replace(camera, model=replace(camera.model, top=0.3, shadow=shadow))
+        camera = replace(camera, model=replace(camera.model, top=0.5, min_top=0.3, shadow=shadow))
         pose = rng.uniform(-1, 1, 3)
         points = rng.uniform(-3, 3, (200, 2))
         centres, radii = rng.uniform(-2, 2, (20, 2)), rng.uniform(0.05, 0.2, 20)
@@ -68,7 +68,7 @@ def contained(points, camera, pose, margin):
     bearing = np.arctan2(offset[:, 1], offset[:, 0]) - pose[2]
     foot = distance >= np.array([shadow_at(b, sight.shadow) for b in bearing])
     foot &= shown(offset, -position[2], camera, pose, margin)
-    top = shown(offset, sight.top - position[2], camera, pose, margin)
+    top = shown(offset, sight.min_top - position[2], camera, pose, margin)
     return (distance <= RANGE) & (foot | top)
 
 

@@ -3,7 +3,7 @@ from math import tan
 import numpy as np
 import pytest
 
-from navigation.gaze.views import LOOK, move_time, view_values
+from navigation.gaze.views import Look, move_time, view_values
 
 RATE, ACCELERATION = 3.0, 40.0
 EYE, LENS = np.array([0.04, 0.46]), np.array([tan(0.5), tan(0.4)])
@@ -32,7 +32,7 @@ def test_a_head_that_accelerates_fully_arrives_in_the_time_of_the_move(angle, sp
 
 
 def look(x, y, weight=1.0, base=1.0, rate=0.0, *, top=0.0, credit=0.0):
-    return np.array([(x, y, weight, base, rate, top, credit, False)], LOOK)
+    return np.array([(x, y, weight, base, rate, top, credit, False)], Look)
 
 
 STILL = (0.0, 0.0, -0.4, 0.0)

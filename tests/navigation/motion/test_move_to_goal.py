@@ -15,7 +15,8 @@ from navigation.motion.velocity_mapping import body_velocity
 from navigation.parameters.motion import UnivectorParameters
 from navigation.parameters.planner import PaperParameters
 
-DEFAULT, PAPER = UnivectorParameters(), PaperParameters()
+DEFAULT = UnivectorParameters()
+PAPER = PaperParameters(d_con=DEFAULT.d_con)
 DIRECTIONS = {
     "default": partial(move_to_goal, parameters=DEFAULT),
     "paper": partial(paper.move_to_goal, p=PAPER),

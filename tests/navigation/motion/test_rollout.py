@@ -8,7 +8,7 @@ import pytest
 from compilation.record import record
 from navigation.angles import wrap_array
 from navigation.motion import rollout as kernel
-from navigation.motion.hypotheses import DISC
+from navigation.motion.hypotheses import Disc
 from navigation.parameters.motion import SafetyFilterParameters
 
 ENVELOPE = (0.2, 0.1, 0.08, 0.8, 1.5)
@@ -84,7 +84,7 @@ def test_a_candidate_behind_turns_at_once_and_is_walked_meanwhile():
 
 def discs(places, velocities=None, radius=0.2, horizon=6.0):
     places = np.atleast_2d(np.asarray(places, float))
-    result = np.zeros(len(places), DISC)
+    result = np.zeros(len(places), Disc)
     result["position"], result["radius"] = places, radius
     result["velocity"] = 0.0 if velocities is None else velocities
     result["horizon"], result["weight"] = horizon, 1.0

@@ -1,7 +1,7 @@
 import numpy as np
 import pytest
 
-from navigation.motion.hypotheses import DISC
+from navigation.motion.hypotheses import Disc
 from navigation.motion.safety_filter import RolloutStart, SafetyFilter
 from navigation.parameters.motion import SafetyFilterParameters, VelocityMappingParameters
 
@@ -14,7 +14,7 @@ ON_COURSE = None
 
 def discs(places, velocities=None, radius=0.25, horizon=6.0, weight=1.0):
     places = np.atleast_2d(np.asarray(places, float))
-    result = np.zeros(len(places), DISC).view(np.recarray)
+    result = np.zeros(len(places), Disc).view(np.recarray)
     result.position, result.velocity = places, 0.0 if velocities is None else velocities
     result.radius, result.horizon, result.weight = radius, horizon, weight
     return result
@@ -52,7 +52,7 @@ def test_a_safe_velocity_passes_unchanged(filter_):
 
 def test_the_choice_has_the_minimum_loss_of_all_candidates(filter_):
     rng, changed = np.random.default_rng(1), 0
-    for _ in range(100):
+    for _ in range(30):
         d = discs(rng.uniform(-1, 1, (5, 2)), rng.normal(0, 0.1, (5, 2)))
         s, desired = start(body=(0.15, 0.0, 0.1), course=0.2), np.array([0.196, 0.04])
         candidates = filter_.candidates(desired, 0.2)
@@ -65,12 +65,13 @@ def test_the_choice_has_the_minimum_loss_of_all_candidates(filter_):
         if filter_.risk(s, desired[None], d)[0] > 0.0:
             assert loss[chosen] == pytest.approx(loss.min())
             changed += 1
-    assert changed > 20
+    assert changed > 6
 
 
 def test_a_standing_robot_leaves_the_band_of_a_mover(filter_):
-    v = choose(filter_, [0.0, 0.0], discs([0.7, 0.0], [-0.14, 0.0]))
+    v, direction = filter_.choose(start(), np.zeros(2), discs([0.7, 0.0], [-0.14, 0.0]))
     assert abs(v[1]) > 0.02
+    assert direction == pytest.approx(np.arctan2(v[1], v[0]))
 
 
 def test_a_collision_beyond_the_horizon_of_its_disc_does_not_matter(filter_):

@@ -142,6 +142,8 @@ def test_feet_that_slide_against_each_other_are_held_against_the_odometry():
     grown = stepped(0.004, parameters) - stepped(0.0, parameters)
     assert grown[:2, :2] == pytest.approx(0.002**2 * np.eye(2), rel=1e-4, abs=1e-9)
     assert grown[2] == pytest.approx(np.zeros(3), abs=1e-9)
+    drift = 6 * CONTROL_PERIOD * parameters.yaw_drift**2  # a slip is not a turn
+    assert stepped(0.004, parameters)[2, 2] == pytest.approx(drift)
 
 
 def test_a_foot_in_the_air_does_not_slip():

@@ -248,10 +248,8 @@ def stop(walk, velocity, stop_at):
 @pytest.mark.parametrize(
     "velocity",
     [
-        (LIMITS.vx, 0.0, 0.0),
         (-LIMITS.vx_backward, 0.0, 0.0),
         (0.0, LIMITS.vy, 0.0),
-        (0.0, 0.0, -LIMITS.wz),
         (0.4, -0.1, 0.8),
     ],
 )

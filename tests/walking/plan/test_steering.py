@@ -5,7 +5,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from walking.command import ACCELERATION, BALANCE, STRIDE_LIMITS
+from walking.command import ACCELERATION, BALANCE, COMBINED_SPEED, STRIDE_LIMITS
 from walking.constants import parameters_record
 from walking.data import Data, Steering
 from walking.parameters import CONTROL_PERIOD, WalkingParameters
@@ -56,13 +56,15 @@ def steer(make_model):
 
 @given(speeds, speeds, speeds)
 def test_limited_velocity_is_within_every_limit(vx, vy, wz):
-    (f, s, t), _ = limited((vx, vy, wz), PARAMETERS)
+    (f, s, t), bound = limited((vx, vy, wz), PARAMETERS)
     assert -LIMITS.vx_backward <= f <= LIMITS.vx
     assert abs(s) <= LIMITS.vy
     assert abs(t) <= LIMITS.wz
     ahead = LIMITS.vx if f >= 0.0 else LIMITS.vx_backward
     norm = (f / ahead) ** 2 + (s / LIMITS.vy) ** 2 + (t / LIMITS.wz) ** 2
     assert norm <= LIMITS.combined**2 + 1e-9
+    if bound & COMBINED_SPEED:
+        assert norm == pytest.approx(LIMITS.combined**2)
 
 
 @given(speeds, speeds, speeds)

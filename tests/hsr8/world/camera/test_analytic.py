@@ -116,12 +116,6 @@ def test_a_thing_at_the_border_is_flagged(see):
     assert all(d.cut for d in detections)
 
 
-def test_beacons_carry_their_names(see):
-    names = {d.label for frame in see(tilt=0.1) for d in frame if d.kind == "beacon"}
-    assert names
-    assert all(name.count("/") == 1 for name in names)
-
-
 def test_far_things_are_not_reported(see):
     assert obstacles_in(see(Obstacle((4.4, 0.0), 0.1, 0.3, "red")))
     assert not obstacles_in(see(Obstacle((4.6, 0.0), 0.1, 0.3, "red")))

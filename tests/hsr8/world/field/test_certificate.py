@@ -1,6 +1,5 @@
 from dataclasses import replace
 from math import pi
-from time import process_time
 
 import numpy as np
 import pytest
@@ -10,7 +9,6 @@ from hsr8.scenario.loader import load_scenario
 from hsr8.scenario.robot import Robot, SpeedEnvelope
 from hsr8.world.field.certificate import VIA_REACHED, certify, min_clearance
 from hsr8.world.field.generator import draw_layout, draw_world
-from hsr8.world.field.lattice import Lattice
 from hsr8.world.field.layout import Layout, Obstacle
 from hsr8.world.field.motion import Circle, Passage, Shuttle, Wander
 
@@ -180,27 +178,8 @@ def test_points_before_a_wall_are_counted(x, points, reached):
     assert certificate.points == len(points)
 
 
-def test_the_cells_among_many_obstacles_of_a_large_field_are_found_in_one_pass():
-    places = np.random.default_rng(1).uniform(5.0, 45.0, (128, 2))
-    posts = [Obstacle((x, y), 2.0, 0.3, "red") for x, y in places.tolist()]
-    lattice = Lattice(layout(posts, size=(100.0, 100.0)), ROBOT, 0.05)
-    lattice.connected()
-
-    began = process_time()
-    connected = lattice.connected()
-
-    assert process_time() - began < 2.0
-    assert connected[lattice.start]
-    assert connected[lattice.near((-45.0, -45.0), 1.0) > 0].all()
-    assert not connected[lattice.near(posts[0].position, 2.0) > 0].any()
-
-
 def test_a_mover_that_sweeps_a_narrow_corridor_blocks_it():
     sweeper = Obstacle((1.2, 0.0), 0.12, 0.3, "red", Shuttle((1.2, 0.0), (-1.2, 0.0), 0.15))
     corridor = layout([sweeper], size=(3.0, 0.44))
     assert not certify(corridor, ROBOT).solvable
     assert certify(layout([sweeper], size=(3.0, 2.0)), ROBOT).solvable
-
-
-def test_a_world_without_points_is_feasible():
-    assert certify(layout(waypoints=np.zeros((0, 2))), ROBOT).solvable
