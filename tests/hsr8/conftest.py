@@ -52,9 +52,9 @@ def quick_runs(tmp_path_factory):
 
 
 @pytest.fixture
-def quick_run(quick_runs, tmp_path):
+def quick_run(quick_runs, tmp_path_factory):
     """Copy of that run, in the folder `quick` of a folder of runs."""
-    return open_run(shutil.copytree(quick_runs, tmp_path / "runs"))
+    return open_run(shutil.copytree(quick_runs, tmp_path_factory.mktemp("copy") / "runs"))
 
 
 @pytest.fixture(scope="session")

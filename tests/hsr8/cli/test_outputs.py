@@ -129,6 +129,7 @@ def test_an_unwritable_output_is_reported_before_any_work(
 
 def test_equal_targets_of_an_export_are_refused(run, tmp_path, monkeypatch, capsys):
     monkeypatch.chdir(tmp_path)
+    (tmp_path / "runs").mkdir()
     words = ["export", str(run.path), "--csv", "out", "--lerobot", "./runs/../out"]
     assert entry(words) == 2
     assert "--lerobot runs/../out: the same as --csv; expected another" in capsys.readouterr().err
