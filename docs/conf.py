@@ -13,7 +13,7 @@ CONTENTS = {
     "Concepts": ("concepts", "worlds", "vision", "belief", "gaze", "planning", "walking"),
     "How to": (
         *("python", "sweeps", "bench", "robots", "gym"),
-        *("faults", "crowds", "circle", "export"),
+        *("faults", "crowds", "circle", "export", "ros"),
     ),
     "Paper": ("equations", "figures"),
     "Reference": ("commands", "scenarios", "files", "metrics", "data", "api"),
