@@ -290,7 +290,7 @@ class Corrections:
     speed: Planar  # correction of the velocity, forward and left [m/s]
     posed: bool  # whether the last poses are known
     pose: Pose  # last pose by odometry
-    planned: Pose  # last planned pose of the pelvis
+    planned: Pose  # last planned centre of mass and heading
     slip: Planar  # planned minus measured displacement of the cycle, forward and left [m]
     ticks: int  # of the cycle, -1 for a discarded one [1]
     goal: Planar  # of the CoM offset [m]

@@ -176,7 +176,7 @@ class StabilizerParameters:
     speed_gain: Annotated[float, NUMBER] = 0.5  # filter gain of the mean slip, per gait cycle [1]
     max_speed_correction: Annotated[float, SPEED] = 0.06  # forward and lateral [m/s]
     max_speed_change: Annotated[float, SPEED] = 0.01  # of that correction per gait cycle [m/s]
-    # capture shift of a landing below which a gait cycle is steady for the slow corrections [m]
+    # shift of a landing by balance from which a cycle does not count for the CoM offset [m]
     max_steady_shift: Annotated[float, LENGTH] = 0.010
     com_offset_gain: Annotated[float, NUMBER] = 0.3  # per mean CoP error of a cycle [1]
     max_com_offset: Annotated[float, LENGTH] = 0.015  # forward and lateral [m]

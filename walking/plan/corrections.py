@@ -69,8 +69,8 @@ def heading_rate(corrections: Corrections, ahead: float, renew: bool, robot: Mod
     Args:
         corrections: changed.
         ahead: planned minus measured heading [rad].
-        renew: whether to update the rate: at the begin of a gait cycle, and in every tick while
-            balance changes the footsteps.
+        renew: whether to update the rate: at the begin of a gait cycle, after a landing that
+            balance shifted, and in every tick of a shortened footstep.
         robot: constants.
     """
     if renew:
@@ -165,7 +165,7 @@ def correct_offset(
         error: centre of pressure minus planned ZMP, forward and left [m].
         pressed: whether a foot carries load; ticks in the air do not count.
         begins: whether a gait cycle begins.
-        disturbed: whether balance changes the footsteps.
+        disturbed: whether balance shifted the foot that landed, or shortens the footstep.
         robot: constants.
     """
     c, p = corrections, robot.stabilizer
