@@ -18,6 +18,7 @@ from walking.parameters import (
     CONTROL_PERIOD,
     GRAVITY,
     GaitParameters,
+    LimitParameters,
     StabilizerParameters,
     WalkingParameters,
 )
@@ -34,16 +35,21 @@ JOINT_ROOM = 0.05  # of a walking leg to its joint limits [rad]
 REACHED = 1e-6  # error of a leg that reaches its foot [rad]
 STRIDE = 0.12  # of a walking leg forward and backward, of its length [1]
 RAISE, MAX_HEIGHT = 0.01, 0.93  # step and end of the search for a hip height, of the leg [1]
+NARROWER = 0.02  # step of the search for a reach, of that by similarity [1]
 
 
 def fit(robot: RobotModel, scaled: WalkingParameters) -> WalkingParameters:
     """Return the scaled parameters of a robot within all rules."""
     gait = with_clear_stance(robot, scaled.gait)
     pattern = scaled.pattern
-    pattern = replace(pattern, pelvis_height=hip_height(robot, gait, pattern.pelvis_height))
-    gait = with_calm_landing(robot, with_servo_time(robot, gait))
+    height = hip_height(robot, gait, pattern.pelvis_height)
+    limits = with_side_reach(robot, scaled.limits, gait.half_stance, height)
     return replace(
-        scaled, gait=gait, pattern=pattern, stabilizer=with_gains(robot, scaled.stabilizer)
+        scaled,
+        gait=with_calm_landing(robot, with_servo_time(robot, gait)),
+        pattern=replace(pattern, pelvis_height=height),
+        stabilizer=with_gains(robot, scaled.stabilizer),
+        limits=limits,
     )
 
 
@@ -153,14 +159,34 @@ def stride_room(robot: RobotModel, half_stance: float, height: float) -> float:
 
     Where a foot is out of reach, it is negative.
     """
+    strides = (0.0, STRIDE * robot.legs[0].length, -STRIDE * robot.legs[0].length)
+    return min(_room(robot, half_stance, ahead, height) for ahead in strides)
+
+
+def with_side_reach(
+    robot: RobotModel, limits: LimitParameters, half_stance: float, height: float
+) -> LimitParameters:
+    """Return a lateral reach at which both soles are flat with the pelvis between them.
+
+    A capture step beyond the range of the ankle roll lands on the edge of the sole, and so does the
+    next one to the other side.
+    """
+    most = limits.reach_side
+    for part in np.arange(1.0, NARROWER, -NARROWER).tolist():
+        if _room(robot, half_stance + 0.5 * part * most, 0.0, height) >= JOINT_ROOM:
+            return replace(limits, reach_side=part * most)
+    return limits
+
+
+def _room(robot: RobotModel, half_stance: float, ahead: float, height: float) -> float:
+    """Return the smallest distance of the leg joints to their limits [rad], -1 if out of reach."""
     room = np.inf
     for leg, part, side in zip(robot.legs, (LEFT_LEG, RIGHT_LEG), (1.0, -1.0), strict=True):
-        for ahead in (0.0, STRIDE * leg.length, -STRIDE * leg.length):
-            foot = FootPose(leg.foot[0] + ahead, side * half_stance, leg.hip[2] - height)
-            angles, error = leg.angles(foot)
-            if error > REACHED:
-                return -1.0
-            room = min(room, (angles - robot.lower[part]).min(), (robot.upper[part] - angles).min())
+        foot = FootPose(leg.foot[0] + ahead, side * half_stance, leg.hip[2] - height)
+        angles, error = leg.angles(foot)
+        if error > REACHED:
+            return -1.0
+        room = min(room, (angles - robot.lower[part]).min(), (robot.upper[part] - angles).min())
     return float(room)
 
 

@@ -113,6 +113,23 @@ def test_hips_rise_until_the_ankles_leave_their_limits(robot):
     assert rules.stride_room(stiff_ankles, DEFAULTS.gait.half_stance, height) >= rules.JOINT_ROOM
 
 
+def test_the_lateral_reach_ends_where_the_ankles_would_leave_their_limits(robot):
+    wide, height = DEFAULTS.limits, DEFAULTS.pattern.pelvis_height
+    reaches = []
+    for roll in (0.8, 0.35, 0.25, 0.15):
+        lower, upper = robot.tree.lower.copy(), robot.tree.upper.copy()
+        lower[[5, 11]], upper[[5, 11]] = -roll, roll
+        stiff_ankles = RobotModel(replace(robot.tree, lower=lower, upper=upper))
+        limits = rules.with_side_reach(stiff_ankles, wide, DEFAULTS.gait.half_stance, height)
+        assert replace(limits, reach_side=wide.reach_side) == wide
+        reaches.append(limits.reach_side)
+    assert reaches[0] == wide.reach_side
+    assert reaches == sorted(reaches, reverse=True)
+    assert reaches[-1] < 0.9 * wide.reach_side
+    outward = DEFAULTS.gait.half_stance + 0.5 * reaches[-1] - robot.legs[0].hip[1]
+    assert outward <= height * np.tan(0.15 - rules.JOINT_ROOM)
+
+
 def test_the_load_on_one_leg_is_mirrored_and_relative_to_the_torque(other):
     strong = rules.one_leg_load(other(), 0.04, 0.2)
     weak = rules.one_leg_load(other(effort=0.7), 0.04, 0.2)
