@@ -157,7 +157,7 @@ class StabilizerParameters:
     max_inertia_acceleration: Annotated[float, RATE_CHANGE] = 300.0  # in these torques [rad/s²]
     velocity_gain: Annotated[float, NUMBER] = 0.6  # feed-forward of the servo lag, legs [1]
     velocity_ahead: Annotated[float, TIME] = 0.0  # time by which these rates are extrapolated [s]
-    capture_dead_zone: Annotated[float, NUMBER] = 0.6  # DCM error per ZMP margin of the sole [1]
+    capture_dead_zone: Annotated[float, NUMBER] = 0.3  # DCM error per ZMP margin of the sole [1]
     capture_forward: Annotated[float, LENGTH] = 0.19  # maximum shift of a landing, forward [m]
     capture_side: Annotated[float, LENGTH] = 0.13  # maximum shift of a landing, lateral [m]
     tilt_gain: Annotated[float, NUMBER] = 0.7  # swing foot against the tilt of the trunk [1]

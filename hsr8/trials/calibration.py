@@ -23,6 +23,7 @@ STEADY_TIME, RANDOM_TIME = 12.0, 60.0  # of a walk, in the time scale of HSR-VII
 RANDOM_SEEDS = range(8)
 MAX_ERROR = 0.05  # of a steady velocity, relative [1]
 SHRINK = 0.85  # of a speed that failed
+NARROW = 0.5  # lateral reach of a robot that falls at its speeds, of that by rule [1]
 SLOW = 0.5  # of the rehearsed speed, below which a warning names the joint [1]
 SMALLEST = 0.1  # of the rehearsed limit, below which an axis is given up [1]
 LAGS = 40  # longest lag searched [ticks]
@@ -59,7 +60,8 @@ def calibrate(
     """Measure a robot; return warnings of speeds far below the rehearsed ones, too.
 
     Until the robot walks under random commands and passes its check, first the combination of
-    speeds along several axes is reduced, then every speed.
+    speeds along several axes is reduced, then the lateral reach of capture steps, since heavy legs
+    that swing far push the robot over, then every speed.
 
     Args:
         robot: robot with its rehearsed limits.
@@ -73,14 +75,16 @@ def calibrate(
     limits = {axis: _axis_limit(trial, axis, scale, report) for axis in AXES}
     speed = {axis: _digits(limit.speed) for axis, limit in limits.items()}
     reasons = {axis: limit.reason for axis, limit in limits.items()}
-    combined = parameters.limits.combined
+    combined, reach = parameters.limits.combined, 1.0
     while True:
         _require_speed(robot, speed, reasons)
-        within = replace(parameters.limits, combined=combined, **speed)
+        side = reach * parameters.limits.reach_side
+        within = replace(parameters.limits, combined=combined, reach_side=side, **speed)
         trial.parameters = replace(parameters, limits=within)
         walks = list(_random_walks(trial, speed, scale))
         falls = sum(walk.falls for walk in walks)
-        limiting, envelope = walks[-1].limit(robot.model), f"{_text(speed)}, combined {combined:g}"
+        limiting = walks[-1].limit(robot.model)
+        envelope = f"{_text(speed)}, combined {combined:g}, reach {reach:g}"
         because = f": {limiting}" if falls else ""
         report(f"random commands in {envelope}: {falls} falls in {len(walks)} walks{because}")
         if not falls:
@@ -93,6 +97,9 @@ def calibrate(
         if combined > 1.0:  # each axis alone is walked well
             combined = 1.0
             continue
+        if reach > NARROW:
+            reach = NARROW
+            continue
         speed = {axis: _digits(SHRINK * value) for axis, value in speed.items()}
         reasons = dict.fromkeys(AXES, limiting)
     warnings = [
@@ -103,7 +110,7 @@ def calibrate(
     noise = _odometry_noise(walks)
     sigmas = np.sqrt(np.mean(np.concatenate([w.camera for w in walks]) ** 2, axis=0)).tolist()
     measured = Measured(
-        speed={**speed, "combined": combined},
+        speed={**speed, "combined": combined, "reach": reach},
         turn_delay=_digits(_turn_delay(trial, speed["wz"], scale)),
         lag=_digits(float(np.mean([_lag(walk) for walk in walks]))),
         forward_noise=_digits(noise[0]),

@@ -132,7 +132,7 @@ Servo = Annotated[
 
 
 class SpeedEnvelope(Table):
-    """Speeds that the robot walks at without falling, measured by ``hsr8 robot calibrate``."""
+    """Speeds and reach with which the robot does not fall, by ``hsr8 robot calibrate``."""
 
     vx: Annotated[Speed, doc("Forward [m/s].")]
     vx_backward: Annotated[Speed, doc("Backward [m/s].")]
@@ -143,6 +143,11 @@ class SpeedEnvelope(Table):
         Interval(ge=1.0, le=2.0),
         doc("Norm of the velocity relative to the other limits [1]."),
     ] = COMBINED
+    reach: Annotated[
+        float,
+        Interval(ge=0.1, le=1.0),
+        doc("Lateral reach of the landings, relative to that by rule [1]."),
+    ] = 1.0
 
 
 class Calibration(Table):

@@ -33,8 +33,10 @@ def fitted_parameters(
     strength = _strength(robot, fitted, description, source)
     if description.tuned:
         return fitted, strength
-    calibration = description.calibration
-    known = None if calibration is None else calibration.speed.model_dump()
+    known = None
+    if description.calibration is not None:
+        known = description.calibration.speed.model_dump()
+        known["reach_side"] = known.pop("reach") * fitted.limits.reach_side
     parameters, notes = within_joints(robot, fitted, known)
     hips, before = parameters.pattern.pelvis_height, scaled.pattern.pelvis_height
     if hips != before:

@@ -99,7 +99,7 @@ def within_joints(
     Args:
         robot: walking robot.
         parameters: parameters of the walk.
-        known: speed limits found by a calibration, instead of a search.
+        known: limits found by a calibration, instead of a search.
 
     Returns:
         The parameters, and notes on the changes.
