@@ -12,7 +12,7 @@ from hsr8.trials.calibration import Measured
 from hsr8.version import VERSION
 
 MEASURED = Measured(
-    speed={"vx": 0.2, "vx_backward": 0.1, "vy": 0.05, "wz": 0.8, "combined": 1.0},
+    speed={"vx": 0.2, "vx_backward": 0.1, "vy": 0.05, "wz": 0.8, "combined": 1.0, "reach": 1.0},
     turn_delay=0.4,
     lag=0.02,
     forward_noise=0.001,
