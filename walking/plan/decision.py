@@ -113,16 +113,16 @@ def detect_touchdown(walk: Data, robot: Model) -> None:
     """Stop the swing foot on early touchdown; off balance, end the single support with it.
 
     A support that waited for its planned end would let the error of the DCM grow over one foot
-    while both are on the floor. An error up to twice the dead zone of the capture step waits: legs
-    that give way touch down a little early in every footstep, and supports that all ended early
-    would keep the error going.
+    while both are on the floor. An error within the margins of the sole waits: legs that give way
+    touch down a little early in every footstep, and supports that all ended early would keep the
+    error going.
     """
-    gait, zone = walk.plan.gait, robot.stabilizer.capture_dead_zone
+    gait, within_sole = walk.plan.gait, 1.0 - robot.stabilizer.capture_dead_zone
     phase = phase_of(gait)
     if not phase.double and not gait.landed_early:
         force = walk.body.feet[swing_of(gait)].load
         if detects_touchdown(walk.corrections, phase.swing, force, robot) and phase.swing < 1.0:
             touch_down(gait, walk.limbs.feet, robot)
-            off_balance = gait.shortened or excess_error(walk, robot) > zone
+            off_balance = gait.shortened or excess_error(walk, robot) > within_sole
             if off_balance and not robot.modifiable:
                 end_support(gait)
