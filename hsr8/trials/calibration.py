@@ -60,8 +60,8 @@ def calibrate(
     """Measure a robot; return warnings of speeds far below the rehearsed ones, too.
 
     Until the robot walks under random commands and passes its check, first the combination of
-    speeds along several axes is reduced, then the lateral reach of capture steps, since heavy legs
-    that swing far push the robot over, then every speed.
+    speeds along several axes is reduced, then every speed; each is tried with a narrower lateral
+    reach of capture steps, too, since heavy legs that swing far push the robot over.
 
     Args:
         robot: robot with its rehearsed limits.
@@ -97,8 +97,8 @@ def calibrate(
         if combined > 1.0:  # each axis alone is walked well
             combined = 1.0
             continue
-        if reach > NARROW:
-            reach = NARROW
+        reach = NARROW if reach == 1.0 else 1.0
+        if reach == NARROW:
             continue
         speed = {axis: _digits(SHRINK * value) for axis, value in speed.items()}
         reasons = dict.fromkeys(AXES, limiting)
