@@ -24,6 +24,7 @@ MAX_SPEED, MAX_TORQUE = 1.2, 1.0  # of the joints, of their maximum [1]
 IN_PLACE_SPEED = 0.55  # of the joints in stepping in place, so that speed is left for the walk [1]
 PERCENTILE = 99.0  # of speed and torque that counts: short peaks do not matter [%]
 ROOM = 0.02  # of a loaded leg to the joint limits [rad]
+IN_PLACE_ROOM = 0.05  # the same in stepping in place, so that room is left for a stride [rad]
 AIR_ROOM = 0.12  # by which a leg in the air may exceed them [rad]
 HELPS = 0.97  # of the joint speed after a lower swing that was worth it [1]
 SHRINK, MIN_LIFT = 0.85, 0.03  # of the swing height; its minimum, of the length of the leg [1]
@@ -51,11 +52,15 @@ class Demand:
     @property
     def met(self) -> bool:
         """Whether the joints can do it."""
-        return self.within(MAX_SPEED)
+        return self._within(MAX_SPEED, ROOM)
 
-    def within(self, speed: float) -> bool:
-        """Whether the joints can do it at some part of their maximum speed [1]."""
-        return self.speed <= speed and self.torque <= MAX_TORQUE and self.room >= ROOM
+    @property
+    def leaves_room(self) -> bool:
+        """Whether the joints can do it and have speed and room left for a walk."""
+        return self._within(IN_PLACE_SPEED, IN_PLACE_ROOM)
+
+    def _within(self, speed: float, room: float) -> bool:
+        return self.speed <= speed and self.torque <= MAX_TORQUE and self.room >= room
 
     def text(self) -> str:
         """Return the demand in words."""
@@ -137,7 +142,7 @@ def _with_lift(
     lowest = MIN_LIFT * robot.legs[0].length
     fitted, demand = parameters, rehearse(robot, parameters, slow)
     reason = demand.text()
-    while not demand.within(IN_PLACE_SPEED) and SHRINK * fitted.gait.swing_height > lowest:
+    while not demand.leaves_room and SHRINK * fitted.gait.swing_height > lowest:
         gait = replace(fitted.gait, swing_height=SHRINK * fitted.gait.swing_height)
         lower = replace(fitted, gait=gait)
         tried = rehearse(robot, lower, slow)
