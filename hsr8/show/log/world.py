@@ -114,7 +114,7 @@ def log_via_points(log: LogStream, layout: Layout) -> None:
         names = [str(k + 1) for k in range(len(points))]
         if not layout.endless:
             names[-1] = "goal"
-        # The viewer writes below a point, which a label of its own would hide.
+        # The viewer writes a name below its point; at the via point it would hide the mark.
         below = raised(points - (0.0, LABEL_GAP * layout.scale), 0.01)
         labels = rr.Points3D(
             below, radii=0.0, colors=[palette.TARGET], labels=names, show_labels=True
