@@ -1,5 +1,10 @@
-"""Pages of the results, written from their data: one page, one Parquet file, one version each."""
+"""Pages of the results, written from their data: one page, one Parquet file, one version each.
 
+The table of a page is next to its data as CSV and as LaTeX, too.
+"""
+
+import csv
+import io
 import json
 import re
 from collections.abc import Sequence
@@ -7,6 +12,7 @@ from pathlib import Path
 from typing import Any
 
 from hsr8.files import atomic
+from hsr8.sweep.comparison_page import tabular
 
 import pyarrow as pa
 import pyarrow.parquet as pq
@@ -23,6 +29,8 @@ MADE = b"benchmark"  # key of the metadata of a data file
 MAX_LINES = 80
 PLACE = re.compile(r"\{([\w-]+)(?:@([^./}]+(?:\.\d+[^./}]*)?))?(?:/([\w-]+))?\.(\w+)\}")
 """Place of a number in a text: arm, level, scenario and column."""
+Table = list[list[str]]
+"""Cells of a table; its first row has the heads."""
 LEVELS = ("mild: success", "medium: success", "strong: success")  # heads of levels
 
 
@@ -69,18 +77,36 @@ class Page:
         runs, made = stored
         page = self.table
         lines = [MARK, "", f"# {page['title']}", "", f"**{page['question']}**", ""]
-        lines += [self.filled(page["answer"], runs), "", *self.rows(runs), ""]
+        lines += [self.filled(page["answer"], runs), "", *_markdown(self.rows(runs)), ""]
         lines += self.measured()
         lines += ["**Setup.** " + page["setup"], ""]
         lines += ["**Caveats.**", "", *(f"- {text}" for text in page["caveats"]), ""]
-        made_by = f"[Data](data/{self.name}.parquet): `make benchmarks ONLY={self.name}`."
+        data = f"data/{self.name}"
+        made_by = (
+            f"[Runs]({data}.parquet), table as [CSV]({data}.csv) and [LaTeX]({data}.tex): "
+            f"`make benchmarks ONLY={self.name}`."
+        )
         lines += [f"Seeds {_seeds(runs)}. {_made(made)} {made_by}", ""]
         if len(lines) > MAX_LINES:
             raise ValueError(f"{self.file}: {len(lines)} lines; expected at most {MAX_LINES}")
         return "\n".join(lines)
 
-    def rows(self, runs: Sequence[Run]) -> list[str]:
-        """Return the table of the page in Markdown."""
+    def write(self) -> None:
+        """Write the page, and its table as CSV and LaTeX; nothing without data."""
+        stored = self.read()
+        if stored is None:
+            return
+        atomic.write_text(self.file, self.text())
+        head, *rows = self.rows(stored[0])
+        text = io.StringIO()
+        csv.writer(text, lineterminator="\n").writerows([head, *rows])
+        atomic.write_text(self.data.with_suffix(".csv"), text.getvalue())
+        latex = tabular(head, rows, "l" + "r" * (len(head) - 1))
+        note = f"% {self.table['title']}. {_made(stored[1])}\n"
+        atomic.write_text(self.data.with_suffix(".tex"), note + latex)
+
+    def rows(self, runs: Sequence[Run]) -> Table:
+        """Return the table of the page."""
         page = self.table
         groups = _groups(runs, page["rows"], page["arms"])
         if page["rows"] == "levels":
@@ -88,14 +114,14 @@ class Page:
         scenarios = list(dict.fromkeys(run["scenario"] for run in runs))
         by_scenario = scenarios if page.get("by_scenario") else []
         heads = [*(f"`{s}`" for s in by_scenario), *(COLUMNS[c][0] for c in page["columns"])]
-        table = _header(["", *heads])
+        table = [["", *heads]]
         for label, group in groups.items():
             cells = [_counted([r for r in group if r["scenario"] == s]) for s in by_scenario]
             arm = group[0]["arm"]
             reference = self._reference(arm, runs) if self._compared_with(arm) != arm else group
             cells += [COLUMNS[column][1](group, reference) for column in page["columns"]]
             shown = page.get("labels", {}).get(label, label)
-            table.append(f"| {shown} | {' | '.join(cells)} |")
+            table.append([shown, *cells])
         return table
 
     def measured(self) -> list[str]:
@@ -111,12 +137,19 @@ class Page:
             ((c["study"], c["level"]), (c["robot"], c["walker"])): c for c in read_results(file)
         }
         walkers = list(dict.fromkeys(walker for _, walker in cells))
-        table = _header(["", *(", ".join(walker) for walker in walkers)])
+        table = [["", *(", ".join(walker) for walker in walkers)]]
         for level in dict.fromkeys(level for level, _ in cells):
-            results = (cells[level, w]["result"] if (level, w) in cells else "" for w in walkers)
-            table.append(f"| {' = '.join(level)} | {' | '.join(results)} |")
+            results = [cells[level, w]["result"] if (level, w) in cells else "" for w in walkers]
+            table.append([" = ".join(level), *results])
         codes = ", ".join(dict.fromkeys(cell["code"] for cell in cells.values()))
-        return [page["measured_text"], "", *table, "", f"Code {codes}. {page['measured_by']}", ""]
+        return [
+            page["measured_text"],
+            "",
+            *_markdown(table),
+            "",
+            f"Code {codes}. {page['measured_by']}",
+            "",
+        ]
 
     def filled(self, text: str, runs: Sequence[Run]) -> str:
         """Return a text with its ``{ARM.COLUMN}``, with ``@LEVEL`` or ``/SCENARIO`` after the arm.
@@ -168,7 +201,7 @@ def _groups(runs: Sequence[Run], kind: str, arms: Sequence[str]) -> dict[str, li
     return groups
 
 
-def _levels(groups: dict[str, list[Run]]) -> list[str]:
+def _levels(groups: dict[str, list[Run]]) -> Table:
     """Return the table of arms with levels: one row per arm."""
     by_arm: dict[str, list[str]] = {}
     for group in groups.values():
@@ -176,14 +209,14 @@ def _levels(groups: dict[str, list[Run]]) -> list[str]:
         text = _counted(group)
         by_arm.setdefault(group[0]["arm"], []).append(f"{level}: {text}" if level else text)
     width = max(map(len, by_arm.values()), default=0)
-    table = _header(["fault", *LEVELS[:width]])
-    for arm, cells in by_arm.items():
-        table.append(f"| {arm} | {' | '.join(cells + [''] * (width - len(cells)))} |")
-    return table
+    rows = [[arm, *cells, *[""] * (width - len(cells))] for arm, cells in by_arm.items()]
+    return [["fault", *LEVELS[:width]], *rows]
 
 
-def _header(heads: Sequence[str]) -> list[str]:
-    return [f"| {' | '.join(heads)} |", "|" + "---|" * len(heads)]
+def _markdown(table: Table) -> list[str]:
+    """Return a table in Markdown."""
+    head, *rows = (f"| {' | '.join(cells)} |" for cells in table)
+    return [head, "|" + "---|" * len(table[0]), *rows]
 
 
 def _counted(runs: Sequence[Run]) -> str:
@@ -208,14 +241,15 @@ def index(definition: Definition, pages: Sequence[Page]) -> str:
     """
     stored = {page.name: page.read() for page in pages}
     lines = [MARK, "", "# Results", ""]
-    lines += [definition.index["text"].strip(), "", *_header(["page", "answer"])]
+    table = [["page", "answer"]]
     for page in pages:
         data = stored[page.name]
         answer = (
             page.filled(page.table["answer"], data[0]) if data else "not measured with this version"
         )
         link = f"[{page.table['title']}]({page.name}.md)" if data else page.table["title"]
-        lines.append(f"| {link} | {answer} |")
+        table.append([link, answer])
+    lines += [definition.index["text"].strip(), "", *_markdown(table)]
     made = [data[1] for data in stored.values() if data]
     if made:
         lines += ["", f"{_made(made[0])} {made[0]['machine']}."]
@@ -225,13 +259,13 @@ def index(definition: Definition, pages: Sequence[Page]) -> str:
 def headline(definition: Definition, pages: Sequence[Page]) -> list[str]:
     """Return the table of the README and its version: rows whose pages have data; empty without."""
     by_name = {page.name: page for page in pages}
-    rows, made = [], []
+    table, made = [["measured", "result", "page"]], []
     for label, text, name in definition.headline:
         if stored := by_name[name].read():
             link = f"[{name}](docs/results/{name}.md)"
-            rows.append(f"| {label} | {by_name[name].filled(text, stored[0])} | {link} |")
+            table.append([label, by_name[name].filled(text, stored[0]), link])
             made.append(_made(stored[1]))
-    return [*_header(["measured", "result", "page"]), *rows, "", made[0]] if rows else []
+    return [*_markdown(table), "", made[0]] if made else []
 
 
 def with_included(text: str, name: str, table: Sequence[str]) -> str:
@@ -248,8 +282,7 @@ def write(definition: Definition, results: Path = RESULTS) -> None:
     """Write all pages that have data, the index, and the numbers that other pages include."""
     pages = [Page(name, definition, results) for name in definition.pages]
     for page in pages:
-        if text := page.text():
-            atomic.write_text(page.file, text)
+        page.write()
     atomic.write_text(results / "README.md", index(definition, pages))
     for name in INCLUDED if results == RESULTS else ():
         text = (ROOT / name).read_text(encoding="utf-8")
@@ -257,7 +290,7 @@ def write(definition: Definition, results: Path = RESULTS) -> None:
             text = with_included(text, "headline", table)
         for page in pages:
             if stored := page.read():
-                text = with_included(text, page.name, page.rows(stored[0]))
+                text = with_included(text, page.name, _markdown(page.rows(stored[0])))
         atomic.write_text(ROOT / name, text)
 
 

@@ -1,4 +1,4 @@
-"""Draw the images of the manual from a run of `crowd`.
+"""Draw the images of the manual from runs, those of the concept pages from a run of `crowd`.
 
     python scripts/manual_images.py             # all, into docs/images
     python scripts/manual_images.py gaze belief
@@ -18,6 +18,8 @@ import hsr8
 from hsr8.recording.palette import of_label
 from hsr8.robots.loaded import load_robot
 from hsr8.scenario.loader import load_scenario
+from hsr8.show.evaluations import EVALUATIONS
+from hsr8.show.plan_sheet import plan_sheet
 from hsr8.show.plan_view import PlanView
 from hsr8.show.video.run_images import RunImages
 from hsr8.show.walk_panels import BLUE, GREEN, INK, ORANGE, PURPLE
@@ -43,6 +45,7 @@ from figure_style import (
     square,
     styled,
 )
+from howto_images import HOWTO, WRITTEN
 from matplotlib import colormaps
 from matplotlib.axes import Axes
 from matplotlib.collections import LineCollection
@@ -235,8 +238,9 @@ def gaze() -> Figure:
     tip = start + 1.1 * np.array([np.cos(angle), np.sin(angle)])
     right.annotate("", tip, start, arrowprops={"arrowstyle": "->", "color": BLUE, "lw": 2})
     psi = (decision.psi_lm, decision.psi_sf, decision.psi_ob, decision.psi_way)
-    names = ("ground", "pose", "obstacle", "path")
-    right.set_title(", ".join(f"{n} {v:.2f}" for n, v in zip(names, psi, strict=True)))
+    pairs = zip(EVALUATIONS, psi, strict=True)
+    texts = [f"{name} {value:.2f}" for name, value in pairs]
+    right.set_title("\n".join(", ".join(texts[k : k + 2]) for k in (0, 2)))
     return made
 
 
@@ -342,10 +346,10 @@ def yard() -> Figure:
         file.write_text(text[1])
         scenario = load_scenario(str(file))
     world = draw_world(scenario, scenario.seed)
-    made = figure(4.6, 4.6, "")
+    made = figure(5.0, 5.6, "")
     axes = made.subplots()
     plan = PlanView(world.layout, scenario.robot.radius, certificate=world.certificate)
-    axes.imshow(plan.draw())
+    axes.imshow(plan_sheet(plan, f"yard, seed {scenario.seed}"))
     axes.set_axis_off()
     return made
 
@@ -358,16 +362,20 @@ DRAWINGS: dict[str, Callable[[], Figure]] = {
     "footsteps": footsteps,
     "capture": capture,
     "yard": yard,
+    **HOWTO,
 }
 
 
 def main() -> None:
     """Draw the named images, or all."""
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("names", nargs="*", choices=[*DRAWINGS, []], metavar="NAME")
+    parser.add_argument("names", nargs="*", choices=[*DRAWINGS, *WRITTEN, []], metavar="NAME")
     parser.add_argument("--out", type=Path, default=IMAGES, metavar="DIR")
     options = parser.parse_args()
-    for name in options.names or DRAWINGS:
+    for name in options.names or [*DRAWINGS, *WRITTEN]:
+        if name in WRITTEN:
+            WRITTEN[name](options.out.resolve() / name)
+            continue
         with styled():
             made = DRAWINGS[name]()
             file = options.out / f"{name}.webp"

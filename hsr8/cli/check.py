@@ -17,6 +17,7 @@ from hsr8.scenario.schema import Scenario
 from hsr8.scenario.section import Section
 from hsr8.scenario.track import Track
 from hsr8.show.image import write_png
+from hsr8.show.plan_sheet import plan_sheet
 from hsr8.show.plan_view import PlanView
 from hsr8.simulation.robot_builder import field_of_view
 from hsr8.world.field.certificate import min_clearance, straight_length
@@ -38,7 +39,7 @@ def main(options: Check) -> int:
         radius = scenario.robot.radius
         plan = PlanView(world.layout, radius, certificate=world.certificate)
         with writing("--image", options.image):
-            write_png(options.image, plan.draw())
+            write_png(options.image, plan_sheet(plan, f"{scenario.name}, seed {scenario.seed}"))
     summary = summarize(scenario, world)
     if options.json:
         print(atomic.dumps(summary))
@@ -60,7 +61,8 @@ def summarize(scenario: Scenario, world: FairWorld) -> dict[str, Any]:
         clearance = round(min_clearance(layout, certificate.path, scenario.robot.radius), 3)
     fov = [round(degrees(angle)) for angle in field_of_view(scenario)]
     x, y, heading = layout.start
-    goal_heading = layout.goal_heading
+    goal_heading, points = layout.goal_heading, layout.waypoints.round(3).tolist()
+    has_goal = bool(points) and not layout.endless
     return {
         "name": scenario.name,
         "seed": scenario.seed,
@@ -79,8 +81,9 @@ def summarize(scenario: Scenario, world: FairWorld) -> dict[str, Any]:
         "field_m": list(layout.field_size),
         "start_m": [round(x, 3), round(y, 3)],
         "start_heading_deg": round(degrees(heading), 1),
-        "waypoints_m": layout.waypoints.round(3).tolist(),
+        "via_points_m": points[: len(points) - has_goal],
         "repeated": layout.endless,
+        "goal_m": points[-1] if has_goal else None,
         "goal_heading_deg": None if goal_heading is None else round(degrees(goal_heading), 1),
         "straight_length_m": round(straight_length(layout), 2),
         "certified": certificate.solvable,

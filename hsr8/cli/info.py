@@ -6,6 +6,7 @@ from dataclasses import asdict
 from rich.console import Console
 
 from hsr8.cli import report, tables
+from hsr8.cli.citation import BIBTEX
 from hsr8.cli.options import Info
 from hsr8.errors import UsageError, escaped
 from hsr8.files import atomic
@@ -22,7 +23,12 @@ MAX_EVENTS = 30  # in the table; --json has all of them
 
 
 def main(options: Info) -> int:
-    """Show results, events, versions and files of a run."""
+    """Show results, events, versions and files of a run, or the references."""
+    if options.bibtex:
+        print(BIBTEX, end="")
+        return 0
+    if options.run is None:
+        raise UsageError("RUN: missing; expected a run folder, or --bibtex")
     run = open_run(options.run)
     manifest, results, criteria = run.manifest, run.metrics, _criteria(run)
     events = [vars(event) for event in run.events.objects("time", "kind", "text")]

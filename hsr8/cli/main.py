@@ -13,7 +13,8 @@ from typing import Any, get_args
 
 import tyro
 
-from hsr8.cli.options import BenchCompare, Command, Robot, RobotAction
+from hsr8.cli.options import BenchCompare, Command
+from hsr8.cli.robot_options import Robot, RobotAction
 from hsr8.errors import Hsr8Error, UsageError
 from hsr8.recording.crash import crash_report
 from hsr8.suggestion import suggestion

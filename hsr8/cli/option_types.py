@@ -46,8 +46,10 @@ Scenario = Positional[
 RobotName = Positional[
     Annotated[str, arg(metavar="ROBOT", help="name (see `hsr8 robot list`) or description file")]
 ]
-RunPath = Positional[
-    Annotated[Path, arg(metavar="RUN", help="run folder, or a parent folder for its newest run")]
+RUN = "run folder, or a parent folder for its newest run"
+RunPath = Positional[Annotated[Path, arg(metavar="RUN", help=RUN)]]
+AnyRunPath = Positional[
+    Annotated[Path | None, _optional(Path, "RUN"), arg(help=RUN, help_behavior_hint="")]
 ]
 SETTINGS = arg(
     metavar="KEY=VALUE",

@@ -34,12 +34,14 @@ def main(options: Plot) -> int:
             "expected MPLCONFIGDIR=DIR with a writable folder"
         ) from error
     from hsr8.robots.loaded import load_robot  # noqa: PLC0415  takes seconds
+    from hsr8.world.field.generator import draw_layout  # noqa: PLC0415  with the robot
 
-    robot = load_robot(run.scenario().robot.model).model
+    scenario = run.scenario()
+    robot, layout = load_robot(scenario.robot.model).model, draw_layout(scenario, run.seed)
     title = f"{run.manifest.get('scenario', run.folder.name)}, seed {run.seed}"
     if (start, stop) != (0.0, end):
         title += f", {start:g} to {stop:g} s"
-    figure = draw(run.records.window(start, stop), robot, options.what, title)
+    figure = draw(run.records.window(start, stop), robot, layout, options.what, title)
     with writing("--out", out):
         save(figure, out)
     if options.json:

@@ -9,8 +9,8 @@ from pathlib import Path
 from rich.console import Console
 
 from hsr8.cli import tables
-from hsr8.cli.options import RobotCalibrate
 from hsr8.cli.output_file import require_file_name, require_new, writing
+from hsr8.cli.robot_options import RobotCalibrate
 from hsr8.errors import UsageError
 from hsr8.files import atomic
 from hsr8.files.text import shell_line

@@ -7,7 +7,7 @@ from dataclasses import asdict
 from rich.console import Console
 
 from hsr8.cli import tables
-from hsr8.cli.options import RobotCheck
+from hsr8.cli.robot_options import RobotCheck
 from hsr8.files import atomic
 from hsr8.robots.loaded import load_robot
 from hsr8.trials.robot_check import JointUse, WalkResult, check_robot, reasons

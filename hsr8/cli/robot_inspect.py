@@ -5,8 +5,8 @@ from dataclasses import asdict
 from rich.console import Console
 
 from hsr8.cli import tables
-from hsr8.cli.options import RobotInspect
 from hsr8.cli.output_file import require_file_name, require_new, writing
+from hsr8.cli.robot_options import RobotInspect
 from hsr8.errors import ModelError, UsageError
 from hsr8.files import atomic
 from hsr8.files.text import shell_line

@@ -3,7 +3,7 @@
 from rich.console import Console
 
 from hsr8.cli import tables
-from hsr8.cli.options import RobotList
+from hsr8.cli.robot_options import RobotList
 from hsr8.files import atomic
 from hsr8.robots.file.description import read_description
 from hsr8.robots.file.locate import find_description, installed_model, remedy, robot_names

@@ -11,9 +11,8 @@ from hsr8.recording.run import Run
 class Shown(Flag):
     """Tables that show a metric.
 
-    RUN is the table of one run, COUNT the sum and SWEEP the distribution over the runs of a sweep,
-    COMPARED a line of a comparison, BENCH the distribution in the score of a benchmark and
-    BENCH_COMPARED a line of the comparison of two entries.
+    RUN is the table of a run, COUNT the sum and SWEEP the distribution over a sweep, BENCH that in
+    the score of a benchmark, COMPARED and BENCH_COMPARED a line of a comparison of two of them.
     """
 
     RUN = auto()
@@ -25,8 +24,9 @@ class Shown(Flag):
 
 
 NOWHERE = Shown(0)
-RUN, COUNT, SWEEP, COMPARED = Shown.RUN, Shown.COUNT, Shown.SWEEP, Shown.COMPARED
-BENCH, BENCH_COMPARED = Shown.BENCH, Shown.BENCH_COMPARED
+RUN, COUNT, SWEEP, COMPARED, BENCH, BENCH_COMPARED = Shown
+UNITS = {"_radps": "rad/s", "_mps": "m/s", "_per_s": "1/s", "_deg": "deg", "_rad": "rad"}
+UNITS |= {"_m": "m", "_s": "s"}  # by the end of a name; of two that fit the first
 
 
 @dataclass(frozen=True)
@@ -38,7 +38,7 @@ class Metric:
         text: definition in Markdown.
         shown: tables that show it.
         label: words for the heads of tables.
-        unit: unit for the heads of tables; empty for counts, fractions and text.
+        units: unit for the heads of tables, if the name does not end with it.
         successes: whether only successful runs have a meaningful value.
         of: returns the value of a run; None if `hsr8.measure.metrics` computes it with others.
     """
@@ -47,9 +47,15 @@ class Metric:
     text: str
     shown: Shown = NOWHERE
     label: str = ""
-    unit: str = ""
+    units: str = ""
     successes: bool = False
     of: Callable[[Run], object] | None = None
+
+    @property
+    def unit(self) -> str:
+        """Unit; empty for counts, fractions and text."""
+        ends = (unit for end, unit in UNITS.items() if self.name.endswith(end))
+        return self.units or next(ends, "")
 
     @property
     def head(self) -> str:
@@ -92,7 +98,6 @@ SECTIONS = {
             "time at which the robot believes the mission finished",
             RUN | SWEEP | COMPARED | BENCH | BENCH_COMPARED,
             "time to goal",
-            "s",
             successes=True,
         ),
         Metric(
@@ -100,7 +105,6 @@ SECTIONS = {
             "true heading error at the end of the run, one second later",
             RUN | SWEEP | COMPARED,
             "arrival error",
-            "deg",
             successes=True,
         ),
         Metric(
@@ -114,7 +118,6 @@ SECTIONS = {
             "length of the robot's path, sampled every second so that sway does not count",
             RUN | SWEEP | COMPARED,
             "path length",
-            "m",
             successes=True,
         ),
         Metric(
@@ -135,15 +138,11 @@ SECTIONS = {
             "a body that sways",
             SWEEP,
             "time standing",
-            "s",
         ),
         Metric("sim_time_s", "simulated time", RUN),
         Metric("wall_time_s", "wall time", RUN),
         Metric(
-            "real_time_factor",
-            "simulated time over wall time",
-            RUN | SWEEP,
-            "real-time factor",
+            "real_time_factor", "simulated time over wall time", RUN | SWEEP, "real-time factor"
         ),
         Metric(
             "state_hash",
@@ -183,7 +182,6 @@ SECTIONS = {
             "any obstacle or beacon",
             RUN | SWEEP | COMPARED | BENCH | BENCH_COMPARED,
             "min clearance",
-            "m",
         ),
     ),
     "People": (
@@ -223,7 +221,6 @@ SECTIONS = {
             "robot's over 1 s; 0 in contact, null if they never would (TTC, Francis et al. 2025)",
             SWEEP | COMPARED,
             "time to collision",
-            "s",
         ),
         Metric(
             "robot_on_person_collision",
@@ -244,7 +241,6 @@ SECTIONS = {
             "per second (SocNavBench, Biswas et al. 2022)",
             SWEEP,
             "path irregularity",
-            "rad",
         ),
         Metric(
             "cumulative_heading_changes_rad",
@@ -263,14 +259,12 @@ SECTIONS = {
             "RMS error of the believed position over the camera frames",
             RUN | SWEEP | COMPARED,
             "position RMSE",
-            "m",
         ),
         Metric(
             "heading_rmse_deg",
             "RMS error of the believed heading over the camera frames",
             RUN | SWEEP | COMPARED,
             "heading RMSE",
-            "deg",
         ),
         Metric(
             "nees_mean",
@@ -303,7 +297,6 @@ SECTIONS = {
             "one",
             RUN | SWEEP,
             "obstacle speed RMSE",
-            "m/s",
         ),
         Metric(
             "static_track_rmse_m",
@@ -323,8 +316,7 @@ SECTIONS = {
         Metric("mover_track_nees_mean", "the same of `mover_track_rmse_m`"),
         Metric("mover_velocity_nees_mean", "the same of `mover_velocity_rmse_mps`"),
         Metric(
-            "movers_recognised_after_s",
-            "for each recognised mover, the time from its first sight",
+            "movers_recognised_after_s", "for each recognised mover, the time from its first sight"
         ),
     ),
     "Head": (
@@ -333,24 +325,18 @@ SECTIONS = {
             "changes of the commanded gaze by more than 0.17 rad",
             SWEEP,
             "saccades",
-            "1/s",
         ),
         Metric(
             "head_travel_radps",
             "travel of pan and tilt, measured by the encoders",
             SWEEP | COMPARED | BENCH | BENCH_COMPARED,
             "head travel",
-            "rad/s",
         ),
     ),
     "Walking": (
         Metric("falls", "falls", RUN | COUNT | COMPARED, "falls"),
         Metric(
-            "max_tilt_deg",
-            "maximum measured tilt except while fallen",
-            RUN | SWEEP,
-            "max tilt",
-            "deg",
+            "max_tilt_deg", "maximum measured tilt except while fallen", RUN | SWEEP, "max tilt"
         ),
         Metric("steps", "footsteps", RUN),
         Metric("pushes", "pushes that began", RUN),
@@ -375,9 +361,7 @@ SECTIONS = {
             "zmp_outside_sole_ticks", "ticks with the planned ZMP outside the supporting soles", RUN
         ),
         Metric("zmp_min_margin_m", "minimum distance of the planned ZMP inside their edge", RUN),
-        Metric(
-            "limited_fraction", "fraction of the ticks in which walking limited the command", RUN
-        ),
+        Metric("limited_fraction", "fraction of the ticks with a limited command", RUN),
         Metric("limited_by", "fraction of the ticks by limit", RUN),
     ),
     "Servos": (

@@ -22,7 +22,7 @@ from hsr8.process.signals import with_parent_watch
 
 LOOPBACK = "127.0.0.1"
 TIMELINE = "sim_time"
-START_TIMEOUT = 30.0  # wall time until the viewer must answer [s]
+START_TIMEOUT = 60.0  # wall time until the viewer must answer [s]
 STOP_TIMEOUT = 2.0  # wall time until a viewer must end after a signal [s]
 SETTLING_TIME = 6.0  # wall time in which notices fade and views load [s]
 
@@ -82,9 +82,19 @@ def screenshot(log: Path, time: float, size: tuple[int, int]) -> bytes:
                 raise UsageError(f"{log}: no recording in this file")
             viewer.poll(lambda: _seek(client, time))
             clock.sleep(SETTLING_TIME)
-            return bytes(client.take_screenshot())
+            images: list[bytes] = []
+            if not viewer.poll(lambda: _take(client, images)):
+                raise UsageError(f"{log}: the viewer does not draw it; is the machine busy?")
+            return images[0]
         except ConnectionError:  # the viewer ended
             raise viewer.failure() from None
+
+
+def _take(client: object, images: list[bytes]) -> bool:
+    """Append a screenshot; return False where the viewer needs more than its 15 s to draw it."""
+    with suppress(TimeoutError):
+        images.append(bytes(client.take_screenshot()))  # type: ignore[attr-defined]
+    return bool(images)
 
 
 def _seek(client: object, time: float) -> bool:

@@ -18,6 +18,8 @@ from hsr8.files.atomic import draft
 from hsr8.recording.derived import Walk, walk_of
 from hsr8.recording.table import Table
 from hsr8.show import walk_panels as panels
+from hsr8.show.walk_map import footsteps
+from hsr8.world.field.layout import Layout
 from walking.body.robot_model import RobotModel
 
 What = Literal["walking", "zmp", "footsteps", "velocity", "torques", "tilt"]
@@ -73,12 +75,13 @@ MIN_HEIGHT, MAX_HEIGHT = 1.5, 4.5  # of the view from above [inch]
 AXES_WIDTH = 0.8  # of the axes, a fraction of the figure [1]
 
 
-def draw(records: Table, robot: RobotModel, what: What, title: str) -> Figure:
+def draw(records: Table, robot: RobotModel, layout: Layout, what: What, title: str) -> Figure:
     """Draw a figure.
 
     Args:
         records: the rows to draw.
         robot: model of the robot.
+        layout: layout of the run's world.
         what: one group of panels, or all of them.
         title: title of the figure.
 
@@ -104,7 +107,7 @@ def draw(records: Table, robot: RobotModel, what: What, title: str) -> Figure:
             parts = figure.subfigures(2, 1, height_ratios=ratios, squeeze=False)[:, 0].tolist()
         if above:
             axes = parts[0].subplots()
-            panels.footsteps(axes, walk)
+            footsteps(axes, walk, layout)
             axes.legend(loc="center left", bbox_to_anchor=(1.0, 0.5))
         if rows:
             column = parts[1].subplots(

@@ -49,7 +49,6 @@ PHASE_NAMES = {
 }
 FOOTHOLD = 0.0005  # a foot lower than this is on the floor [m]
 MIN_SPANS = (0.1, 0.1, 0.4)  # of the shown ranges of vx, vy [m/s] and wz [rad/s]
-ARROW = 0.08  # drawn length of a push [m]
 DEFAULT_STRIDE = 0.7  # window of the velocity without footsteps [s]
 GROUPS = ("hip", "knee", "ankle")
 DASHES = ("-", (0, (4, 1.5)), (0, (1, 1)))
@@ -162,35 +161,6 @@ def sole_legend() -> list[Patch]:
         Patch(color=LEFT, alpha=0.16, lw=0, label="left sole"),
         Patch(color=RIGHT, alpha=0.16, lw=0, label="right sole"),
     ]
-
-
-def footsteps(axes: Axes, walk: Walk) -> None:
-    """Draw footsteps and the paths of ZMP and CoM from above."""
-    origin, yaw = walk.pose[0, :2], float(walk.pose[0, 2])
-    for foot, color in enumerate(FEET):
-        intervals = contacts(walk, foot)
-        soles = [to_local(outline(walk, foot, rows), origin, yaw) for rows in intervals]
-        axes.add_collection(PolyCollection(soles, fc=color, alpha=0.25, lw=0))
-        axes.add_collection(PolyCollection(soles, fc="none", ec=color, lw=0.7))
-    for name, label, color, width, dash in CURVES:
-        if name in ("zmp", "cop", "com"):
-            x, y = to_local(getattr(walk, name), origin, yaw).T
-            axes.plot(x, y, color=color, lw=width, ls=dash, label=label)
-    for push in pushes_of(walk.records):
-        at = to_local(push.point[None, :2], origin, yaw)[0]
-        arrow = to_local(push.force[None, :2], np.zeros(2), yaw)[0]
-        arrow *= ARROW / np.hypot(*arrow)
-        axes.update_datalim([at - arrow])
-        axes.annotate(
-            "",
-            at,
-            at - arrow,
-            arrowprops={"arrowstyle": "-|>", "color": PUSH, "lw": 1.4, "shrinkA": 0, "shrinkB": 0},
-        )
-    axes.set_aspect("equal", adjustable="datalim")
-    axes.autoscale_view()
-    axes.set_xlabel("forward [m]")
-    axes.set_ylabel("left [m]")
 
 
 def velocity(axes: Axes, walk: Walk, component: int) -> None:

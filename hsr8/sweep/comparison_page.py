@@ -5,7 +5,7 @@ Holm's method corrects the p-values of all tests of a page together.
 
 import csv
 import io
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import Any
@@ -110,11 +110,21 @@ def _seeds(seeds: Sequence[Seed]) -> str:
 def latex(comparisons: Sequence[Comparison]) -> str:
     """Return one LaTeX table of all arms, for the package booktabs."""
     rows = [(line.arm, *line.cells()[:-1]) for line in lines_of(comparisons)]
-    head, *body = (" & ".join(map(_tex, cells)) for cells in (("B", *HEAD[:-1]), *rows))
+    return tabular(("B", *HEAD[:-1]), rows, "ll" + "r" * (len(HEAD) - 2))
+
+
+def tabular(head: Sequence[str], rows: Iterable[Sequence[str]], columns: str) -> str:
+    """Return a LaTeX table for the package booktabs.
+
+    Args:
+        head: heads of the columns.
+        rows: cells of every row.
+        columns: alignment of the columns, such as ``lrr``.
+    """
+    first, *body = (" & ".join(map(_tex, cells)) for cells in (head, *rows))
     ends = "".join(f"{row} \\\\\n" for row in body)
-    columns = "ll" + "r" * (len(HEAD) - 2)
     return (
-        f"\\begin{{tabular}}{{{columns}}}\n\\toprule\n{head} \\\\\n\\midrule\n{ends}"
+        f"\\begin{{tabular}}{{{columns}}}\n\\toprule\n{first} \\\\\n\\midrule\n{ends}"
         "\\bottomrule\n\\end{tabular}\n"
     )
 

@@ -1,5 +1,6 @@
 """Results: their definition is valid, pages follow from their data, and all are of one version."""
 
+import csv
 import re
 import tomllib
 from dataclasses import replace
@@ -74,6 +75,17 @@ def test_a_page_has_an_answer_one_narrow_table_and_its_setup(name, page_of, defi
         assert part in text
 
 
+def test_the_table_of_a_page_is_also_csv_and_latex(page_of):
+    page = page_of("gaze")
+    page.write()
+    table = page.rows(page.read()[0])
+    with page.data.with_suffix(".csv").open(newline="", encoding="utf-8") as file:
+        assert list(csv.reader(file)) == table
+    latex = page.data.with_suffix(".tex").read_text(encoding="utf-8")
+    assert latex.count(r"\\") == len(table)
+    assert latex.count(" & ") == len(table) * (len(table[0]) - 1)
+
+
 def test_the_headline_is_filled(page_of, definition):
     for _, template, name in definition.headline:
         page = page_of(name)
@@ -101,7 +113,7 @@ def test_an_arm_is_compared_with_its_reference_in_the_same_worlds(definition):
     all_runs = runs("risk", 9) + runs("ideal-risk", 10) + runs("ideal-steps", 4)
     assert page.filled("{ideal-steps.difference}", all_runs).startswith("-60.0")
     assert page.filled("{ideal-risk.difference}", all_runs).startswith("+10.0")
-    *_, risk, ideal, steps = page.rows(all_runs)
+    risk, ideal, steps = (" ".join(cells) for cells in page.rows(all_runs)[-3:])
     assert ("+10.0" in ideal, "-60.0" in steps, "p " in risk) == (True, True, False)
 
 

@@ -23,6 +23,7 @@ TRUTH = (  # drawn in outlines below the belief
 OUTLINES = rr.Cylinders3D.from_fields(
     fill_mode=rr.components.FillMode.MajorWireframe, colors=[palette.TRUTH], line_radii=[0.006]
 )
+STATES = "States; gait: blue left foot, orange right foot, sand both"
 ABOVE = 6.2  # height of the viewpoint over a field of 5 m [m]
 
 
@@ -104,7 +105,7 @@ def _walking(view: RobotView) -> rrb.Container:
         active_tab=0,
     )
     lanes = ["+ /state/gait", "+ /state/planner"]
-    states = rrb.StateTimelineView(name="States", origin="/state", contents=lanes)
+    states = rrb.StateTimelineView(name=STATES, origin="/state", contents=lanes)
     curves = rrb.Vertical(*zmp, details, states, row_shares=[3, 3, 2.5, 2])
     left = rrb.Vertical(robot, texts, row_shares=[4, 1])
     return rrb.Horizontal(left, curves, column_shares=[1, 1], name="Walking")
@@ -146,7 +147,7 @@ def _overview(field_size: float, view: RobotView) -> rrb.Container:
             "+ /world/obstacles/**",
             "+ /world/movers/**",
             "+ /world/beacons/**",
-            "+ /world/waypoints/**",
+            "+ /world/via_points/**",
             "+ /world/path",
         ],
         overrides=dict.fromkeys(TRUTH, OUTLINES),
@@ -156,17 +157,16 @@ def _overview(field_size: float, view: RobotView) -> rrb.Container:
             position=(0.0, -0.01, height), look_target=(0.0, 0.0, 0.0), eye_up=(0.0, 1.0, 0.0)
         ),
     )
-    camera = rrb.Spatial2DView(name="Head camera", origin="/world/camera")
-    gaze = rrb.Spatial2DView(name="Value of gazes", origin="/gaze")
-    states = rrb.StateTimelineView(name="States", origin="/state")
+    camera = rrb.Spatial2DView(name="Head camera; yellow: chosen view", origin="/world/camera")
+    gaze = rrb.Spatial2DView(name="Value of gazes; dot: chosen", origin="/gaze")
+    states = rrb.StateTimelineView(name=STATES, origin="/state")
     curves = rrb.Tabs(
         *(
             rrb.TimeSeriesView(name=name, origin=f"/plots/{entity}")
             for name, entity in (
-                ("Partial evaluations", "partial"),
+                ("Evaluations", "partial"),
                 ("Pose error", "pose_error"),
-                ("ZMP left [m]", "zmp_left"),
-                ("ZMP forward [m]", "zmp_forward"),
+                ("ZMP", "zmp_left"),
                 ("Speed", "speed_vx"),
                 ("Tilt", "tilt"),
                 ("Clearance", "clearance"),

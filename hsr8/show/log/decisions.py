@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 from hsr8.recording import palette
 from hsr8.recording.derived import ellipse_axes
 from hsr8.recording.table import Table
+from hsr8.show.evaluations import EVALUATIONS
 from hsr8.show.log.stream import LogStream
 from navigation.angles import wrap
 
@@ -25,20 +26,15 @@ SITUATIONS = {
     "escape": RED,
     "path_change": VIOLET,
 }
-GAZE = {
-    "local map": GREY,
-    "self": BLUE,
-    "obstacle": ORANGE,
-    "way": GREEN,
-    "search": RED,
-    "none": SAND,
-}
+REASONS = dict(zip(EVALUATIONS, (GREY, BLUE, ORANGE, GREEN), strict=True))
+GAZE = {name.partition(" ")[0]: color for name, color in REASONS.items()}
+GAZE |= {"search": RED, "none": SAND}
 LOCALIZATION = {"localized": GREEN, "lost": RED}
 LANES = {"planner": SITUATIONS, "gaze": GAZE, "localization": LOCALIZATION}
 PLOTS = {
     "clearance": (("clearance [m]", BLUE),),
     "clearance/believed": (("nearest believed obstacle, from the robot axis [m]", ORANGE),),
-    "partial": (("ψ local map", GREY), ("ψ self", BLUE), ("ψ obstacle", ORANGE), ("ψ way", GREEN)),
+    "partial": tuple(REASONS.items()),
     "pose_error": (("position error [m]", BLUE), ("2σ [m]", GREY), ("heading error [rad]", ORANGE)),
 }
 

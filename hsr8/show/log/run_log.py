@@ -28,7 +28,7 @@ from hsr8.show.log.robot import RobotShapes, followed_entity
 from hsr8.show.log.shapes import sole_outline
 from hsr8.show.log.stream import ABANDONED, APPLICATION, LogStream
 from hsr8.show.log.walking import log_every_record, log_walking, style_walking
-from hsr8.show.log.world import PATH_HEIGHT, WorldShapes, log_footsteps, log_waypoints
+from hsr8.show.log.world import PATH_HEIGHT, WorldShapes, log_footsteps, log_via_points
 from hsr8.simulation.robot_builder import build_model
 from hsr8.world.field.generator import draw_layout
 from hsr8.world.field.layout import Layout
@@ -93,7 +93,7 @@ class RunLog:
         style_belief(log, layout.scale)
         style_plots(log, PLOTS, LANES)
         style_walking(log, robot.model, view.size)
-        log_waypoints(log, layout)
+        log_via_points(log, layout)
         self._meter = Speedometer()
         self._trail: deque[list[float]] = deque(maxlen=round(TRAIL / TRAIL_PERIOD))
         self._time = 0.0

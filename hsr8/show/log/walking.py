@@ -26,16 +26,17 @@ from hsr8.show.log.stream import LogStream
 from walking.body.robot_model import RobotModel
 from walking.command import Limit
 from walking.dimension import HSR_VIII
+from walking.state import Phase
 
 Array = NDArray[np.float64]
 
-GAIT = {
-    "standing": GREY,
-    "double": SAND,
-    "left": BLUE,
-    "right": ORANGE,
-    "up": VIOLET,
-    "fallen": RED,
+GAIT = {  # name and colour of a phase
+    Phase.STANDING: ("standing", GREY),
+    Phase.DOUBLE_SUPPORT: ("both feet", SAND),
+    Phase.LEFT_SUPPORT: ("left foot", BLUE),
+    Phase.RIGHT_SUPPORT: ("right foot", ORANGE),
+    Phase.GETTING_UP: ("getting up", VIOLET),
+    Phase.FALLEN: ("fallen", RED),
 }
 POINTS = (("ZMP planned", ORANGE), ("ZMP measured", BLUE), ("CoM", GREEN), ("DCM", VIOLET))
 SPEEDS = ("vx", "vy", "wz")
@@ -82,7 +83,7 @@ def style_walking(log: LogStream, robot: RobotModel, scale: float) -> None:
             for k, shade in zip(joints, shades, strict=True)
         )
     plots["tilt"] = (("roll [deg]", BLUE), ("pitch [deg]", ORANGE))
-    style_plots(log, plots, {"gait": GAIT})
+    style_plots(log, plots, {"gait": dict(GAIT.values())})
 
 
 def leg_columns(robot: RobotModel) -> dict[str, list[int]]:
@@ -122,7 +123,7 @@ def log_walking(log: LogStream, records: Table, robot: RobotModel, scale: float)
         log.curves(f"/plots/torque_{group}", times, records["joint_torque"][:, joints])
     tilt = np.column_stack([records["roll"], records["pitch"]])
     log.curves("/plots/tilt", times, np.degrees(tilt))
-    log.lane("/state/gait", times, records["phase"].tolist())
+    log.lane("/state/gait", times, [GAIT[Phase(phase)][0] for phase in records["phase"]])
     _log_support(log, records, np.split(support, np.cumsum(corners[:-1])))
     _log_limits(log, records)
 

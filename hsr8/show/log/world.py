@@ -1,4 +1,4 @@
-"""True world in the log: floor, obstacles, movers, waypoints, path, footsteps, head camera."""
+"""True world in the log: floor, obstacles, movers, via points, path, footsteps, head camera."""
 
 from math import cos, sin
 
@@ -31,7 +31,8 @@ APRON = 1.0  # margin of the floor around the field, both sides together, at sca
 FLOOR_COLOR = (206, 204, 198, 255)
 SOLE_HEIGHT = 0.004  # height of drawn footsteps [m]
 PATH_HEIGHT = 0.003  # height of the drawn path [m]
-MAX_LABELS = 12  # more waypoints than this are shown without numbers
+MAX_LABELS = 12  # more via points than this are shown without numbers
+LABEL_GAP = 0.06  # between a via point and its name [m]
 
 
 class WorldShapes:
@@ -97,23 +98,28 @@ class WorldShapes:
             )
 
 
-def log_waypoints(log: LogStream, layout: Layout) -> None:
-    """Log the waypoints and the heading at the goal."""
+def log_via_points(log: LogStream, layout: Layout) -> None:
+    """Log the via points, the goal and the heading there."""
     points = np.asarray(layout.waypoints, float).reshape(-1, 2)
     if len(points) == 0:
         return
-    goal = None if layout.endless else layout.goal_heading
-    labels = [str(k + 1) for k in range(len(points))]
-    if goal is not None:
-        labels[-1] = "goal"
+    goal, few = None if layout.endless else layout.goal_heading, len(points) <= MAX_LABELS
     marks = rr.Points3D(
         raised(points, 0.01),
-        radii=layout.scale * (0.03 if len(points) <= MAX_LABELS else 0.012),
+        radii=layout.scale * (0.03 if few else 0.012),
         colors=[palette.TARGET],
-        labels=labels,
-        show_labels=len(points) <= MAX_LABELS,
     )
-    log.log("/world/waypoints", marks, static=True)
+    log.log("/world/via_points", marks, static=True)
+    if few:
+        names = [str(k + 1) for k in range(len(points))]
+        if not layout.endless:
+            names[-1] = "goal"
+        # The viewer writes a name below its point; at the via point it would hide the mark.
+        below = raised(points - (0.0, LABEL_GAP * layout.scale), 0.01)
+        labels = rr.Points3D(
+            below, radii=0.0, colors=[palette.TARGET], labels=names, show_labels=True
+        )
+        log.log("/world/via_points/names", labels, static=True)
     if goal is not None:
         heading = rr.Arrows3D(
             origins=[[*points[-1].tolist(), 0.01]],
@@ -121,7 +127,7 @@ def log_waypoints(log: LogStream, layout: Layout) -> None:
             colors=[palette.TARGET],
             radii=0.01,
         )
-        log.log("/world/waypoints/heading", heading, static=True)
+        log.log("/world/via_points/heading", heading, static=True)
 
 
 def log_footsteps(log: LogStream, records: Table, times: Array, sole: Array) -> None:

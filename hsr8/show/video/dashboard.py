@@ -1,6 +1,6 @@
 """Dashboard of a video: scene, camera image, belief and gaze."""
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Collection, Sequence
 from math import hypot
 from types import SimpleNamespace
 
@@ -26,6 +26,7 @@ VALUE, NAME, TITLE, LEGEND = 20, 13, 14, 13  # font sizes [pixel]
 FRAME, BAND = (18, 19, 22), (28, 30, 34)
 INK, FAINT, ALARM = (238, 239, 241), (150, 155, 164), (255, 130, 90)
 MIN_PANEL = 120  # width of a legible gaze map [pixel]
+CORNERS = "corners: chosen view"
 MIN_NAMED = 33  # height of a band with room for names above its values [pixel]
 
 HEIGHT = 0.1  # fraction of the image drawn into
@@ -98,28 +99,49 @@ def _square(color: Color) -> Mark:
     return draw
 
 
-ENTRIES: tuple[tuple[str, Mark], ...] = (
+def _bar(color: Color) -> Mark:
+    def draw(image: Image, at: tuple[int, int], radius: int) -> None:
+        (u, v), r = at, radius
+        cv2.rectangle(image, (u - MARK // 2, v - r), (u + MARK // 2, v + r), color, -1)
+
+    return draw
+
+
+def _nothing(image: Image, at: tuple[int, int], radius: int) -> None:
+    """Draw no symbol."""
+
+
+Entry = tuple[str, Mark]
+"""Text and symbol of an entry of the legend."""
+BELIEF: tuple[Entry, ...] = (
     ("believed", _disc(STRONG, STRONG)),
     ("out of view", _disc(pale(STRONG), STRONG)),
     ("true", _ring(DARK)),
     ("2σ, velocity", _ring(palette.BELIEF)),
-    ("next points", _disc(palette.TARGET, palette.TARGET)),
+    ("via points", _disc(palette.TARGET, palette.TARGET)),
     ("view", _square(palette.VIEW)),
 )
-"""Text and symbol of every entry, in rows of three."""
-COLUMNS = 3
+COLUMNS = 3  # of the legend
 LINE = 1.7  # height of a row relative to the letters [1]
 
 
-def legend_height(letters: int) -> int:
-    """Return the height of the legend in letters of a font size [pixel]."""
-    return -(-len(ENTRIES) // COLUMNS) * round(LINE * letters) + letters // 2
+def legend(kinds: Collection[str]) -> list[Entry]:
+    """Return the entries of the belief, and of the marks of the kinds of events on the time bar."""
+    marks = [
+        (kind.replace("_", " "), _bar(color)) for kind, color in MARKS.items() if kind in kinds
+    ]
+    return [*BELIEF, ("on the time bar:", _nothing), *marks] if marks else [*BELIEF]
 
 
-def draw_legend(image: Image, letters: int) -> None:
-    """Draw the legend, in letters of a font size [pixel], into `image` (height, width, 3)."""
+def legend_height(entries: Sequence[Entry], letters: int) -> int:
+    """Return the height of a legend in letters of a font size [pixel]."""
+    return -(-len(entries) // COLUMNS) * round(LINE * letters) + letters // 2
+
+
+def draw_legend(image: Image, entries: Sequence[Entry], letters: int) -> None:
+    """Draw a legend, in letters of a font size [pixel], into `image` (height, width, 3)."""
     radius = max(2, round(0.36 * letters))
-    for k, (text, mark) in enumerate(ENTRIES):
+    for k, (text, mark) in enumerate(entries):
         row, column = divmod(k, COLUMNS)
         base = row * round(LINE * letters) + letters
         left = column * (image.shape[1] // COLUMNS) + letters
@@ -136,6 +158,7 @@ class Dashboard:
         span: simulated time of the first and the last image [s].
         size: width and height, both even [pixel].
         speed: simulated seconds per second of video.
+        kinds: kinds of the events of the run, whose marks the legend names.
 
     Attributes:
         scene_size, camera_size: sizes of the images to compose [pixel].
@@ -148,11 +171,15 @@ class Dashboard:
         span: tuple[float, float],
         size: Size,
         speed: float,
+        *,
+        kinds: Collection[str],
     ) -> None:
         width, height = size
         self._unit = unit = height / REFERENCE
         self._size, self._speed = size, speed
-        self._vias = None if layout.endless else len(layout.waypoints)
+        self._vias = (
+            None if layout.endless else max(0, len(layout.waypoints) - 1)
+        )  # without the goal
         gap, self._bar = round(GAP * unit), max(16, round(BAR * unit))
         side = width // 3
         camera = scenario.camera
@@ -163,7 +190,8 @@ class Dashboard:
         self._overlay = CameraOverlay(camera.pinhole, self.camera_size)
         self._named = self._bar >= MIN_NAMED
         letters = font_size(LEGEND * unit)
-        room = legend_height(letters) if self._named else 0
+        entries = legend(kinds)
+        room = legend_height(entries, letters) if self._named else 0
         self._above = TopDown(layout, (side, height - self._below - room))
         self._span = span
         gaze = scenario.navigation.gaze
@@ -174,7 +202,7 @@ class Dashboard:
         if self._named:
             below = self._background[height - room :, self._left :]
             below[:] = PAPER
-            draw_legend(below, letters)
+            draw_legend(below, entries, letters)
 
     def draw(
         self,
@@ -226,9 +254,11 @@ class Dashboard:
         letters, pad = font_size(TITLE * self._unit), round(8 * self._unit)
         column = self._left + pad
         row = self.camera_size[1] - pad
-        right = column + text_width("head camera", letters, strong=True) + pad
+        middle = column + text_width("head camera", letters, strong=True) + 2 * pad
+        right = middle + text_width(CORNERS, letters) + pad
         image[row - letters - pad // 2 : row + pad, self._left : right] = BAND
         draw_text(image, (column, row), "head camera", INK, letters, strong=True)
+        draw_text(image, (middle, row), CORNERS, palette.VIEW, letters)
         row = self._below + pad + letters
         draw_text(image, (column, row), "belief", BAND, letters, strong=True)
 
@@ -237,11 +267,13 @@ class Dashboard:
     ) -> None:
         """Draw a line of values, each under its name."""
         error = hypot(frame.pose[0] - frame.truth[0], frame.pose[1] - frame.truth[1])
-        vias = f"{frame.via_points}" + ("" if self._vias is None else f" / {self._vias}")
+        vias = f"{frame.via_points}"
+        if self._vias is not None:
+            vias = f"{min(frame.via_points, self._vias)} / {self._vias}"
         speed = "time" if self._speed == 1.0 else f"time, {self._speed:g}x"
         numbers = [
             (speed, f"{time:.1f} s"),
-            ("waypoints", vias),
+            ("via points", vias),
             ("speed", f"{hypot(*frame.velocity[:2]):.2f} m/s"),
             ("pose error", f"{100.0 * error:.1f} cm"),
             ("collisions", f"{collisions}"),

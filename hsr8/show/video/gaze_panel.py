@@ -1,20 +1,20 @@
 """Panel with the value of every gaze, the chosen gaze and the partial evaluations."""
 
 from collections.abc import Sequence
-from math import degrees
 from types import SimpleNamespace
 
 import cv2
 import numpy as np
 
 from hsr8.recording import palette
-from hsr8.show.image import Image, draw_text, font_size
+from hsr8.show.evaluations import EVALUATIONS
+from hsr8.show.image import Image, draw_text, font_size, text_width
 
 PANEL, GROOVE = (28, 30, 34), (70, 74, 82)
 INK, FAINT = (238, 239, 241), (164, 168, 176)
 OPACITY = 0.86
 MAX_RATIO = 1.0  # height to width of the map, which is narrow for a camera that does not pan
-EVALUATIONS = ("ground", "pose", "obstacle", "path")  # reasons to look: ψ_lm, ψ_sf, ψ_ob, ψ_way
+COLUMNS = 2  # of the partial evaluations
 
 
 class GazePanel:
@@ -33,7 +33,9 @@ class GazePanel:
         ratio = min(MAX_RATIO, (tilts[1] - tilts[0]) / (2.0 * max_pan))
         self._map = (width - 2 * pad, max(8, round((width - 2 * pad) * ratio)))
         self._top = self._letters + 2 * pad
-        self.size = (width, self._top + self._map[1] + 3 * pad + self._letters)
+        self._line = self._letters + 2 * pad
+        rows = len(EVALUATIONS) // COLUMNS
+        self.size = (width, self._top + self._map[1] + rows * self._line + pad)
         ramp = np.arange(256, dtype=np.uint8)[:, None]
         heat = cv2.applyColorMap(ramp, cv2.COLORMAP_INFERNO)[:, 0, ::-1]
         self._heat = np.ascontiguousarray(heat)
@@ -46,9 +48,14 @@ class GazePanel:
         panel[:] = cv2.addWeighted(panel, 1.0 - OPACITY, np.full_like(panel, PANEL), OPACITY, 0.0)
         pad, base = self._pad, self._pad + self._letters - 1
         draw_text(panel, (pad, base), "value of gazes", INK, self._letters, strong=True)
-        draw_text(
-            panel, (width - pad, base), _described(frame.gaze), FAINT, self._letters, side="right"
-        )
+        column = width - pad
+        radius = max(2, self._letters // 3)
+        for text, color, filled in (("chosen", palette.BELIEF, False), ("now", INK, True)):
+            draw_text(panel, (column, base), text, FAINT, self._letters, side="right")
+            column -= text_width(text, self._letters) + 2 * radius + 2
+            centre = column, base - radius
+            cv2.circle(panel, centre, radius, color, -1 if filled else 1, cv2.LINE_AA)
+            column -= 4 * radius
         self._draw_map(panel, frame)
         self._draw_evaluations(panel, frame)
 
@@ -67,12 +74,11 @@ class GazePanel:
 
     def _draw_evaluations(self, panel: Image, frame: SimpleNamespace) -> None:
         """Draw a bar per evaluation below the map."""
-        pad = self._pad
-        row = self._top + self._map[1] + pad + self._letters
-        step = (self.size[0] - pad) // len(EVALUATIONS)
-        thick = max(2, pad // 2)
+        pad, thick = self._pad, max(2, self._pad // 2)
+        step = (self.size[0] - pad) // COLUMNS
         for k, (name, value) in enumerate(zip(EVALUATIONS, frame.psi, strict=True)):
-            column = pad + k * step
+            column = pad + k % COLUMNS * step
+            row = self._top + self._map[1] + k // COLUMNS * self._line + pad + self._letters
             draw_text(panel, (column, row - 1), name, FAINT, self._letters)
             groove = panel[row + thick : row + 2 * thick, column : column + step - pad]
             groove[:] = GROOVE
@@ -86,9 +92,3 @@ class GazePanel:
         u, v = min(1.0, max(0.0, u)), min(1.0, max(0.0, v))
         column = self._pad + round(u * (self._map[0] - 1))
         return column, self._top + round(v * (self._map[1] - 1))
-
-
-def _described(look: Sequence[float]) -> str:
-    pan, tilt = round(degrees(look[0])), round(degrees(look[1]))
-    across = "left" if pan >= 0 else "right"
-    return f"{abs(pan)}° {across}, {abs(tilt)}° {'up' if tilt > 0 else 'down'}"

@@ -153,7 +153,8 @@ class RunImages:
 
     def _dashboard(self) -> Draw:
         span = float(self._times[0]), float(self._times[-1])
-        board = Dashboard(self._layout, self._scenario, span, self._size, self._speed)
+        kinds = {kind for _, kind in self._events}
+        board = Dashboard(self._layout, self._scenario, span, self._size, self._speed, kinds=kinds)
         movers = self._records["obstacle_positions"][:, len(self._layout.static) :]
         scene = self._renderer("show", board.scene_size)
         camera = self._renderer("vision", board.camera_size, CAMERA_OVERSAMPLING)

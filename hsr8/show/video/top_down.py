@@ -21,14 +21,14 @@ INK, SHADE, PATH = (44, 46, 52), (212, 211, 208), (146, 148, 154)
 # Lengths are those in a world of scale 1.
 VIEW_RANGE = 1.6  # drawn length of the field of view [m]
 VIEW_OPACITY = 0.35
-NUMBER = (176, 92, 0)  # colour of waypoint numbers
+NUMBER = (176, 92, 0)  # colour of the numbers of via points
 TRAIL = 40.0  # duration of the drawn path [s]
 ROBOT = ((0.16, 0.0), (-0.09, 0.10), (-0.05, 0.0), (-0.09, -0.10))  # arrow head [m]
-AHEAD = 3  # waypoints shown
+AHEAD = 3  # via points shown
 SIGMAS = 2.0
 VELOCITY = 2.0  # prediction time of velocity lines [s]
 MAX_SIGMA = 0.5  # of a drawn ellipse [m]
-POINT = 0.05  # radius of a waypoint [m]
+POINT = 0.05  # radius of a via point [m]
 OVERSAMPLING = 2  # for smooth small circles
 STROKE = 300  # image height per pixel of line width [pixel]
 
@@ -81,7 +81,7 @@ class TopDown:
             canvas.ring(position, obstacle.radius, INK, width)
         for virtual in frame.virtual_obstacles:
             canvas.ring(virtual.position, virtual.radius, palette.VIRTUAL, width)
-        self._draw_waypoints(canvas, frame.via_points)
+        self._draw_via_points(canvas, frame.via_points)
         canvas.line((frame.pose[:2], frame.target), palette.TARGET, width)
         canvas.disc(frame.target, POINT * self._scale, palette.TARGET)
         canvas.area(_robot(frame.pose, self._scale), palette.BELIEF)
@@ -90,8 +90,8 @@ class TopDown:
         shown: Image = cv2.resize(canvas.image, self._size, interpolation=cv2.INTER_AREA)
         return shown
 
-    def _draw_waypoints(self, canvas: Canvas, passed: int) -> None:
-        """Draw the next waypoints with their numbers."""
+    def _draw_via_points(self, canvas: Canvas, passed: int) -> None:
+        """Draw the next via points with their numbers, and the goal."""
         points = np.reshape(self._layout.waypoints, (-1, 2)).tolist()
         last = passed + AHEAD if self._layout.endless else min(passed + AHEAD, len(points))
         for number in range(passed, last):
@@ -99,7 +99,9 @@ class TopDown:
             canvas.ring(point, POINT * self._scale, palette.TARGET, self._width)
             u, v = canvas.pixel(point)
             corner = (u + self._letters // 2, v - self._letters // 2)
-            draw_text(canvas.image, corner, str(number + 1), NUMBER, self._letters, strong=True)
+            goal = not self._layout.endless and number == len(points) - 1
+            text = "goal" if goal else str(number + 1)
+            draw_text(canvas.image, corner, text, NUMBER, self._letters, strong=True)
 
     def _draw_track(self, canvas: Canvas, track: SimpleNamespace) -> None:
         strong = palette.of_label(track.label)

@@ -1,4 +1,6 @@
 import json
+import re
+from pathlib import Path
 
 import pytest
 
@@ -45,3 +47,19 @@ def test_killed_runs_and_unreadable_scenarios_are_shown(run, capsys):
     assert "running, or killed" in capsys.readouterr().out
     (run.path / "metrics.json").unlink()
     assert entry(["info", str(run.path)]) == 0
+
+
+def test_the_references_need_no_run_and_are_those_of_the_manual(capsys):
+    assert entry(["info", "--bibtex"]) == 0
+    bibtex = capsys.readouterr().out
+    root = Path(__file__).parents[3]
+    assert bibtex in (root / "docs" / "limitations.md").read_text(encoding="utf-8")
+    cff = (root / "CITATION.cff").read_text(encoding="utf-8")
+    title, version = (re.search(rf"{key} += {{(.+)}},", bibtex)[1] for key in ("title", "version"))
+    assert f'title: "{title}"' in cff
+    assert f"version: {version}" in cff
+
+
+def test_a_missing_run_is_refused(capsys):
+    assert entry(["info"]) == 2
+    assert "RUN: missing" in capsys.readouterr().err

@@ -11,7 +11,9 @@ def drawn(shown, layout):
     frame = shown()
 
     def draw(size, collisions=0, state="free"):
-        board = Dashboard(layout, load_scenario("quick"), (0.0, 1.0), size, 1.0)
+        board = Dashboard(
+            layout, load_scenario("quick"), (0.0, 1.0), size, 1.0, kinds={"collision"}
+        )
         scene = np.full((*board.scene_size[::-1], 3), (200, 0, 0), np.uint8)
         camera = np.full((*board.camera_size[::-1], 3), (0, 200, 0), np.uint8)
         image = board.draw(
