@@ -230,8 +230,8 @@ def capture_step(
     off_x, off_y = rotate_back(yaw, error_x, error_y)
     length, width = ankle_room(support, zmp, (off_x, off_y), robot)
     forward, lateral = sole_margins(robot)
-    x = dead_zone(off_x, p.capture_dead_zone * forward)
-    y = dead_zone(off_y, p.capture_dead_zone * lateral)
+    zone_x, zone_y = p.capture_dead_zone * forward, p.capture_dead_zone * lateral
+    x, y = dead_zone(off_x, zone_x), dead_zone(off_y, zone_y)
     if x == 0.0 and y == 0.0:
         return Capture(False, landing, ticks_left)
     planned = ticks_left * CONTROL_PERIOD
@@ -241,7 +241,8 @@ def capture_step(
     (zmp_x, zmp_y), (dcm_x, dcm_y) = zmp, dcm
     ahead_x, ahead_y = rotate_back(yaw, dcm_x - zmp_x, dcm_y - zmp_y)
     reach_x, reach_y = rotate_back(yaw, reached.x - landing.x, reached.y - landing.y)
-    missing_x, missing_y = dead_zone(off_x, length), dead_zone(off_y, width)
+    missing_x = dead_zone(off_x, max(length, zone_x))
+    missing_y = dead_zone(off_y, max(width, zone_y))
     time = min(planned, capture_time(omega, planned, missing_x, ahead_x, reach_x))
     time = min(time, capture_time(omega, planned, missing_y, ahead_y, reach_y))
     return Capture(True, reached, int(time / CONTROL_PERIOD + ROUNDING))
