@@ -67,21 +67,7 @@ def test_a_repaired_robot_has_a_description_with_the_reason(inspected, tmp_path)
     assert load_robot(str(file)).model.mass == robot.model.mass
 
 
-def test_a_weld_outside_the_legs_is_named_and_no_key_is_proposed(inspected):
-    def weld(root):
-        rod = ElementTree.fromstring(
-            '<body name="rod" pos="0 0 0.02"><joint name="rod" axis="0 1 0"/>'
-            '<inertial pos="0 0 0" mass="0.01" diaginertia="1e-5 1e-5 1e-5"/></body>'
-        )
-        part(root, "body", "head_yaw_link").append(rod)
-        adding('<equality><weld body1="rod" body2="head_pitch_link"/></equality>')(root)
-
-    with pytest.raises(ModelError, match="a weld ties 'rod' and 'head_pitch_link'") as refusal:
-        inspected(weld)
-    assert "linkage" not in str(refusal.value)
-
-
-@pytest.mark.parametrize("degrees", [15.0, 30.0, 45.0])
+@pytest.mark.parametrize("degrees", [30.0])
 def test_hips_may_pitch_about_canted_axes(inspected, degrees):
     def cant(root):
         for side, sign in (("l", 1.0), ("r", -1.0)):
@@ -171,27 +157,6 @@ def test_a_difference_of_angles_names_the_zero_that_removes_it(written, tmp_path
     assert zero[0] == "r_hip_pitch"
     assert float(zero[1]) == pytest.approx(-np.radians(3.0), abs=1e-3)
     load_robot(str(description))
-
-
-def test_a_pointer_in_the_place_of_a_mesh_is_refused_in_one_line(inspected, tmp_path):
-    (tmp_path / "trunk.stl").write_text(
-        "version https://git-lfs.github.com/spec/v1\noid sha256:0\n"
-    )
-
-    def mesh(root):
-        adding('<asset><mesh name="trunk" file="trunk.stl"/></asset>')(root)
-        part(root, "body", "torso").append(
-            ElementTree.fromstring('<geom type="mesh" mesh="trunk" mass="0"/>')
-        )
-
-    with pytest.raises(ModelError, match="git lfs pull") as refusal:
-        inspected(mesh)
-    assert "\n" not in str(refusal.value)
-
-
-def test_a_model_may_have_the_suffix_mjcf(inspected):
-    _, robot = inspected(suffix=".mjcf")
-    assert robot.file.suffix == ".mjcf"
 
 
 @pytest.mark.parametrize("actuator", ["position", "motor"])

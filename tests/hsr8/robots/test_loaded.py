@@ -9,7 +9,7 @@ import pytest
 from hsr8.robots.defaults import defaults_of
 from hsr8.robots.loaded import load_robot
 from hsr8.scenario.sensors import Camera
-from tests.hsr8.robots.robot_parts import adding, part, setting
+from tests.hsr8.robots.robot_parts import part, setting
 from tests.hsr8.robots.small_humanoid import SmallHumanoid
 from walking.constants import robot_record
 from walking.data import Data
@@ -90,27 +90,6 @@ def test_kinematics_and_centre_of_mass_are_those_of_mujoco(load, name):
         solved, error = leg.angles(foot)
         assert error < 1e-9
         np.testing.assert_allclose(solved, angles[six], atol=1e-8)
-
-
-def test_tendons_of_the_arms_are_no_servos_of_the_legs(load):
-    plain = load(SmallHumanoid())
-    tendons = adding(
-        "<tendon>"
-        + "".join(
-            f'<fixed name="t{k}"><joint joint="l_shoulder_pitch" coef="1"/></fixed>'
-            for k in range(3)
-        )
-        + "</tendon>"
-    )
-
-    def motors(root):
-        for k in range(3):
-            root.find("actuator").append(
-                ElementTree.fromstring(f'<motor name="m{k}" tendon="t{k}" gear="7"/>')
-            )
-
-    with_tendons = load(SmallHumanoid(), tendons, motors)
-    np.testing.assert_array_equal(with_tendons.model.stiffness, plain.model.stiffness)
 
 
 def test_neighbours_that_overlap_in_the_ready_posture_do_not_collide(load):
