@@ -16,7 +16,8 @@ DURATION = 1.5  # with the first footstep [s]
 
 @pytest.fixture(scope="module")
 def compiled(tmp_path_factory):
-    return recorded(tmp_path_factory.mktemp("compiled"))
+    settings = {"robot.body": "kinematic", "camera.source": "analytic", "duration": DURATION}
+    return hsr8.run("quick", settings=settings, out=tmp_path_factory.mktemp("compiled"))
 
 
 def recorded(folder, *options, **environment):

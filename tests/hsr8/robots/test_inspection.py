@@ -70,13 +70,3 @@ def test_soft_servos_are_replaced_by_the_rule(loaded):
     (finding,) = findings(inspection, "servo")
     assert "of the stiffness that holds it upright" in finding.reason
     assert robot.model.stiffening == 1.0
-
-
-def test_a_stated_description_is_not_changed(loaded, tmp_path):
-    _, robot = loaded()
-    text = 'model = "small.xml"\nfeet = ["l_ankle_roll_link", "r_ankle_roll_link"]\n'
-    (tmp_path / "mine.toml").write_text(text)
-    inspection, again = load_inspected(inspect(str(tmp_path / "mine.toml")))
-    assert inspection.stated
-    assert again.description.head is None
-    assert again.model.mass == robot.model.mass

@@ -92,10 +92,9 @@ def test_a_wrong_value_is_one_message(described, lines, expected):
     assert expected in message_of(read_description, described(lines))
 
 
-@pytest.mark.parametrize("kind", [mjcf, urdf])
 @pytest.mark.parametrize(("lines", "expected"), IN_THE_MODEL)
-def test_a_name_that_the_model_lacks_is_one_message(described, lines, expected, kind):
-    file = described(lines, kind)
+def test_a_name_that_the_model_lacks_is_one_message(described, lines, expected):
+    file = described(lines)
     assert message_of(lambda f: load_robot(str(f)), file).startswith(expected)
 
 
@@ -119,22 +118,21 @@ def test_rigid_joints_keep_the_angle_of_the_posture_and_lose_their_limits(descri
     assert robot.spec.joint(elbow) is None
 
 
-@pytest.mark.parametrize("kind", [mjcf, urdf])
-def test_a_state_of_the_whole_body_completes_the_posture(described, tmp_path, kind):
+def test_a_state_of_the_whole_body_completes_the_posture(described, tmp_path):
     joints = "".join(f'<joint name="{name}" value="0.1"/>' for name in ("l_knee", "head_yaw"))
     (tmp_path / "a.srdf").write_text(
         f'<robot><group_state name="home" group="all">{joints}'
         '<joint name="finger" value="1"/></group_state></robot>'
     )
     lines = 'srdf = "a.srdf"\nstate = "home"\n'
-    assert load_robot(str(described(lines, kind))).description.posture == {"head_yaw": 0.1}
+    assert load_robot(str(described(lines, urdf))).description.posture == {"head_yaw": 0.1}
     lines += 'head = ["head_yaw", "head_pitch"]\n'
-    assert load_robot(str(described(lines, kind))).description.posture == {}
+    assert load_robot(str(described(lines, urdf))).description.posture == {}
 
 
-@pytest.mark.parametrize(("kind", "joint"), [(mjcf, "l_shoulder_pitch"), (urdf, "l_shoulder")])
-def test_joints_whose_range_excludes_zero_are_held_inside_it(described, kind, joint):
-    robot = load_robot(str(described(f"range = {{{joint} = [1.0, 2.0]}}", kind)))
+def test_joints_whose_range_excludes_zero_are_held_inside_it(described):
+    joint = "l_shoulder_pitch"
+    robot = load_robot(str(described(f"range = {{{joint} = [1.0, 2.0]}}")))
     assert robot.description.posture == {joint: pytest.approx(1.02)}
     assert f"posture: {joint!r} 0.000 -> 1.020 rad, within its range" in robot.notes
 

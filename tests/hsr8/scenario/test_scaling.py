@@ -51,7 +51,7 @@ def table_of(scenario):
 
 
 @pytest.mark.parametrize("name", built_in_names())
-@settings(max_examples=5, deadline=None)
+@settings(max_examples=2, deadline=None)
 @given(scales)
 def test_a_scale_and_its_inverse_cancel(name, scale):
     table = table_of(load_scenario(name))
