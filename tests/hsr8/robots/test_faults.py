@@ -81,7 +81,7 @@ def test_hips_may_pitch_about_canted_axes(inspected, degrees):
     assert walk.tilt.max() < 5.0
 
 
-def test_the_origin_of_the_base_may_be_below_the_soles(inspected):
+def test_the_origin_of_the_base_may_be_below_the_soles(inspected, plain):
     below = 0.4
 
     def shift(root):
@@ -92,7 +92,6 @@ def test_the_origin_of_the_base_may_be_below_the_soles(inspected):
                 x, y, z = map(float, child.get("pos", "0 0 0").split())
                 child.set("pos", f"{x} {y} {z + below + 0.42}")
 
-    _, plain = inspected()
     _, robot = inspected(shift)
     assert robot.height == pytest.approx(plain.height - below - 0.42)
     np.testing.assert_allclose(robot.model.ready, plain.model.ready, atol=1e-9)
@@ -173,8 +172,7 @@ def test_a_stated_effort_limits_the_physics_and_the_plan(written, tmp_path, actu
         assert model.actuator_forcerange[servo] == pytest.approx((-effort, effort))
 
 
-def test_features_that_walking_does_not_know_are_left_out_with_a_note(inspected):
-    _, plain = inspected()
+def test_features_that_walking_does_not_know_are_left_out_with_a_note(inspected, plain):
     _, robot = inspected(
         setting("body", "torso", gravcomp="1"),
         setting("joint", "l_knee", damping="0.1 2"),
