@@ -126,8 +126,6 @@ def test_a_state_of_the_whole_body_completes_the_posture(described, tmp_path):
     )
     lines = 'srdf = "a.srdf"\nstate = "home"\n'
     assert load_robot(str(described(lines, urdf))).description.posture == {"head_yaw": 0.1}
-    lines += 'head = ["head_yaw", "head_pitch"]\n'
-    assert load_robot(str(described(lines, urdf))).description.posture == {}
 
 
 def test_joints_whose_range_excludes_zero_are_held_inside_it(described):

@@ -3,7 +3,7 @@ import re
 from dataclasses import replace
 
 import pytest
-from hypothesis import given
+from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from hsr8.errors import UsageError
@@ -14,6 +14,7 @@ OUTCOMES = st.lists(
 )
 
 
+@settings(max_examples=25)
 @given(
     course=OUTCOMES,
     crowd=OUTCOMES,
