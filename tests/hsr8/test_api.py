@@ -63,8 +63,7 @@ def test_images_are_kept_by_their_setting_with_or_without_a_log(tmp_path, kept, 
     for log in (False, True):
         out = tmp_path / str(log) if period == 3 or log else None
         run = hsr8.run("quick", settings=settings, out=out, log=log)
-        shown = run.frames["index"][::period] if period else []
-        assert run.images["index"].tolist() == [*shown]
+        assert run.images["index"].tolist() == [*run.frames["index"][::period]]
 
 
 def test_a_log_without_a_folder_is_refused():
