@@ -17,6 +17,9 @@ settings.register_profile("repeatable", derandomize=True, deadline=None, databas
 settings.load_profile("repeatable")
 
 
+os.fsync = lambda _: None  # on a busy disk it takes longer than the run whose folder it protects
+
+
 @pytest.fixture(autouse=True)
 def need_gl(request: pytest.FixtureRequest) -> None:
     """Skip tests marked ``gl`` where nothing can be drawn; in CI let them fail."""

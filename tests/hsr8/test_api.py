@@ -1,15 +1,9 @@
-import json
-import shlex
-
 import numpy as np
 import pytest
 
 import hsr8
 from hsr8.errors import RenderingUnavailable, ScenarioError, UsageError
-from hsr8.recording.difference import first_cell
-from hsr8.recording.rows import TABLES
 from hsr8.recording.run import open_run
-from hsr8.recording.verification import recompute
 from navigation.belief.belief import Belief
 from navigation.decision import GazeDecision, MotionDecision
 
@@ -32,50 +26,6 @@ def test_nothing_is_written_by_default(tmp_path, monkeypatch):
     assert list(tmp_path.iterdir()) == []
     assert result.path is None
     assert (result.exit_reason, result.criteria_met) == ("timeout", False)
-
-
-def test_a_run_in_memory_is_that_on_disk(tmp_path, monkeypatch):
-    stored = hsr8.run("quick", seed=3, settings=STAND_INS, out=tmp_path)
-    monkeypatch.setattr("tempfile.mkdtemp", lambda *_, **__: pytest.fail("a temporary folder"))
-    kept = hsr8.run("quick", seed=3, settings=STAND_INS)
-    assert kept.path is None
-    assert kept.scenario() == stored.scenario()
-    assert (kept.seed, kept.ended) == (stored.seed, stored.ended)
-    assert kept.manifest["rows"] == stored.manifest["rows"]
-    assert kept.manifest["libraries"] == stored.manifest["libraries"]
-    assert kept.metrics["state_hash"] == stored.metrics["state_hash"]
-    for name, row in TABLES.items():
-        one, other = getattr(kept, name), getattr(stored, name)
-        assert one.arrow.schema.equals(other.arrow.schema, check_metadata=True)
-        assert [*one] == [*other] == [column.name for column in row.columns]
-        assert first_cell(one, other, ignored=("walking_time",)) is None
-        assert len(one) == len(other)
-    assert all(stage.equal for stage in recompute(kept))
-    assert kept.unit("records.zmp") == "m"
-
-
-def test_the_folder_holds_the_same_results_and_can_be_repeated(tmp_path):
-    result = hsr8.run("quick", seed=3, settings=STAND_INS, out=tmp_path)
-    run = open_run(tmp_path)
-    assert result.path == run.path
-    assert run.metrics["state_hash"] == result.metrics["state_hash"]
-    again = hsr8.run(run.scenario_file)
-    assert again.metrics["state_hash"] == result.metrics["state_hash"]
-
-
-def test_the_command_in_the_folder_makes_the_same_run(tmp_path):
-    def repeated(name, *scenario, **options):
-        result = hsr8.run(*scenario, out=tmp_path / name, **options)
-        head, verb, source, _, seed, *settings = shlex.split(
-            str(open_run(tmp_path / name).manifest["command"])
-        )
-        assert (head, verb) == ("hsr8", "run")
-        again = hsr8.run(source, seed=int(seed), settings=settings[1:])
-        return again.metrics["state_hash"] == result.metrics["state_hash"]
-
-    assert repeated("name", "quick", seed=3, settings=STAND_INS)
-    loaded = hsr8.load_scenario("quick", [f"{key}={json.dumps(v)}" for key, v in STAND_INS.items()])
-    assert repeated("loaded", loaded, seed=4)
 
 
 def test_the_folder_names_custom_planner_and_gaze(tmp_path):
@@ -107,14 +57,13 @@ def test_ctrl_c_ends_the_loop_around_a_run_and_leaves_its_folder(tmp_path):
 
 
 @pytest.mark.gl
-@pytest.mark.parametrize(("kept", "period"), [("none", None), ("standard", 3), ("full", 1)])
+@pytest.mark.parametrize(("kept", "period"), [("full", 1), ("standard", 3)])
 def test_images_are_kept_by_their_setting_with_or_without_a_log(tmp_path, kept, period):
     settings = {"robot.body": "kinematic", "duration": 1.0, "recorder.images": kept}
     for log in (False, True):
         out = tmp_path / str(log) if period == 3 or log else None
         run = hsr8.run("quick", settings=settings, out=out, log=log)
-        shown = run.frames["index"][::period] if period else []
-        assert run.images["index"].tolist() == [*shown]
+        assert run.images["index"].tolist() == [*run.frames["index"][::period]]
 
 
 def test_a_log_without_a_folder_is_refused():
@@ -132,28 +81,9 @@ def test_without_opengl_no_folder_is_left(tmp_path, monkeypatch):
     assert list(tmp_path.iterdir()) == []
 
 
-def test_settings_are_words_or_a_table():
-    words = [f'{k}="{v}"' if isinstance(v, str) else f"{k}={v}" for k, v in STAND_INS.items()]
-    table, listed = (
-        hsr8.run("quick", settings=s).metrics["state_hash"] for s in (STAND_INS, words)
-    )
-    assert table == listed
-
-
-def test_a_loaded_scenario_takes_no_settings():
-    scenario = hsr8.load_scenario("quick")
-    with pytest.raises(TypeError, match="settings"):
-        hsr8.run(scenario, settings=STAND_INS)
-
-
 def test_criteria_met():
     settings = STAND_INS | {"criteria.goal_reached": False}
     assert hsr8.run("quick", settings=settings).criteria_met
-
-
-def test_an_unknown_name_is_refused():
-    with pytest.raises(AttributeError, match="nonsense"):
-        hsr8.nonsense  # noqa: B018
 
 
 def test_the_public_names_are_listed():
@@ -167,12 +97,6 @@ def test_a_plugin_needs_no_other_import():
     assert hsr8.Belief is Belief
     errors = {name for name, kind in vars(hsr8.errors).items() if isinstance(kind, type)}
     assert errors <= set(hsr8.__all__)
-
-
-def test_a_simulation_takes_the_seed_of_its_scenario():
-    scenario = hsr8.load_scenario("quick", STAND_INS, seed=7)
-    assert hsr8.Simulation(scenario).seed == 7
-    assert hsr8.Simulation(scenario, 8).seed == 8
 
 
 def test_the_runs_of_a_folder_are_listed_from_the_oldest_to_the_newest(tmp_path):

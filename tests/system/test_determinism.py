@@ -1,22 +1,46 @@
-"""A run depends on scenario and seed alone."""
+"""A run depends on scenario and seed alone: not on its observers, its process or its neighbours."""
+
+import shlex
+import sys
+from threading import Thread
 
 import pytest
 
 import hsr8
-from hsr8.scenario.loader import load_scenario
-from hsr8.simulation.loop import Simulation
+from hsr8.cli.main import entry
+from hsr8.recording.difference import first_cell
+from hsr8.recording.rows import TABLES
+from hsr8.recording.verification import recompute
+from hsr8.sweep.folder import SweepFolder
 
-STAND_INS_BY_KEY = {"robot.body": "kinematic", "camera.source": "analytic"}
-STAND_INS = [f'{key}="{value}"' for key, value in STAND_INS_BY_KEY.items()]
+STAND_INS = {"robot.body": "kinematic", "camera.source": "analytic", "duration": 2.0}
+WORDS = ["--body", "kinematic", "--camera", "analytic", "--duration", "2", "--quiet"]
+DIFFERENT = ({}, {"robot.speed.vx": 0.1, "walking.gait.swing_height": 0.02}, {})
 
 
-def final_hash(seed, settings, duration, on_record=lambda record: None):
-    scenario = load_scenario("course", [*settings, f"duration={duration}"])
-    with Simulation(scenario, seed) as simulation:
-        for tick in simulation:
-            if tick.record is not None:
-                on_record(tick.record)
-    return simulation.outcome().state_hash
+def simulation(seed=3, settings=STAND_INS, scenario="course"):
+    return hsr8.Simulation(hsr8.load_scenario(scenario, settings), seed)
+
+
+def state(run):
+    return run.metrics["state_hash"]
+
+
+@pytest.fixture(scope="module")
+def alone():
+    """A run without observers."""
+    return simulation().run()
+
+
+def test_a_seed_repeats_its_run_and_another_seed_is_another_run(alone):
+    assert simulation().run() == alone
+    assert simulation(4).run().state_hash != alone.state_hash
+
+
+@pytest.mark.gl
+def test_physics_and_pixels_repeat():
+    settings = {"duration": 2.0}
+    assert simulation(5, settings).run() == simulation(5, settings).run()
 
 
 def meddle(record):
@@ -35,34 +59,100 @@ def meddle(record):
             track.position[:] = 9.0
 
 
-def test_the_same_seed_repeats_a_run():
-    assert final_hash(3, STAND_INS, 2.0) == final_hash(3, STAND_INS, 2.0)
-
-
-def test_what_is_published_has_no_effect_on_the_run():
+def test_published_arrays_have_no_effect_on_the_run():
     """The belief is part of the hash, so the positions of the robot are compared."""
-    alone, meddled = [], []
-
-    def meddling(record):
-        meddled.append(record.truth.robot.tolist())
-        meddle(record)
-
-    final_hash(3, STAND_INS, 4.0, lambda record: alone.append(record.truth.robot.tolist()))
-    final_hash(3, STAND_INS, 4.0, meddling)
-    assert meddled == alone
-
-
-@pytest.mark.parametrize("log", [False, True])
-def test_records_and_log_change_nothing(tmp_path, log):
-    settings = {**STAND_INS_BY_KEY, "duration": 3.0}
-    result = hsr8.run("course", seed=3, settings=settings, out=tmp_path, log=log)
-    assert result.metrics["state_hash"] == final_hash(3, STAND_INS, 3.0)
+    paths = []
+    for act in (lambda record: None, meddle):
+        path = []
+        with simulation() as run:
+            for tick in run:
+                if tick.record is not None:
+                    path.append(tick.record.truth.robot.tolist())
+                    act(tick.record)
+        paths.append(path)
+    assert paths[0] == paths[1]
 
 
-def test_another_seed_another_end():
-    assert final_hash(3, STAND_INS, 1.0) != final_hash(4, STAND_INS, 1.0)
+def test_a_situation_that_is_read_and_not_decided_changes_nothing(alone):
+    with simulation() as driven:
+        while driven.exit_reason is None:
+            assert driven.perceive() is driven.perceive()
+            driven.step()
+    assert driven.outcome() == alone
+
+
+def test_a_run_in_memory_is_that_on_disk_with_and_without_a_log(alone, tmp_path, monkeypatch):
+    stored = hsr8.run("course", seed=3, settings=STAND_INS, out=tmp_path, log=True)
+    monkeypatch.setattr("tempfile.mkdtemp", lambda *_, **__: pytest.fail("a temporary folder"))
+    kept = hsr8.run("course", seed=3, settings=STAND_INS)
+    assert state(kept) == state(stored) == alone.state_hash
+    assert kept.scenario() == stored.scenario()
+    for key in ("rows", "libraries"):
+        assert kept.manifest[key] == stored.manifest[key]
+    for name, row in TABLES.items():
+        one, other = getattr(kept, name), getattr(stored, name)
+        assert one.arrow.schema.equals(other.arrow.schema, check_metadata=True)
+        assert [*one] == [*other] == [column.name for column in row.columns]
+        assert first_cell(one, other, ignored=("walking_time",)) is None
+    assert all(stage.equal for stage in recompute(kept))
 
 
 @pytest.mark.gl
-def test_physics_and_pixels_repeat():
-    assert final_hash(5, [], 2.0) == final_hash(5, [], 2.0)
+def test_a_video_and_a_log_change_nothing(alone, tmp_path):
+    words = ["run", "course", "--seed", "3", *WORDS, "--log", "--video", "--out", str(tmp_path)]
+    assert entry(words) == 1
+    run = hsr8.open_run(tmp_path)
+    assert (run.path / "video.mp4").exists()
+    assert state(run) == alone.state_hash
+
+
+def test_scenario_and_command_of_a_folder_repeat_its_run(tmp_path):
+    settings = STAND_INS | {"world.n_static": 3}
+    run = hsr8.run("quick", seed=9, settings=settings, out=tmp_path / "first")
+    assert state(hsr8.run(run.scenario_file)) == state(run)
+    words = shlex.split(run.manifest["command"])[1:]
+    entry([*words, "--quiet", "--out", str(tmp_path / "again")])
+    assert state(hsr8.open_run(tmp_path / "again")) == state(run)
+
+
+def test_the_runs_of_a_sweep_in_processes_of_their_own_are_single_runs(tmp_path):
+    seeds = ["--seeds", "3:5", "--workers", "2"]
+    assert entry(["sweep", "course", *seeds, *WORDS, "--out", str(tmp_path / "s")]) == 1
+    for result in SweepFolder.read(tmp_path / "s").results():
+        assert result["state_hash"] == simulation(result["seed"]).run().state_hash
+
+
+def in_turn(simulations):
+    """Make one tick of each in turn."""
+    for one in simulations:
+        one.__enter__()
+    for _ in zip(*simulations, strict=True):
+        pass
+
+
+def in_threads(simulations):
+    """Run all at once; the interpreter switches between them as often as it can."""
+    threads = [Thread(target=one.run) for one in simulations]
+    interval = sys.getswitchinterval()
+    sys.setswitchinterval(1e-6)
+    try:
+        for thread in threads:
+            thread.start()
+        for thread in threads:
+            thread.join()
+    finally:
+        sys.setswitchinterval(interval)
+
+
+@pytest.mark.parametrize("together", [in_turn, in_threads])
+def test_simulations_in_one_process_do_not_affect_each_other(together):
+    """Robots are shared, parameters of their walks differ."""
+
+    def simulations():
+        return [simulation(3, STAND_INS | changes, "quick") for changes in DIFFERENT]
+
+    separate = [one.run().state_hash for one in simulations()]
+    assert len(set(separate)) == 2
+    several = simulations()
+    together(several)
+    assert [one.outcome().state_hash for one in several] == separate

@@ -1,4 +1,4 @@
-"""Runs in other modes of the interpreter: uncompiled, and without docstrings."""
+"""A run in another mode of the interpreter: uncompiled, without docstrings and assertions."""
 
 import os
 import subprocess
@@ -14,27 +14,6 @@ from hsr8.recording.rows import TABLES
 DURATION = 1.5  # with the first footstep [s]
 
 
-@pytest.fixture(scope="module")
-def compiled(tmp_path_factory):
-    return recorded(tmp_path_factory.mktemp("compiled"))
-
-
-def recorded(folder, *options, **environment):
-    """Return a run of a new process."""
-    words = ["run", "quick", "--body", "kinematic", "--camera", "analytic", "--quiet"]
-    words += ["--duration", str(DURATION), "--out", str(folder)]
-    done = subprocess.run(
-        [sys.executable, *options, "-m", "hsr8", *words],
-        env=os.environ | environment,
-        capture_output=True,
-        text=True,
-        check=False,
-        timeout=100,
-    )
-    assert done.returncode == 1, done.stderr  # no goal in so short a time
-    return hsr8.open_run(folder)
-
-
 def numbers(run):
     """Yield name and values of every column of numbers."""
     for name in TABLES:
@@ -45,11 +24,21 @@ def numbers(run):
                 yield f"{name}.{column}", values
 
 
-@pytest.mark.parametrize(
-    ("options", "environment"), [((), {"NUMBA_DISABLE_JIT": "1"}), (("-OO",), {})]
-)
-def test_the_run_is_the_same(compiled, tmp_path, options, environment):
-    run = recorded(tmp_path, *options, **environment)
+@pytest.mark.timeout(600)
+def test_the_run_is_that_of_compiled_code(tmp_path):
+    settings = {"robot.body": "kinematic", "camera.source": "analytic", "duration": DURATION}
+    compiled = hsr8.run("quick", settings=settings)
+    words = ["run", "quick", "--body", "kinematic", "--camera", "analytic", "--quiet"]
+    words += ["--duration", str(DURATION), "--out", str(tmp_path)]
+    done = subprocess.run(
+        [sys.executable, "-OO", "-m", "hsr8", *words],
+        env=os.environ | {"NUMBA_DISABLE_JIT": "1"},
+        capture_output=True,
+        text=True,
+        check=False,
+    )
+    assert done.returncode == 1, done.stderr  # no goal in so short a time
+    run = hsr8.open_run(tmp_path)
     expected, columns = dict(numbers(compiled)), dict(numbers(run))
     assert columns.keys() == expected.keys()
     assert len(columns) > 50

@@ -102,16 +102,9 @@ def test_a_run_that_cannot_begin_leaves_no_folder(tmp_path, capsys):
     ("command", "option"),
     [
         ("render RUN --out closed/a.mp4", "--out"),
-        ("plot RUN --out closed/a.png", "--out"),
         ("check quick --image closed/a.png", "--image"),
-        ("replay RUN --screenshot closed/a.png", "--screenshot"),
-        ("schema --out closed/a.json", "--out"),
-        ("color-table a.png --out closed/a.npz", "--out"),
-        ("robot inspect hsr8 --image closed/a.png", "--image"),
         ("robot inspect hsr8 --write closed/a.toml", "--write"),
-        ("robot calibrate hsr8 --out closed/a.toml", "--out"),
         ("export RUN --csv closed/a", "--csv"),
-        ("export RUN --bag closed/a", "--bag"),
         ("export --urdf closed/a.urdf", "--urdf"),
     ],
 )

@@ -91,33 +91,6 @@ def test_a_robot_without_legs_of_six_joints_is_refused(folder, capsys):
     assert "feet: the legs have 5 hinge joints" in capsys.readouterr().err
 
 
-@pytest.mark.parametrize(
-    ("words", "reason"),
-    [
-        (["missing.xml"], "robot file 'missing.xml' does not exist"),
-        (["op4"], "unknown robot 'op4'; did you mean 'op3'?"),
-        (["small.xml", "--write", "robot.txt"], "--write robot.txt: wrong suffix"),
-        (["small.xml", "--write", "kept.toml"], "--write kept.toml: exists"),
-        (["small.xml", "--image", "robot.jpg"], "--image robot.jpg: wrong suffix"),
-        (["hsr8", "--write", "robot.toml"], "is a description already"),
-        (["broken.xml"], "broken.xml"),
-        (["empty.xml"], "no joints"),
-    ],
-)
-def test_a_mistake_is_one_message(folder, capsys, words, reason):
-    write(folder)
-    (folder / "kept.toml").touch()
-    (folder / "broken.xml").write_text("<mujoco><worldbody>", encoding="utf-8")
-    (folder / "empty.xml").write_text("<mujoco/>", encoding="utf-8")
-    before = sorted(folder.iterdir())
-    assert inspect(*words) == 2
-    captured = capsys.readouterr()
-    assert captured.err.startswith("hsr8: ")
-    assert reason in captured.err
-    assert captured.out == ""
-    assert sorted(folder.iterdir()) == before
-
-
 def test_a_description_is_compared_with_the_guess(folder, capsys):
     file = write(folder)
     head = 'model = "small.xml"\nhead = ["head_yaw", "head_pitch"]\n'

@@ -44,13 +44,3 @@ def test_a_menagerie_of_the_user_is_used(tmp_path, monkeypatch, capsys):
     models = {robot["name"]: robot["model"] for robot in result["robots"]}
     assert (models["op3"], models["t1"]) == (str(file), None)
     assert "op3" not in result["remedies"]
-
-
-def test_a_table_is_printed(monkeypatch, capsys):
-    without_wheels(monkeypatch)
-    assert entry(["robot", "list"]) == 0
-    printed = capsys.readouterr().out
-    for name in robot_names():
-        assert name in printed
-    assert "mass [kg]" in printed
-    assert printed.count("missing     ") == 5

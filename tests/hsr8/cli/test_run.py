@@ -1,7 +1,6 @@
 import json
 import os
 import signal
-import tomllib
 
 import numpy as np
 import pytest
@@ -32,29 +31,6 @@ def test_json_is_the_only_output(tmp_path, capsys):
     assert run.manifest["exit_reason"] == results["exit_reason"] == "timeout"
     assert run.manifest["renderer"] == "analytic"
     assert run.log_file is None
-
-
-def test_the_log_does_not_change_the_run(tmp_path, capsys):
-    hashes = set()
-    for more in (["--quiet"], [], ["--log", "--quiet"]):
-        _run(tmp_path, "--seed", "5", *more)
-        hashes.add(open_run(tmp_path).metrics["state_hash"])
-    assert len(hashes) == 1
-    log = open_run(tmp_path).log_file
-    assert log.stat().st_size > 10_000
-
-
-def test_the_folder_has_the_command_to_repeat_the_run(tmp_path, capsys):
-    _run(tmp_path, "--seed", "9", "--set", "world.n_moving=0", "world.n_static=3")
-    run = open_run(tmp_path)
-    printed = capsys.readouterr().out
-    assert str(run.path) in printed
-    settings = tomllib.loads(run.scenario_file.read_text())
-    assert settings["seed"] == 9
-    assert settings["world"]["n_static"] == 3
-    first = run.metrics
-    entry([*run.manifest["command"].split()[1:], "--out", str(tmp_path / "again"), "--quiet"])
-    assert open_run(tmp_path / "again").metrics["state_hash"] == first["state_hash"]
 
 
 def test_quiet_is_quiet(tmp_path, capsys):

@@ -10,33 +10,11 @@ import pytest
 from hsr8.cli.main import entry
 from hsr8.cli.options import Sweep
 from hsr8.cli.sweep import _combinations
-from hsr8.scenario.loader import load_scenario
-from hsr8.simulation.loop import Simulation
 from hsr8.sweep.folder import SweepFolder
 from tests.hsr8.cli.conftest import Instant
 
 TINY = ["--body", "kinematic", "--camera", "analytic"]
 FAST = ["sweep", "quick", *TINY, "--duration", "0.3", "--quiet"]
-
-
-def test_two_workers_give_the_states_of_single_runs(tmp_path, capsys):
-    """Real processes, two at a time."""
-    out = tmp_path / "sweep"
-    assert entry([*FAST, "--seeds", "4:6", "--workers", "2", "--out", str(out), "--json"]) == 1
-    summary = json.loads(capsys.readouterr().out)
-    assert summary["runs"] == 2
-    results = SweepFolder.read(out).results()
-    overrides = ("robot.body=kinematic", "camera.source=analytic", "duration=0.3")
-    for result in results:
-        alone = Simulation(load_scenario("quick", overrides, result["seed"]), result["seed"]).run()
-        assert result["state_hash"] == alone.state_hash
-        assert (out / result["run"] / "metrics.json").exists()
-        assert result["command"] == (
-            "hsr8 run quick --duration 0.3 --body kinematic --camera analytic "
-            f"--seed {result['seed']}"
-        )
-    assert (out / "runs.parquet").exists()
-    assert results[0]["command"] in (out / "report.md").read_text()
 
 
 def test_seeds_with_a_result_are_kept_and_further_seeds_join(instant, tmp_path, capsys):

@@ -2,7 +2,7 @@
 
 import pytest
 
-from hsr8.files.text import TomlError, parse_toml, read_text
+from hsr8.files.text import read_text
 
 
 @pytest.mark.parametrize(
@@ -27,9 +27,3 @@ def test_text_is_utf_8_with_or_without_a_mark(content, expected, tmp_path):
 def test_a_path_of_no_file_is_an_error_of_the_system(path):
     with pytest.raises(OSError, match=r"null|too long|No such file"):
         read_text(path)
-
-
-@pytest.mark.parametrize("text", ["a = ", "a = " + "[" * 3000, "a = " + 5000 * "1"])
-def test_invalid_toml_is_one_error_of_one_line(text):
-    with pytest.raises(TomlError, match=r"^invalid TOML: .{1,310}$"):
-        parse_toml(text)

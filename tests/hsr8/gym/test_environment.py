@@ -6,17 +6,15 @@ from math import sin
 import gymnasium
 import numpy as np
 import pytest
-from gymnasium.utils.env_checker import check_env, data_equivalence
+from gymnasium.utils.env_checker import check_env
 from numba.core import event
 
 import hsr8
-from hsr8.errors import ScenarioError, UsageError
+from hsr8.errors import UsageError
 from hsr8.gym import Environment
 from navigation.decision import GazeDecision, MotionDecision
 
 FAST = ["robot.body=kinematic", "camera.source=analytic"]
-IDS = ("Gaze", "Navigate", "GazeAndNavigate")
-FULL = [*FAST[1:], "duration=2.0"]
 RENDERED = [FAST[0], "duration=2.0"]
 
 
@@ -83,11 +81,10 @@ class Clock:
         return MotionDecision(velocity=self.motion(belief))
 
 
-@pytest.mark.parametrize("name", IDS)
-def test_the_checker_has_no_complaint(make, name):
+def test_the_checker_has_no_complaint(make):
     with warnings.catch_warnings():
         warnings.simplefilter("error")
-        env = make(name, observe=["local_map"])
+        env = make("GazeAndNavigate", observe=["local_map"])
         check_env(env.unwrapped)
 
 
@@ -110,23 +107,13 @@ def test_the_checker_has_no_complaint_about_images(make):
 @pytest.mark.parametrize(
     "settings",
     [
-        pytest.param([*FAST, "duration=5.0"], id="fast"),
         pytest.param([*FAST, "duration=5.0", "camera.latency_ms=30"], id="latency"),
-        pytest.param(FULL, id="full"),
-        pytest.param(RENDERED, id="rendered", marks=pytest.mark.gl),
     ],
 )
 def test_the_same_decisions_are_the_same_run(make, settings):
     native = hsr8.run("quick", seed=4, settings=settings, gaze=Clock())
     *_, info = play(make(settings=settings, normalized=False), Clock().gaze)
     assert without_times(info["metrics"]) == without_times(native.metrics)
-
-
-def test_the_same_velocities_are_the_same_run(make):
-    settings = [*FAST, "duration=6.0"]
-    native = hsr8.run("quick", seed=4, settings=settings, planner=Clock())
-    *_, info = play(make("Navigate", settings=settings, normalized=False), Clock().motion)
-    assert info["metrics"]["state_hash"] == native.metrics["state_hash"]
 
 
 def test_the_velocity_of_an_action_counts_at_footsteps(make):
@@ -155,9 +142,10 @@ def test_zero_is_standing_and_the_middle_of_the_neck(make):
     assert observations[-1]["head"] == pytest.approx([np.pi / 2, -np.pi / 3], abs=0.05)
 
 
-@pytest.mark.parametrize("name", IDS)
-def test_observations_are_within_the_space_and_fresh(make, name):
-    env = make(name, settings=[*FAST, "duration=4.0"], scenario="crowd", observe=["local_map"])
+def test_observations_are_within_the_space_and_fresh(make):
+    env = make(
+        "GazeAndNavigate", settings=[*FAST, "duration=4.0"], scenario="crowd", observe=["local_map"]
+    )
     env.action_space.seed(1)
     observations, rewards, *_ = play(env, lambda *_: env.action_space.sample())
     assert all(observation in env.observation_space for observation in observations)
@@ -194,13 +182,6 @@ def test_a_seed_is_that_of_a_run_and_layouts_differ_reproducibly(make):
     assert len(set(layouts)) == len(set(seeds)) == 5
     assert robots(make(), 7) == (seeds, layouts)
     assert robots(make(), 8)[1][1:] != layouts[1:]
-
-
-def test_the_same_seed_and_actions_are_the_same_run(make):
-    runs = [play(make(settings=[*FAST, "duration=3.0"], normalized=False), Clock().gaze)]
-    runs += [play(make(settings=[*FAST, "duration=3.0"], normalized=False), Clock().gaze)]
-    assert all(data_equivalence(a, b) for a, b in zip(*(run[0] for run in runs), strict=True))
-    assert runs[0][1] == runs[1][1]
 
 
 def test_a_goal_is_a_success(make):
@@ -251,10 +232,7 @@ def test_weights_of_the_reward(make):
 @pytest.mark.parametrize(
     ("options", "error", "message"),
     [
-        ({"scenario": "crowded"}, ScenarioError, r"did you mean 'crowd'"),
-        ({"settings": ["robot.bodi=full"]}, ScenarioError, r"robot\.bodi"),
         ({"render_mode": "ansi"}, UsageError, r"render_mode: .*got 'ansi'; expected rgb_array"),
-        ({"observe": ["image"]}, UsageError, r"observe: .*camera\.source = 'rendered', got 'analy"),
         ({"name": "Navigate", "scenario": "walk"}, UsageError, r"mission\.kind = 'walk'"),
     ],
 )
@@ -262,11 +240,6 @@ def test_weights_of_the_reward(make):
 def test_invalid_arguments_are_refused(make, options, error, message):
     with pytest.raises(error, match=message):
         make(**options)
-
-
-def test_an_unknown_id_is_refused():
-    with pytest.raises(gymnasium.error.NameNotFound, match=r"Gaze"):
-        gymnasium.make("hsr8.gym:hsr8/Gase-v0")
 
 
 def test_actions_are_clipped_to_the_space(make):
@@ -299,9 +272,3 @@ def test_an_image_from_outside_is_the_same_until_the_next_step(make):
     image = env.render()
     for _ in range(3):
         assert np.array_equal(env.render(), image)
-
-
-def test_a_run_that_is_too_short_is_refused(make):
-    env = make(settings=[*FAST, "duration=0.1", "camera.latency_ms=200"])
-    with pytest.raises(UsageError, match="duration: the run ends before the first decision"):
-        env.reset(seed=1)

@@ -11,7 +11,7 @@ from gymnasium.vector import AutoresetMode
 
 import hsr8
 from hsr8.errors import UsageError
-from hsr8.gym import Environment, as_gaze, as_planner
+from hsr8.gym import Environment, as_gaze
 
 SETTINGS = ["robot.body=kinematic", "camera.source=analytic", "duration=1.0"]
 
@@ -83,25 +83,11 @@ def test_an_environment_refuses_an_invalid_option(options, error, message):
         gymnasium.make("hsr8.gym:hsr8/Gaze-v0", **({"settings": FAST} | options))
 
 
-@pytest.mark.parametrize("plugin", [as_gaze, as_planner])
+@pytest.mark.parametrize("plugin", [as_gaze])
 @pytest.mark.parametrize(("options", "error", "message"), COMMON)
 def test_a_plugin_refuses_an_invalid_option(plugin, options, error, message):
     with pytest.raises(error, match=message):
         plugin(lambda _: np.zeros(5), **options)
-
-
-@pytest.mark.parametrize("plugin", [as_gaze, as_planner])
-def test_a_plugin_requires_a_policy(plugin):
-    with pytest.raises(UsageError, match="policy: got NoneType None; expected an object with pred"):
-        plugin(None)
-
-
-def test_options_of_a_reset_are_refused():
-    env = gymnasium.make("hsr8.gym:hsr8/Gaze-v0", scenario="quick", settings=FAST)
-    with pytest.raises(UsageError, match=r"options: got .*'world': 3.*; expected None"):
-        env.reset(seed=1, options={"world": 3})
-    env.reset(seed=1, options={})
-    env.close()
 
 
 def test_a_run_may_follow_a_refused_reset():
@@ -113,12 +99,4 @@ def test_a_run_may_follow_a_refused_reset():
     env.reset(seed=1)
     observation, *_ = env.step(np.zeros(2, np.float32))
     assert observation in env.observation_space
-    env.close()
-
-
-def test_an_image_without_a_render_mode_is_none_with_a_warning():
-    env = gymnasium.make("hsr8.gym:hsr8/Gaze-v0", scenario="quick", settings=FAST)
-    env.reset(seed=1)
-    with pytest.warns(UserWarning, match="render_mode: .*got None; expected rgb_array"):
-        assert env.render() is None
     env.close()

@@ -40,10 +40,6 @@ class Fixed:
         return self.decision
 
 
-class Empty(Fixed, list):
-    """Falsy, as every empty container."""
-
-
 class Remembering:
     """Planner and gaze that take and return a memory, the list of the times of their frames."""
 
@@ -168,14 +164,9 @@ def test_a_scalar_gaze_is_accepted_exactly_and_an_array_refused(pan, number, sce
     "velocity",
     [
         [0.1, 0.0],
-        np.zeros((1, 3)),
         [np.nan, 0.0, 0.0],
-        [np.inf, 0.0, 0.0],
-        [1j, 0.0, 0.0],
-        [None, 0.0, 0.0],
         [[0.1], 0.0, 0.0],
         "abc",
-        None,
     ],
 )
 def test_an_invalid_velocity_is_refused_with_the_expected_one(velocity, scene):
@@ -187,11 +178,7 @@ def test_an_invalid_velocity_is_refused_with_the_expected_one(velocity, scene):
     ("decision", "expected"),
     [
         (None, "must return a MotionDecision, got NoneType"),
-        (np.zeros(3), "must return a MotionDecision, got ndarray of shape"),
-        (MotionDecision(np.zeros(3), direction=None), "direction"),
         (MotionDecision(np.zeros(3), speed=np.nan), "speed"),
-        (MotionDecision(np.zeros(3), situation=None), "situation"),
-        (MotionDecision(np.zeros(3), field=object()), "field"),
     ],
 )
 def test_an_invalid_motion_is_refused(decision, expected, scene):
@@ -204,11 +191,6 @@ def test_an_invalid_motion_is_refused(decision, expected, scene):
     [
         ((0.0, 0.0), "must return a GazeDecision, got tuple"),
         (GazeDecision(np.nan, 0.0), "pan"),
-        (GazeDecision(0.0, 0.0, body_direction=np.nan), "body_direction"),
-        (GazeDecision(0.0, "up"), "tilt"),
-        (GazeDecision(0.0, 0.0, psi_ob=np.inf), "psi_ob"),
-        (GazeDecision(0.0, 0.0, gaze_map=None), "gaze_map"),
-        (GazeDecision(0.0, 0.0, gaze_map=np.ones(3)), "gaze_map"),
         (GazeDecision(0.0, 0.0, gaze_map=np.full((2, 2), np.nan)), "gaze_map"),
         (GazeDecision(0.0, 0.0, gaze_map=-np.ones((2, 2))), "gaze_map"),
     ],
@@ -222,13 +204,8 @@ def test_an_invalid_gaze_is_refused(decision, expected, scene):
     "result",
     [
         None,
-        MotionDecision(np.zeros(3)),
         (MotionDecision(np.zeros(3)),),
-        (MotionDecision(np.zeros(3)), 1, 2),
         (1, MotionDecision(np.zeros(3))),
-        (GazeDecision(0.0, 0.0), None),
-        np.zeros(2),
-        "ab",
     ],
 )
 def test_anything_but_a_motion_and_a_memory_is_refused(result, scene):
@@ -236,19 +213,10 @@ def test_anything_but_a_motion_and_a_memory_is_refused(result, scene):
         motion_of(Returns(result), scene())
 
 
-@pytest.mark.parametrize(
-    "result", [None, GazeDecision(0.0, 0.0), (None, None), (MotionDecision(np.zeros(3)), 1)]
-)
+@pytest.mark.parametrize("result", [GazeDecision(0.0, 0.0), (MotionDecision(np.zeros(3)), 1)])
 def test_anything_but_a_gaze_and_a_memory_is_refused(result, scene):
     with pytest.raises(UsageError, match=r"gaze Returns: .*pair of GazeDecision and memory"):
         gaze_of(Returns(result), scene())
-
-
-def test_invalid_values_with_a_memory_are_refused_likewise(scene):
-    with pytest.raises(UsageError, match="planner Returns: velocity"):
-        motion_of(Returns((MotionDecision(np.full(3, np.nan)), None)), scene())
-    with pytest.raises(UsageError, match="gaze Returns: pan"):
-        gaze_of(Returns((GazeDecision(np.inf, 0.0), None)), scene())
 
 
 def test_a_plugin_gets_its_own_memory_back_and_none_at_first(fake):
@@ -267,17 +235,6 @@ def test_a_plugin_gets_its_own_memory_back_and_none_at_first(fake):
         context = replace(frame.context, time=frame.time)
         decisions.make(frame.estimate, frame.measured, context)
     assert planner.memories == gaze.memories == [None, [0.0], None, [0.2]]
-
-
-def test_two_memories_of_one_plugin_are_apart(scene, fake):
-    planner = Remembering()
-    plugin = PluginPlanner(planner, LIMITS)
-    one, other = scene(fake.frame(0.0)), scene(fake.frame(0.1))
-    _, first = plugin.plan(plugin.begin(), one)
-    _, second = plugin.plan(plugin.begin(), other)
-    plugin.plan(first, one)
-    plugin.plan(second, other)
-    assert planner.memories == [None, None, [0.0], [0.1]]
 
 
 def test_a_planner_of_belief_and_task_gets_the_landmarks_among_the_tracks(scene):
@@ -324,12 +281,6 @@ def test_the_built_in_planner_and_gaze_decide_the_same_as_plugins():
     assert plugins.metrics["state_hash"] == hsr8.run(scenario, seed=seed).metrics["state_hash"]
 
 
-def test_a_falsy_planner_is_used():
-    planner = Empty(MotionDecision(np.zeros(3)))
-    assert not planner
-    assert hsr8.run(quick(), seed=4, planner=planner).metrics["path_length_m"] < 0.01
-
-
 @pytest.mark.parametrize("kind", ["planner", "gaze", "walker"])
 def test_an_unsuitable_object_is_refused_before_the_run(kind, tmp_path):
     for plugin, expected in ((Fixed, rf"{kind}=Fixed\(\)"), (object(), "has no method")):
@@ -365,27 +316,3 @@ def test_a_start_that_fails_is_reported():
     planner.start = lambda limits: 1 / 0
     with pytest.raises(UsageError, match="planner Started: start failed: ZeroDivisionError: div"):
         PluginPlanner(planner, LIMITS)
-
-
-class Starting(Fixed):
-    """Plugin without a memory, whose own method `begin` has another purpose."""
-
-    def begin(self, world):
-        raise AssertionError(world)
-
-
-def test_without_a_memory_a_method_begin_is_not_called():
-    assert PluginPlanner(Starting(MotionDecision(np.zeros(3))), LIMITS).begin() is None
-    assert PluginGaze(Starting(GazeDecision(0.0, 0.0)), LIMITS).begin() is None
-
-
-def test_further_parameters_with_defaults_leave_a_planner_its_memory(scene):
-    class Tuned:
-        def begin(self):
-            return 1
-
-        def plan(self, memory, scene, gain=2):
-            return MotionDecision(np.zeros(3)), gain * memory
-
-    plugin = PluginPlanner(Tuned(), LIMITS)
-    assert plugin.plan(plugin.begin(), scene())[1] == 2

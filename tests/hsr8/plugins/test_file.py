@@ -2,7 +2,6 @@
 
 import json
 import os
-import re
 import sys
 
 import pytest
@@ -12,7 +11,7 @@ from hypothesis import strategies as st
 import hsr8
 from hsr8.cli.main import entry
 from hsr8.errors import UsageError
-from hsr8.plugins.file import PREFIX, digests, line_of, load_plugin, require_plugins
+from hsr8.plugins.file import PREFIX, digests, load_plugin, require_plugins
 from hsr8.scenario.plugin import Plugin
 from hsr8.sweep.folder import SweepFolder
 
@@ -108,12 +107,9 @@ def test_instances_are_new_and_the_file_is_executed_once(folder):
     [
         ("none.py:Ahead", "cannot read none.py: No such file"),
         ("mine.py:Behind", "mine.py has no class Behind; expected Ahead, Down, Silent, Trips"),
-        ("mine.py:nothing", "mine.py has no class nothing; expected"),
         ("mine.py:Breaks", rf"Breaks\(\) failed: RuntimeError: no way \(line {LINE}\)"),
         ("wrong.py:Ahead", r"wrong.py failed: NameError: .* \(line 2\)"),
-        ("leaves.py:Ahead", "leaves.py failed: SystemExit: 1"),
         ("text.py:Ahead", "text.py failed: SyntaxError"),
-        ("empty.py:Ahead", "empty.py has no class Ahead; expected a class"),
     ],
 )
 def test_a_plugin_that_cannot_be_loaded_is_reported_in_one_line(folder, reference, expected):
@@ -190,13 +186,9 @@ def named_by(file, reference, **keys):
     ("where", "reference", "words", "runs"),
     [
         ("stranger/yard.toml", "mine.py:Mine", (), True),
-        ("stranger/yard.toml", "../stranger/mine.py:Mine", (), True),
-        ("yard.toml", "stranger/mine.py:Mine", (), True),
         ("elsewhere/yard.toml", "../stranger/mine.py:Mine", (), False),
-        ("elsewhere/yard.toml", "{folder}/mine.py:Mine", (), False),
         ("elsewhere/yard.toml", "link.py:Mine", (), False),
         ("elsewhere/yard.toml", "{folder}/mine.py:Mine", ("--trust",), True),
-        ("elsewhere/yard.toml", "../stranger/mine.py:Mine", ("--set", "duration=1"), False),
         ("elsewhere/yard.toml", "x.py:X", ("--set", "plugin.planner={folder}/mine.py:Mine"), True),
     ],
 )
@@ -263,13 +255,7 @@ def test_a_run_folder_runs_no_code_without_trust(stranger, capsys):
     [
         ("class Mine(:", "is not Python: SyntaxError: "),
         ("(" * 10_000, "is not Python: "),
-        ("class Other: pass\nmine = 1\n", "has no class Mine; expected Old, Other"),
-        ("a = b'\\0'\n\0", "is not Python: "),
         ("if True:\n    class Mine: pass\n", ""),
-        ("from x import Mine", ""),
-        ("from x import y as Mine", ""),
-        ("from x import *", ""),
-        ("Mine = type('Mine', (), {})", ""),
     ],
 )
 def test_check_reads_the_file_of_a_plugin_without_running_it(stranger, capsys, source, expected):
@@ -302,13 +288,6 @@ def test_a_sweep_refuses_to_continue_with_another_file(folder, capsys):
     assert "mine.py:Ahead: " in capsys.readouterr().err
 
 
-@pytest.mark.parametrize("command", [("check",), ("sweep", "--seeds", "0:1"), ("run",)])
-def test_commands_refuse_a_missing_class(folder, capsys, command):
-    word, *more = command
-    assert entry([word, "quick", *more, "--set", "plugin.planner=mine.py:Behind"]) == 2
-    assert "has no class Behind" in capsys.readouterr().err
-
-
 def test_a_walk_has_no_planner(folder):
     with pytest.raises(hsr8.errors.ScenarioError, match="has no planner"):
         hsr8.load_scenario("walk", ["plugin.planner=mine.py:Ahead"])
@@ -316,7 +295,7 @@ def test_a_walk_has_no_planner(folder):
 
 @pytest.mark.parametrize(
     ("name", "message"),
-    [("Trips", "ZeroDivisionError: too near"), ("Leaves", "SystemExit: enough")],
+    [("Trips", "ZeroDivisionError: too near")],
 )
 def test_an_error_in_a_plugin_is_reported_with_its_line(folder, capsys, name, message):
     plugins = ("--set", f"plugin.planner=mine.py:{name}", "duration=3.0")
@@ -330,21 +309,7 @@ def test_an_error_in_a_plugin_is_reported_with_its_line(folder, capsys, name, me
     assert entry(["info", "runs"]) == 0
 
 
-def test_the_time_of_the_error_is_reported(folder, capsys):
-    for name in ("Trips", "Wanders"):
-        plugins = ("--set", f"plugin.planner=mine.py:{name}")
-        assert entry(["run", "quick", *FAST, *plugins, "--out", "runs"]) == 2
-        when = re.search(r", at (\S+) s of simulated time$", capsys.readouterr().err, re.MULTILINE)
-        assert 0.5 <= float(when[1]) < 1.5
-
-
-def test_an_error_in_a_plugin_reaches_python_unchanged(folder):
-    with pytest.raises(ZeroDivisionError, match=r"^too near\n") as error:
-        hsr8.run("quick", settings=[*SETTINGS, "plugin.planner=mine.py:Trips"])
-    assert error.value.args == ("too near",)
-
-
-@pytest.mark.parametrize("name", ["Trips", "Wanders"])
+@pytest.mark.parametrize("name", ["Trips"])
 def test_an_error_in_a_plugin_is_a_crashed_run_of_a_sweep(folder, capsys, name):
     plugins = ("--set", f"plugin.planner=mine.py:{name}", "duration=3.0")
     assert entry(["sweep", "quick", *FAST, "--seeds", "0:2", "--out", "s", *plugins]) == 3
@@ -352,10 +317,3 @@ def test_an_error_in_a_plugin_is_a_crashed_run_of_a_sweep(folder, capsys, name):
     assert {row["seed"] for row in rows} == {0, 1}
     assert {row["outcome"] for row in rows} == {"crashed"}
     assert "0 of 2" in (folder / "s" / "report.md").read_text()
-
-
-def test_other_errors_have_no_plugin_line(folder):
-    load_plugin("mine.py:Ahead")
-    with pytest.raises(ValueError, match="Expecting") as error:
-        json.loads("{")
-    assert line_of(error.value) is None

@@ -115,10 +115,3 @@ def test_children_of_a_process_with_an_earlier_numpy_are_portable():
     child = "import hsr8.process.arithmetic as a, json; print(json.dumps(a.IN_FORCE))"
     call = f"subprocess.run([sys.executable, '-c', {child!r}], check=True)"
     assert probe(f"import numpy, sys, subprocess, hsr8; {call}")[0] == PORTABLE
-
-
-@needs_level_3
-def test_a_choice_of_the_user_is_not_warned_of():
-    (in_force, *_), text = probe(f"import numpy{PROBE}", OPENBLAS_CORETYPE="Nehalem")
-    assert in_force == NATIVE
-    assert not text

@@ -2,7 +2,7 @@
 
 import resource
 from contextlib import suppress
-from dataclasses import dataclass, fields, replace
+from dataclasses import dataclass, fields
 from types import SimpleNamespace
 from typing import Any
 
@@ -235,11 +235,6 @@ def test_a_table_of_other_columns_is_refused(tmp_path):
     file = written(tmp_path, rows(3))
     with pytest.raises(ValueError, match="column 'count'"):
         read_table("things", pa.py_buffer(file.read_bytes()), TABLES["ticks"])
-
-
-def test_a_column_may_have_no_elements(tmp_path):
-    content = [replace(row, angle=np.empty(0)) for row in rows(9)]
-    check(read(written(tmp_path, content)), content)
 
 
 def test_an_unknown_column_is_an_error_with_a_suggestion(tmp_path):

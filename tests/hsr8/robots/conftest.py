@@ -2,7 +2,9 @@
 
 import pytest
 
+from hsr8.robots.inspection import inspect, load_inspected
 from hsr8.robots.loaded import LoadedRobot, load_robot
+from tests.hsr8.robots.small_humanoid import SmallHumanoid
 from tests.hsr8.robots.small_urdf import SmallUrdf, built
 from walking.body.robot_model import RobotModel
 
@@ -10,6 +12,14 @@ from walking.body.robot_model import RobotModel
 @pytest.fixture(scope="session")
 def robot() -> RobotModel:
     return load_robot("hsr8").model
+
+
+@pytest.fixture(scope="session")
+def plain(tmp_path_factory) -> LoadedRobot:
+    """The small MJCF robot without changes, with its guessed description."""
+    file = tmp_path_factory.mktemp("plain") / "small.xml"
+    file.write_text(SmallHumanoid().xml())
+    return load_inspected(inspect(str(file)))[1]
 
 
 @pytest.fixture(scope="session")

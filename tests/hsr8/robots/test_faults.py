@@ -67,21 +67,7 @@ def test_a_repaired_robot_has_a_description_with_the_reason(inspected, tmp_path)
     assert load_robot(str(file)).model.mass == robot.model.mass
 
 
-def test_a_weld_outside_the_legs_is_named_and_no_key_is_proposed(inspected):
-    def weld(root):
-        rod = ElementTree.fromstring(
-            '<body name="rod" pos="0 0 0.02"><joint name="rod" axis="0 1 0"/>'
-            '<inertial pos="0 0 0" mass="0.01" diaginertia="1e-5 1e-5 1e-5"/></body>'
-        )
-        part(root, "body", "head_yaw_link").append(rod)
-        adding('<equality><weld body1="rod" body2="head_pitch_link"/></equality>')(root)
-
-    with pytest.raises(ModelError, match="a weld ties 'rod' and 'head_pitch_link'") as refusal:
-        inspected(weld)
-    assert "linkage" not in str(refusal.value)
-
-
-@pytest.mark.parametrize("degrees", [15.0, 30.0, 45.0])
+@pytest.mark.parametrize("degrees", [30.0])
 def test_hips_may_pitch_about_canted_axes(inspected, degrees):
     def cant(root):
         for side, sign in (("l", 1.0), ("r", -1.0)):
@@ -95,9 +81,8 @@ def test_hips_may_pitch_about_canted_axes(inspected, degrees):
     assert walk.tilt.max() < 5.0
 
 
-@pytest.mark.parametrize("below", [0.05, 0.4])
-def test_the_origin_of_the_base_may_be_anywhere(inspected, below):
-    """Also below the soles."""
+def test_the_origin_of_the_base_may_be_below_the_soles(inspected, plain):
+    below = 0.4
 
     def shift(root):
         base = part(root, "body", "base")
@@ -107,15 +92,13 @@ def test_the_origin_of_the_base_may_be_anywhere(inspected, below):
                 x, y, z = map(float, child.get("pos", "0 0 0").split())
                 child.set("pos", f"{x} {y} {z + below + 0.42}")
 
-    _, plain = inspected()
     _, robot = inspected(shift)
     assert robot.height == pytest.approx(plain.height - below - 0.42)
     np.testing.assert_allclose(robot.model.ready, plain.model.ready, atol=1e-9)
     assert not Trial(robot).walk(VelocityCommand(), 1.0).falls
 
 
-@pytest.mark.parametrize("joint", ["l_elbow2_pitch", "head_yaw"])
-def test_a_keyframe_does_not_mind_a_joint_that_is_held(written, tmp_path, joint):
+def test_a_keyframe_does_not_mind_a_joint_that_is_held(written, tmp_path):
     """The posture of the keyframe counts."""
     root = SmallHumanoid().element()
     model = mujoco.MjModel.from_xml_string(ElementTree.tostring(root, encoding="unicode"))
@@ -126,7 +109,7 @@ def test_a_keyframe_does_not_mind_a_joint_that_is_held(written, tmp_path, joint)
     text = (
         'model = "small.xml"\nfeet = ["l_ankle_roll_link", "r_ankle_roll_link"]\nstate = "home"\n'
     )
-    (tmp_path / "small.toml").write_text(text + f'rigid = ["{joint}"]\n')
+    (tmp_path / "small.toml").write_text(text + 'rigid = ["head_yaw"]\n')
     robot = load_robot(str(tmp_path / "small.toml"))
     assert robot.description.posture["r_shoulder_roll"] == pytest.approx(-0.3)
 
@@ -173,27 +156,6 @@ def test_a_difference_of_angles_names_the_zero_that_removes_it(written, tmp_path
     load_robot(str(description))
 
 
-def test_a_pointer_in_the_place_of_a_mesh_is_refused_in_one_line(inspected, tmp_path):
-    (tmp_path / "trunk.stl").write_text(
-        "version https://git-lfs.github.com/spec/v1\noid sha256:0\n"
-    )
-
-    def mesh(root):
-        adding('<asset><mesh name="trunk" file="trunk.stl"/></asset>')(root)
-        part(root, "body", "torso").append(
-            ElementTree.fromstring('<geom type="mesh" mesh="trunk" mass="0"/>')
-        )
-
-    with pytest.raises(ModelError, match="git lfs pull") as refusal:
-        inspected(mesh)
-    assert "\n" not in str(refusal.value)
-
-
-def test_a_model_may_have_the_suffix_mjcf(inspected):
-    _, robot = inspected(suffix=".mjcf")
-    assert robot.file.suffix == ".mjcf"
-
-
 @pytest.mark.parametrize("actuator", ["position", "motor"])
 def test_a_stated_effort_limits_the_physics_and_the_plan(written, tmp_path, actuator):
     written(robot=SmallHumanoid(actuator=actuator))
@@ -210,18 +172,18 @@ def test_a_stated_effort_limits_the_physics_and_the_plan(written, tmp_path, actu
         assert model.actuator_forcerange[servo] == pytest.approx((-effort, effort))
 
 
-@pytest.mark.parametrize(
-    ("change", "text"),
-    [
-        (setting("body", "torso", gravcomp="1"), "gravity compensation left out: torso"),
-        (setting("joint", "l_knee", damping="0.1 2"), "grows with the speed left out: l_knee"),
-        (setting("joint", "l_elbow2_pitch", stiffness="0 2"), "with the angle left out: l_elbow2"),
-    ],
-)
-def test_features_that_walking_does_not_know_are_left_out_with_a_note(inspected, change, text):
-    _, plain = inspected()
-    _, robot = inspected(change)
-    assert note(robot, text)
+def test_features_that_walking_does_not_know_are_left_out_with_a_note(inspected, plain):
+    _, robot = inspected(
+        setting("body", "torso", gravcomp="1"),
+        setting("joint", "l_knee", damping="0.1 2"),
+        setting("joint", "l_elbow2_pitch", stiffness="0 2"),
+    )
+    for text in (
+        "gravity compensation left out: torso",
+        "grows with the speed left out: l_knee",
+        "with the angle left out: l_elbow2",
+    ):
+        assert note(robot, text)
     plain_spec, spec = plain.spec.copy().compile(), robot.spec.copy().compile()
     for key in ("body_gravcomp", "dof_damping", "dof_dampingpoly", "jnt_stiffnesspoly"):
         np.testing.assert_array_equal(getattr(spec, key), getattr(plain_spec, key))

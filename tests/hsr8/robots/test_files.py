@@ -15,29 +15,7 @@ ROBOT = "hsr8/hsr8.xml"
     [
         (ROBOT, 'name="l_knee"', 'name="left_knee"', "'l_knee'"),
         (ROBOT, "</mujoco>", "", "XML"),
-        (ROBOT, 'mass="0.08"', 'mass="-0.08"', "mass, got -0.08 kg; expected 0 or more"),
         (ROBOT, 'mass="1.24"', 'mass="nan"', "'torso_link': mass, got nan kg"),
-        (
-            ROBOT,
-            'range="-2.2 0.05"',
-            'range="0.05 -2.2"',
-            "'l_elbow_pitch': range, got 0.05 -2.2; expected lower < upper",
-        ),
-        (
-            ROBOT,
-            'forcerange="-6 6"',
-            'forcerange="6 -6"',
-            "'l_hip_yaw_act': forcerange, got 6 -6; expected lower < upper",
-        ),
-        (
-            ROBOT,
-            'armature="0.005"',
-            'armature="-0.005"',
-            "armature, got -0.005; expected >= 0",
-        ),
-        (ROBOT, 'kp="120"', 'kp="-120"', "'l_hip_yaw': kp, got -120; expected > 0"),
-        (ROBOT, 'damping="0.1"', 'damping="inf"', "damping, got inf; expected finite numbers"),
-        ("field/vision.xml", 'name="field/floor"', 'name="ground"', "'field/floor'"),
         (None, "", "", "install hsr8 again"),
     ],
 )

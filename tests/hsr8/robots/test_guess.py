@@ -3,7 +3,6 @@
 from itertools import permutations
 from xml.etree import ElementTree
 
-import mujoco
 import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
@@ -129,16 +128,8 @@ def test_the_front_follows_from_knees_names_or_feet(robot, changes, sureness, re
     assert guess(compiled(robot, *changes)).feet == robot.feet()
 
 
-def test_knees_that_bend_against_the_names_are_reported():
-    robot = SmallHumanoid(name=lambda side, name: f"{'rl'[side == 'r']}_{name}" if side else name)
-    forward = findings(robot)["forward"]
-    assert forward.part == "+x of base"
-    assert forward.reason.endswith("against it: names of left and right")
-    assert forward.sureness == "likely"
-
-
-@pytest.mark.parametrize("hip", HIPS)
-@pytest.mark.parametrize("ankle", ["pr", "rp"])
+@pytest.mark.parametrize("hip", HIPS[:2])
+@pytest.mark.parametrize("ankle", ["pr"])
 def test_toes_are_not_feet(hip, ankle):
     robot = SmallHumanoid(hip=hip, ankle=ankle)
     roles = guess(compiled(robot, add_toes(robot)))
@@ -204,13 +195,6 @@ def test_the_reason_why_there_are_no_legs_is_named(changes, reason):
     feet = findings(SmallHumanoid(actuator="", arm=""), *changes)["feet"]
     assert feet.sureness == "missing"
     assert reason in feet.reason
-
-
-def test_a_model_without_legs_has_no_feet():
-    model = mujoco.MjModel.from_xml_string(
-        "<mujoco><worldbody><body name='cart'><joint/><geom size='1'/></body></worldbody></mujoco>"
-    )
-    assert guess(model).feet is None
 
 
 @pytest.mark.parametrize(
@@ -294,11 +278,3 @@ def test_the_parts_of_the_shipped_robots_are_found(name):
     assert guessed.shoulders == stated.shoulders
     if isinstance(stated.camera, str):
         assert guessed.camera == stated.camera
-
-
-@MENAGERIE
-def test_unitree_h1_is_refused_for_legs_of_five_joints():
-    menagerie = model_file("g1").parents[1]
-    inspection = inspect(str(menagerie / "unitree_h1" / "h1.xml"))
-    assert inspection.description is None
-    assert any("the legs have 5 hinge joints" in f.reason for f in inspection.findings)

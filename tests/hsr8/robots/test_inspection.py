@@ -2,7 +2,6 @@ from xml.etree import ElementTree
 
 import pytest
 
-from hsr8.errors import ModelError
 from hsr8.robots.inspection import inspect, load_inspected
 from tests.hsr8.robots.robot_parts import part
 from tests.hsr8.robots.small_humanoid import SmallHumanoid
@@ -54,12 +53,6 @@ def test_arms_that_touch_the_body_are_spread(loaded, flip):
     assert robot.description.posture == posture
 
 
-def test_arms_inside_the_body_are_refused(loaded):
-    message = "overlap by .* mm; .*: state other angles of l_shoulder_pitch, .* in posture, or add "
-    with pytest.raises(ModelError, match=message):
-        loaded(lambda root: wide(root, "0.3 0.4 0.2"))
-
-
 def test_soft_servos_are_replaced_by_the_rule(loaded):
     def soften(root):
         for servo in root.iter("position"):
@@ -70,13 +63,3 @@ def test_soft_servos_are_replaced_by_the_rule(loaded):
     (finding,) = findings(inspection, "servo")
     assert "of the stiffness that holds it upright" in finding.reason
     assert robot.model.stiffening == 1.0
-
-
-def test_a_stated_description_is_not_changed(loaded, tmp_path):
-    _, robot = loaded()
-    text = 'model = "small.xml"\nfeet = ["l_ankle_roll_link", "r_ankle_roll_link"]\n'
-    (tmp_path / "mine.toml").write_text(text)
-    inspection, again = load_inspected(inspect(str(tmp_path / "mine.toml")))
-    assert inspection.stated
-    assert again.description.head is None
-    assert again.model.mass == robot.model.mass

@@ -9,7 +9,7 @@ import pytest
 from hsr8.robots.defaults import defaults_of
 from hsr8.robots.loaded import load_robot
 from hsr8.scenario.sensors import Camera
-from tests.hsr8.robots.robot_parts import adding, part, setting
+from tests.hsr8.robots.robot_parts import part, setting
 from tests.hsr8.robots.small_humanoid import SmallHumanoid
 from walking.constants import robot_record
 from walking.data import Data
@@ -92,27 +92,6 @@ def test_kinematics_and_centre_of_mass_are_those_of_mujoco(load, name):
         np.testing.assert_allclose(solved, angles[six], atol=1e-8)
 
 
-def test_tendons_of_the_arms_are_no_servos_of_the_legs(load):
-    plain = load(SmallHumanoid())
-    tendons = adding(
-        "<tendon>"
-        + "".join(
-            f'<fixed name="t{k}"><joint joint="l_shoulder_pitch" coef="1"/></fixed>'
-            for k in range(3)
-        )
-        + "</tendon>"
-    )
-
-    def motors(root):
-        for k in range(3):
-            root.find("actuator").append(
-                ElementTree.fromstring(f'<motor name="m{k}" tendon="t{k}" gear="7"/>')
-            )
-
-    with_tendons = load(SmallHumanoid(), tendons, motors)
-    np.testing.assert_array_equal(with_tendons.model.stiffness, plain.model.stiffness)
-
-
 def test_neighbours_that_overlap_in_the_ready_posture_do_not_collide(load):
     def solid(root):
         for body in ("base", "l_hip_pitch_link", "r_hip_pitch_link"):
@@ -130,7 +109,7 @@ def test_a_larger_mass_makes_the_walk_no_different_in_shape(load):
     assert heavy.model.mass == pytest.approx(1.5 * light.model.mass)
 
 
-@pytest.mark.parametrize("fov", [None, 30.0, 80.0])
+@pytest.mark.parametrize("fov", [None, 30.0])
 def test_the_image_of_a_camera_without_a_neck_ends_above_the_horizon(load, fov):
     keys = "" if fov is None else f"vertical_fov_deg = {fov}\n"
     robot = load(SmallHumanoid(head=""), keys=keys)
@@ -146,7 +125,6 @@ def test_a_camera_that_the_model_names_keeps_its_field_of_view(load):
     for keys, fov in (("", 35.0), ("vertical_fov_deg = 50.0", 50.0)):
         robot = load(SmallHumanoid(), lens, keys=f'camera = "eye"\n{keys}\n')
         assert robot_table(robot)["camera"] == {"vertical_fov_deg": fov}
-    assert "camera" not in robot_table(load(SmallHumanoid()))
 
 
 @pytest.mark.parametrize(("effort", "limited"), [(60.0, False), (0.02, True)])

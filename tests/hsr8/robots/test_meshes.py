@@ -5,9 +5,8 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from hsr8.errors import ModelError
 from hsr8.robots.file.files import find_mesh, package_folders
-from hsr8.robots.file.meshes import decimated, is_binary_stl, read_mesh
+from hsr8.robots.file.meshes import decimated, read_mesh
 from tests.hsr8.robots.mesh_files import CORNERS, FORMATS, dae, write_mesh
 from tests.hsr8.robots.mesh_humanoid import sphere
 
@@ -37,18 +36,6 @@ def test_the_unit_of_a_dae_file_is_respected(tmp_path):
     file.write_text(dae(unit=0.001))
     expected = sorted_rows(1e-3 * CORNERS)
     np.testing.assert_allclose(sorted_rows(read_mesh(file)[0]), expected, atol=1e-9)
-
-
-def test_the_kinds_of_stl_files_are_distinguished(tmp_path):
-    assert is_binary_stl(write_mesh(tmp_path, "binary.stl"))
-    assert not is_binary_stl(write_mesh(tmp_path, "ascii.stl"))
-
-
-def test_a_damaged_file_is_refused(tmp_path):
-    file = tmp_path / "mesh.stl"
-    file.write_bytes(b"no mesh")
-    with pytest.raises(ModelError, match=r"mesh\.stl: cannot be read"):
-        read_mesh(file)
 
 
 def test_the_package_of_a_uri_is_searched_upwards(tmp_path):

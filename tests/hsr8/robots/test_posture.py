@@ -44,24 +44,12 @@ def test_joints_of_several_values_are_left_out(tmp_path):
             "hom",
             "no group state 'hom'; did you mean 'home'?; expected one of home",
         ),
-        (
-            "<robot/>",
-            "home",
-            "state: .*small.srdf has no group state 'home'; expected no such key: it has none",
-        ),
-        (SRDF.format('<joint name="a" value="x"/>'), "home", "joint 'a' in the group state 'home'"),
         (SRDF.format('<joint name="a" value="nan"/>'), "home", "got 'nan'; expected an angle"),
-        (SRDF.format('<joint name="a"/>'), "home", "got ''; expected an angle|got 'None'"),
     ],
 )
 def test_wrong_files_are_refused(text, state, reason, tmp_path):
     with pytest.raises(ModelError, match=reason.replace("?;", r"\?;")):
         stated(tmp_path, text, state)
-
-
-def test_a_missing_file_is_refused(tmp_path):
-    with pytest.raises(ModelError, match=r"srdf: .*small\.srdf' cannot be read"):
-        stated_posture(describe(srdf="small.srdf", state="home"), tmp_path, mujoco.MjSpec())
 
 
 KEYED = """<mujoco><worldbody><body name="ball"><freejoint/><geom size=".1"/></body><body name="a">

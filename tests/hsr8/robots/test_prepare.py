@@ -16,7 +16,7 @@ from hsr8.robots.loaded import read_robot
 from hsr8.robots.model.prepare import hold, prepare
 from hsr8.robots.parts.roles import find_roles
 from hsr8.robots.parts.skeleton import Posed
-from tests.hsr8.robots.robot_parts import described, part, setting
+from tests.hsr8.robots.robot_parts import described, part
 from tests.hsr8.robots.small_humanoid import SmallHumanoid
 from tests.hsr8.robots.small_urdf import SmallUrdf, built, describe, joint, link, raw, write
 
@@ -154,7 +154,7 @@ def placed(read, description, angles):
     return {name: (posed.data.body(name).xipos, posed.data.body(name).xmat) for name in names}
 
 
-@pytest.mark.parametrize("turn", range(24))
+@pytest.mark.parametrize("turn", range(1, 24, 5))
 def test_any_quarter_turn_of_the_root_gives_the_same_robot(turn, tmp_path):
     angles = {"l_knee": 0.5, "r_hip_pitch": -0.4, "waist": 0.3, "l_elbow": 0.2}
     plain, turned = (
@@ -210,15 +210,6 @@ def test_a_missing_free_joint_is_added(tmp_path):
     assert "base: free joint added to body 'base'" in read.notes
     np.testing.assert_array_equal(models[0].jnt_type, models[1].jnt_type)
     np.testing.assert_array_equal(models[0].qpos0, models[1].qpos0)
-
-
-def test_a_base_with_other_joints_is_refused(tmp_path):
-    root = SmallHumanoid(free=False).element()
-    slide = root.makeelement("joint", {"name": "rail", "type": "slide"})
-    part(root, "body", "base").insert(0, slide)
-    (tmp_path / "robot.xml").write_text(ElementTree.tostring(root, "unicode"))
-    with pytest.raises(ModelError, match=r"body 'base' has joint 'rail' and no free joint"):
-        read_robot(described(SmallHumanoid()), tmp_path / "robot.toml")
 
 
 CHAIN = """<mujoco><compiler angle="{unit}"/><worldbody><body name="a"><freejoint/><geom size=".1"/>
@@ -365,14 +356,3 @@ def test_impossible_inertias_are_listed_in_one_message_and_repaired(kind, tmp_pa
     moments = [read.model.body(name).inertia for name in parts]
     assert np.ptp(moments) < 1e-5 * np.max(moments)
     assert np.min(moments) > 0.0
-
-
-def test_an_unknown_part_of_a_rigid_joint_is_removed():
-    """A tendon over a held joint goes with it."""
-    root = SmallHumanoid().element()
-    setting("joint", "l_elbow2_pitch", type="slide")(root)
-    text = '<tendon><fixed name="t"><joint joint="l_elbow2_pitch" coef="1"/></fixed></tendon>'
-    root.append(ElementTree.fromstring(text))
-    spec = mujoco.MjSpec.from_string(ElementTree.tostring(root, "unicode"))
-    hold(spec, "l_elbow2_pitch", 0.05)
-    assert spec.compile().ntendon == 0

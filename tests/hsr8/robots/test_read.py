@@ -11,7 +11,7 @@ from hsr8.robots.file.description import read_description
 from hsr8.robots.file.locate import digest, find_description
 from hsr8.robots.loaded import load_robot, read_robot
 from tests.hsr8.robots.mesh_humanoid import write_robot
-from tests.hsr8.robots.robot_parts import SHIPPED, adding, described, part, setting
+from tests.hsr8.robots.robot_parts import SHIPPED, described, part, setting
 from tests.hsr8.robots.small_humanoid import SmallHumanoid
 
 
@@ -36,31 +36,15 @@ def option(**values):
     ("change", "reason"),
     [
         (option(timestep="0"), "option: timestep, got 0 s; expected at least 1e-05"),
-        (option(timestep="nan"), "option: timestep, got nan s"),
         (
             setting("joint", "l_knee", range="nan nan"),
             "joint 'l_knee': range, got nan nan; expecte",
         ),
         (
-            setting("joint", "l_knee", damping="inf"),
-            "joint 'l_knee': damping, got inf; expected fi",
-        ),
-        (
             setting("joint", "l_knee", damping="-1"),
             "joint 'l_knee': damping, got -1; expected >= 0",
         ),
-        (setting("joint", "l_knee", stiffness="-1"), "'l_knee': stiffness, got -1; expected >= 0"),
-        (
-            setting("body", "torso", pos="inf 0 0"),
-            "body 'torso': pos, got inf 0 0; expected finite",
-        ),
         (setting("body", "torso", pos="0 0 1e9"), "body 'torso': 1e+09 m from the body that carr"),
-        (
-            adding(
-                '<actuator><position name="l_knee" joint="l_knee" forcerange="-inf 3"/></actuator>'
-            ),
-            "actuator 'l_knee': forcerange, got -inf 3; expected finite",
-        ),
     ],
 )
 def test_numbers_that_are_not_those_of_a_robot_are_refused(read, change, reason):

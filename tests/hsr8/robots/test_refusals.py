@@ -3,15 +3,13 @@
 from xml.etree import ElementTree
 
 import mujoco
-import numpy as np
 import pytest
 
 from hsr8.errors import ModelError
 from hsr8.robots.checks.refusals import check_roles
 from hsr8.robots.file.key_mistake import KeyMistake
 from hsr8.robots.model.normal_form import dropped_options
-from hsr8.robots.model.servos import own_efforts
-from hsr8.robots.model.tree import driven_joints, max_torque, servos_of
+from hsr8.robots.model.tree import driven_joints
 from hsr8.robots.parts.roles import find_roles
 from tests.hsr8.robots.robot_parts import (
     SOURCE,
@@ -19,39 +17,14 @@ from tests.hsr8.robots.robot_parts import (
     adding,
     checked_roles,
     described,
-    part,
     raw,
     removing,
     setting,
 )
 from tests.hsr8.robots.small_humanoid import SmallHumanoid
 
-BACKWARD = {f"{side}_knee": ("joint", {"range": "-2.2 0"}) for side in "lr"}
 RULE = {"servo": "rule"}
 RULE_REMEDY = 'or state servo = "rule"'
-
-
-def turned(quat):
-    """Turn of the whole robot in its base."""
-
-    def change(root):
-        base = part(root, "body", "base")
-        inner = base.makeelement("body", {"name": "inner", "quat": quat})
-        for child in list(base):
-            if child.tag != "freejoint":
-                base.remove(child)
-                inner.append(child)
-        base.append(inner)
-
-    return change
-
-
-def all_of(*changes):
-    def change(root):
-        for one in changes:
-            one(root)
-
-    return change
 
 
 def refused(robot, description, *changes):
@@ -71,7 +44,6 @@ EXCHANGED = {"feet": ("r_ankle_roll_link", "l_ankle_roll_link")}
     [
         # the base and the sides
         (EXCHANGED, [], ["feet: 'r_ankle_roll_link'", "left and right are exchanged"]),
-        (EXCHANGED, [turned("0 0 0 1")], ["left and right are exchanged; expected the left foot"]),
         (
             {"zero": {"l_hip_pitch": -1.0, "r_hip_pitch": -1.0}},
             [],
@@ -89,8 +61,6 @@ EXCHANGED = {"feet": ("r_ankle_roll_link", "l_ankle_roll_link")}
             ["'l_hip_yaw' to 'l_ankle_roll', 4 joints pitch", "expected hip, knee and ankle"],
         ),
         ({}, [setting("joint", "l_knee", range="-0.2 0.6")], ["'l_knee': the knee cannot bend"]),
-        ({}, [setting("joint", "r_hip_pitch", range="0 1")], ["'r_hip_pitch': the hip cannot"]),
-        ({}, [setting("joint", "r_ankle_pitch", range="-.2 1")], ["'r_ankle_pitch': the ankle"]),
         (
             {},
             [setting("body", "r_knee_link", pos="0.02 0 -0.2")],
@@ -118,24 +88,9 @@ EXCHANGED = {"feet": ("r_ankle_roll_link", "l_ankle_roll_link")}
             ["head: pan joint 'head_pitch' does not yaw", "(0.00, 1.00, 0.00)"],
         ),
         (
-            {"head": ("head_yaw", "head_pitch")},
-            [setting("joint", "head_pitch", axis="1 0 0")],
-            ["head: tilt joint 'head_pitch' does not pitch"],
-        ),
-        (
-            {"shoulders": ("l_shoulder_roll", "r_shoulder_roll")},
-            [],
-            ["shoulders: joint 'l_shoulder_roll' does not pitch", "name the joint that does"],
-        ),
-        (
             {"shoulders": ("r_shoulder_pitch", "l_shoulder_pitch")},
             [],
             ["shoulders: joints 'r_shoulder_pitch' and 'l_shoulder_pitch' do not", "exchanged"],
-        ),
-        (
-            {"shoulders": ("head_pitch", "r_shoulder_pitch")},
-            [],
-            ["shoulders: joints 'head_pitch' and", "got masses 0.00 and -0.11 m to the left of th"],
         ),
         (
             {"head": ("head_yaw", "l_shoulder_pitch")},
@@ -162,27 +117,11 @@ EXCHANGED = {"feet": ("r_ankle_roll_link", "l_ankle_roll_link")}
             [],
             ["shoulders: joint 'l_hip_pitch' belongs to a leg; expected a joint above the legs"],
         ),
-        (
-            {"head": ("l_hip_yaw", "head_pitch")},
-            [],
-            ["head: pan joint 'l_hip_yaw' belongs to a leg"],
-        ),
-        ({"zero": {"l_knee": -0.05}}, [], ["zero.l_knee: outside the range of the joint"]),
-        (
-            {"head": ("head_yaw", "head_pitch"), "posture": {"head_yaw": 0.5}},
-            [],
-            ["posture.head_yaw: a joint of the head"],
-        ),
         # closed chains and couplings
         (
             {},
             [adding('<equality><weld name="rod" body1="l_knee_link" body2="torso"/></equality>')],
             ["equality 'rod': closed chain, a weld ties 'l_knee_link' and 'torso'", "remove it"],
-        ),
-        (
-            {},
-            [adding('<equality><connect body1="base" anchor="0 0 0"/></equality>')],
-            ["equality '#0': closed chain, a connect ties 'base' and the world"],
         ),
         (
             {},
@@ -212,20 +151,6 @@ EXCHANGED = {"feet": ("r_ankle_roll_link", "l_ankle_roll_link")}
             ["joint 'l_knee': no actuators", 'servo = "rule"'],
         ),
         (
-            {"head": ("head_yaw", "head_pitch")},
-            [removing("position", "head_yaw")],
-            ["joint 'head_yaw': no actuators"],
-        ),
-        (
-            {},
-            [
-                lambda root: root.find("actuator").append(
-                    root.makeelement("position", {"joint": "l_knee", "kp": "1"})
-                )
-            ],
-            ["joint 'l_knee': 2 actuators; expected one", 'linkage = "serial"'],
-        ),
-        (
             {},
             [setting("position", "l_knee", gear="50")],
             ["actuator 'l_knee' of joint 'l_knee': gear, got 50; expected 1", 'linkage = "serial"'],
@@ -237,11 +162,6 @@ EXCHANGED = {"feet": ("r_ankle_roll_link", "l_ankle_roll_link")}
         ),
         (
             {},
-            [setting("position", "l_knee", forcerange="0 60")],
-            ["actuator 'l_knee': forcerange, got 0 60; expected torque in both directions"],
-        ),
-        (
-            {},
             [setting("position", "l_knee", timeconst="0.1")],
             ["actuator 'l_knee' of joint 'l_knee': has a state, got dynamics filter", RULE_REMEDY],
         ),
@@ -250,24 +170,6 @@ EXCHANGED = {"feet": ("r_ankle_roll_link", "l_ankle_roll_link")}
             [setting("joint", "l_knee", stiffness="20")],
             ["'l_knee': spring, got a stiffness of 20 N m/rad; expected at most 15", RULE_REMEDY],
         ),
-        (
-            {},
-            [
-                lambda root: setattr(part(root, "position", "l_knee"), "tag", "intvelocity"),
-                setting("intvelocity", "l_knee", kp="300", actrange="-3 3"),
-            ],
-            ["'l_knee': has a state, got dynamics integrator; expected <position> without", "rule"],
-        ),
-        (
-            {},
-            [
-                removing("position", "l_elbow2_pitch"),
-                lambda root: root.find("actuator").append(
-                    root.makeelement("motor", {"joint": "l_elbow2_pitch", "name": "m"})
-                ),
-            ],
-            ["actuator 'm' of joint 'l_elbow2_pitch': not a position servo"],
-        ),
     ],
 )
 def test_a_robot_that_cannot_walk_is_refused(keys, changes, parts):
@@ -275,26 +177,6 @@ def test_a_robot_that_cannot_walk_is_refused(keys, changes, parts):
     message = refused(robot, described(robot, **keys), *changes)
     for text in parts:
         assert text in message
-
-
-@pytest.mark.parametrize("limited", [True, False])
-def test_exchanged_feet_are_found_by_their_names_or_the_knees(limited):
-    robot = SmallHumanoid(limited=limited)
-    message = refused(robot, described(robot, **EXCHANGED))
-    assert "left and right are exchanged" in message
-
-
-def test_without_names_the_masses_of_the_feet_tell_backward_knees_from_exchanged_feet():
-    robot = SmallHumanoid(name=lambda side, part: {"l": "b", "r": "a", "": "c"}[side] + part)
-    left, right = robot.feet()
-    assert "exchanged" in refused(robot, described(robot, feet=(right, left)))
-    backward = [setting("joint", f"{side}knee", range="-2.2 0") for side in "ab"]
-    assert "not supported" in refused(robot, described(robot), *backward)
-
-
-def test_joints_without_limits_are_accepted():
-    robot = SmallHumanoid(limited=False)
-    checked_roles(raw(robot, described(robot)), described(robot))
 
 
 @pytest.mark.parametrize("actuator", ["motor", ""])
@@ -366,16 +248,8 @@ def test_a_servo_in_the_parent_drives_its_joint():
     assert driven_joints(read.model, roles)[:6] == roles.legs[0]
 
 
-def test_limits_that_differ_by_direction_are_read_in_one_way():
-    robot = SmallHumanoid()
-    read = raw(robot, described(robot), setting("position", "l_knee", forcerange="-50 60"))
-    knee = read.model.joint("l_knee").id
-    (torque,) = max_torque(read.model, np.array([knee]), np.array([servos_of(read.model)[knee]]))
-    assert torque == own_efforts(read.model)["l_knee"] == 50.0
-
-
-@pytest.mark.parametrize("hip", ["yrp", "pry", "rpy"])
-@pytest.mark.parametrize("ankle", ["pr", "rp"])
+@pytest.mark.parametrize("hip", ["yrp"])
+@pytest.mark.parametrize("ankle", ["pr"])
 def test_a_foot_behind_a_toe_joint_is_named(hip, ankle):
     robot = SmallHumanoid(hip=hip, ankle=ankle, actuator="")
     toes = ("l_toe_link", "r_toe_link")

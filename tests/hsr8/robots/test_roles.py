@@ -8,7 +8,6 @@ from tests.hsr8.robots.robot_parts import (
     checked_roles,
     described,
     raw,
-    removing,
     setting,
     shipped,
 )
@@ -80,14 +79,8 @@ def test_head_and_arms_are_optional(parts):
     ("keys", "reason"),
     [
         ({"feet": ("l_ankle_rol_link", "r_ankle_roll_link")}, "did you mean 'l_ankle_roll_link'?"),
-        ({"feet": ("l_ankle_roll_link", "paw")}, "feet: right foot: the model has no body 'paw'"),
         ({"base": "head_yaw_link"}, "got 'head_yaw_link'; expected 'base' or one fixed to it"),
         ({"feet": ("l_ankle_roll_link", "torso")}, "above foot 'torso' has 0 hinge joints"),
-        ({"feet": ("l_knee_link", "r_knee_link")}, "above foot 'l_knee_link' has 4 hinge joints"),
-        (
-            {"feet": ("l_ankle_pitch_link", "l_ankle_roll_link")},
-            "above foot 'l_ankle_pitch_link' has 5 hinge joints",
-        ),
     ],
 )
 def test_an_unknown_part_is_refused(keys, reason):
@@ -106,11 +99,6 @@ def test_an_unknown_part_is_refused(keys, reason):
             SmallHumanoid(actuator=""),
             (setting("joint", "l_hip_roll", type="slide"),),
             "'l_hip_roll' between foot 'l_ankle_roll_link' and base is a slide or ball joint",
-        ),
-        (
-            SmallHumanoid(ankle="p", actuator=""),
-            (setting("joint", "l_ankle_pitch", type="ball"), removing("joint", "l_ankle_pitch")),
-            "has 4 hinge joints",
         ),
     ],
 )

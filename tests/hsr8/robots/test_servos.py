@@ -8,7 +8,6 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from hsr8.errors import ModelError
 from hsr8.robots.model import servos
 from hsr8.robots.model.servos import (
     armature_floor,
@@ -249,17 +248,3 @@ def test_the_effort_of_a_joint_is_its_tightest_bound():
         </actuator></mujoco>"""
     )
     assert own_efforts(model) == {"a": 9.0, "b": 50.0, "d": 5.0}
-
-
-def test_limits_that_are_not_stated_are_noted():
-    robot = SmallHumanoid(actuator="")
-    description = robot_parts.described(robot)
-    _, notes = with_servos(robot_parts.raw(robot, description), description)
-    for key in ("effort", "speed"):
-        assert any(note.startswith(f"{key} of 20 joints is not stated") for note in notes)
-
-
-def test_soles_above_the_com_are_refused(tmp_path):
-    read = small_urdf.raw(SmallUrdf().element(), tmp_path)
-    with pytest.raises(ModelError, match=r"servo: the CoM is -1\.\d+ m above the soles"):
-        with_servos(read, describe(), sole_height=1.2)

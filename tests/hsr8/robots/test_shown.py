@@ -14,7 +14,6 @@ from hsr8.robots.shown import (
     VISUAL_GROUPS,
     camera_spec,
     visual_model,
-    visual_spec,
 )
 from tests.hsr8.robots.mesh_humanoid import write_robot
 
@@ -86,14 +85,6 @@ def test_physics_is_equal_in_the_shapes_of_the_camera(robot):
     full, seen = robot.spec.copy().compile(), camera_spec(robot).compile()
     for name in ("body_mass", "body_inertia", "body_ipos", "geom_contype", "geom_conaffinity"):
         np.testing.assert_array_equal(getattr(full, name), getattr(seen, name))
-
-
-def test_the_specification_of_the_robot_is_not_changed(robot):
-    before = robot.spec.copy().compile()
-    visual_spec(robot), camera_spec(robot)
-    after = robot.spec.copy().compile()
-    np.testing.assert_array_equal(before.mesh_facenum, after.mesh_facenum)
-    np.testing.assert_array_equal(before.geom_group, after.geom_group)
 
 
 def test_the_shapes_of_the_default_robot_are_those_of_its_file():

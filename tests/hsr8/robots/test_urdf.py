@@ -119,13 +119,6 @@ def test_a_camera_on_a_fixed_link_is_on_its_body(tmp_path):
     np.testing.assert_allclose(position, (0.06, 0.0, 0.33), atol=1e-9)
 
 
-def test_spheres_below_the_corners_are_a_sole(tmp_path):
-    robot = SmallUrdf().element()
-    corners = [(x, y, 0.0) for x in (-0.05, 0.08) for y in (-0.03, 0.03)]
-    both_feet(robot, ["collision"], *(("sphere", {"radius": "0.01"}, c) for c in corners))
-    assert soles(robot, tmp_path)[0] == pytest.approx((0.08, -0.05, 0.09, 0.03, -0.44))
-
-
 @pytest.mark.parametrize("name", FORMATS)
 @pytest.mark.parametrize("scale", ["1 1 1", "0.5 1 1"])
 def test_a_mesh_of_any_format(name, scale, tmp_path):
@@ -137,19 +130,6 @@ def test_a_mesh_of_any_format(name, scale, tmp_path):
     length = 0.08 * float(scale.split()[0])
     assert sole == pytest.approx((length, -length, 0.10, 0.02, -0.44), abs=1e-6)
     assert raw(robot, tmp_path).model.nmesh == 1
-
-
-def test_meshes_of_one_name_in_two_folders_are_two_meshes(tmp_path):
-    for folder, scale in (("a", 1.0), ("b", 1.5)):
-        (tmp_path / folder).mkdir()
-        points = scale * np.array([(0.08, 0.04, 0), (0.08, -0.04, 0), (-0.08, 0, 0), (0, 0, 0.06)])
-        rows = "".join(f"v {x} {y} {z}\n" for x, y, z in points)
-        (tmp_path / folder / "m.obj").write_text(rows + "f 1 2 3\nf 1 4 2\nf 2 4 3\nf 3 4 1\n")
-    robot = SmallUrdf().element()
-    both_feet(robot, ["collision"], ("mesh", {"filename": "a/m.obj"}, (0, 0, -0.01)))
-    both_feet(robot, ["visual"], ("mesh", {"filename": "b/m.obj"}, (0, 0, -0.01)))
-    assert soles(robot, tmp_path)[0] == pytest.approx((0.08, -0.08, 0.10, 0.02, -0.44), abs=1e-6)
-    assert raw(robot, tmp_path).model.nmesh == 2
 
 
 def test_visual_shapes_where_the_others_make_no_flat_sole(tmp_path):

@@ -23,10 +23,6 @@ def set_limit(name, **limits):
     return lambda robot: joint(robot, name).find("limit").attrib.update(limits)
 
 
-def set_dynamics(name, **values):
-    return lambda robot: joint(robot, name).find("dynamics").attrib.update(values)
-
-
 def set_origin(name, xyz):
     return lambda robot: joint(robot, name).find("origin").set("xyz", xyz)
 
@@ -59,12 +55,6 @@ def five_joints(robot):
         joint(robot, f"{side}_ankle_roll").set("type", "fixed")
 
 
-def shared_hip(robot):
-    for side in "lr":
-        joint(robot, f"{side}_ankle_roll").set("type", "fixed")
-        joint(robot, f"{side}_hip_yaw").find("parent").set("link", "chest")
-
-
 def bare_foot(robot):
     foot = link(robot, "l_foot")
     for shape in [*foot.findall("visual"), *foot.findall("collision")]:
@@ -80,28 +70,12 @@ def set_sole(size, feet=("l_foot", "r_foot")):
     return change
 
 
-def mesh_foot(robot):
-    for geometry in link(robot, "l_foot").iter("geometry"):
-        geometry.remove(geometry[0])
-        SubElement(geometry, "mesh", filename="package://small_description/foot.stl")
-
-
 def no_limits(name):
     return lambda robot: joint(robot, name).remove(joint(robot, name).find("limit"))
 
 
 def mimic_stranger(robot):
     SubElement(joint(robot, "l_elbow"), "mimic", joint="stranger")
-
-
-def mimic_leg(robot):
-    SubElement(joint(robot, "l_ankle_pitch"), "mimic", joint="l_knee", multiplier="-1")
-
-
-def no_mass(robot):
-    for element in robot.findall("link"):
-        if element.find("inertial") is not None:
-            element.remove(element.find("inertial"))
 
 
 def wedge(robot):
@@ -123,19 +97,13 @@ def unchanged(_robot):
             "feet: left foot: the model has",
         ),
         (unchanged, {"servo": "own"}, "URDF file has no servos", "'rule'"),
-        (unchanged, {"base": "head"}, "base: not fixed to the body", "leave the key out"),
-        (unchanged, {"packages": {"p": "missing"}}, "packages.p: not a folder", "package's folder"),
-        (unchanged, {"feet": ["l_foot", "l_ankle_roll_link"]}, "0 hinge joints", "per leg"),
         (five_joints, {}, "above foot 'l_foot' has 5 hinge joints", "6 hinge joints per leg"),
-        (shared_hip, {}, "a leg has 5 hinge joints that it does not have in common", "per leg"),
-        (set_type("l_knee", "prismatic"), {}, "'l_knee' between foot 'l_foot' and base", "6 hinge"),
         (set_limit("l_knee", lower="0", upper="0"), {}, "l_knee: range of zero", "6 hinge joints"),
         (set_limit("l_knee", lower="1", upper="0"), {}, "'l_knee': lower limit above", "1 .. 0"),
         (no_limits("l_knee"), {}, "joint 'l_knee': limits are missing", "<limit lower="),
         (close_chain, {}, "link 'l_foot': closed chain", "remove one of the joints"),
         (ring, {}, "closed chain, it is its own ancestor", "expected a tree"),
         (set_type("waist", "planar"), {}, "joint 'waist': type, got 'planar'", "make it fixed"),
-        (set_type("waist", "floating"), {}, "joint 'waist': type, got 'floating'", "make it fixed"),
         (add_root, {}, "2 root links, got pelvis, other", "one link without a parent"),
         (set_inertia("l_knee_link", ixy="1"), {}, "got 1 body with principal moments", "repair_in"),
         (
@@ -145,37 +113,12 @@ def unchanged(_robot):
             "a finite nu",
         ),
         (set_mass("l_knee_link", "-1"), {}, "link 'l_knee_link': mass, got -1 kg", "0 or more"),
-        (
-            set_mass("l_knee_link", "nan"),
-            {},
-            "link 'l_knee_link': value, got 'nan'",
-            "a finite num",
-        ),
-        (set_dynamics("l_knee", damping="-1"), {}, "'l_knee': damping, got -1", "expected >= 0"),
-        (set_dynamics("l_knee", friction="inf"), {}, "'l_knee': friction, got 'inf'", "a finite"),
         (set_origin("l_knee", "0 0 -9"), {}, "body 'l_knee_link': 9 m from the body", "at most 5"),
-        (set_origin("l_knee", "0 0"), {}, "joint 'l_knee': xyz, got '0 0'", "3 finite numbers"),
-        (no_mass, {}, "l_hip_yaw: moves no mass", "6 hinge joints"),
         (bare_foot, {}, "sole: missing, and foot 'l_ankle_roll_link' has no shape", "{front, back"),
-        (mesh_foot, {}, "foot 'l_ankle_roll_link' has no shape", "under packages"),
         (set_sole("0.16 0.004 0.02"), {}, "got 160 x 4 mm; expected at least 16 mm", "state sole"),
         (set_sole("0.16 0.14 0.02", ["l_foot"]), {}, "not the mirror image", "state sole"),
-        (set_sole("0.16 -0.14 0.02", ["l_foot"]), {}, "link 'l_foot': size of the box", "positive"),
         (wedge, {}, "link 'l_foot': geometry <wedge>", "expected box, sphere"),
         (mimic_stranger, {}, "joint 'l_elbow': mimic, got 'stranger'", "another joint"),
-        (mimic_leg, {}, "couples joint 'l_ankle_pitch' to 'l_knee' in a leg", 'linkage = "serial"'),
-        (
-            set_limit("head_yaw", effort="x"),
-            {},
-            "joint 'head_yaw': effort, got 'x'",
-            "a finite num",
-        ),
-        (
-            set_type("l_shoulder", "prismatic"),
-            {"shoulders": ["l_shoulder", "r_shoulder"]},
-            "shoulders: ",
-            "",
-        ),
     ],
 )
 def test_refusal(change, keys, element, remedy, tmp_path):
@@ -194,14 +137,12 @@ def test_refusal(change, keys, element, remedy, tmp_path):
     [
         ("<robot", "cannot be read"),
         ("<mujoco/>", "not a URDF file, got the element <mujoco>"),
-        ("<robot><xacro:macro/></robot>", "cannot be read"),
         (
             "<robot xmlns:xacro='http://www.ros.org/wiki/xacro'><xacro:macro/></robot>",
             "a xacro file",
         ),
         ("<robot/>", "0 root links"),
         ("<robot><link name='a'/><link name='a'/></robot>", "link 'a' appears twice"),
-        ("<robot><link name='a'/></robot>", "the model has no joints"),
     ],
 )
 def test_file_that_is_not_a_robot(text, reason, tmp_path):

@@ -68,27 +68,15 @@ def test_all_kinds_can_be_given_together():
     ("settings", "expected"),
     [
         ([f"fault=[{fault_of('low-fricton')}]"], "did you mean 'low-friction'"),
-        (["fault=[{start=1.0}]"], "fault[0].kind: missing"),
         ([f"fault=[{fault_of('attitude-bias', magnitude='0.9')}]"], "fault[0].magnitude"),
-        ([f"fault=[{fault_of('attitude-bias', axis='0')}]"], "pitch"),
-        (['fault=[{kind="servo-weak",magnitude=0.5,joint="l_kne"}]'], "'l_knee'"),
-        ([f"fault=[{fault_of('camera-black', magnitude='1.0')}]"], "unknown key"),
         (
             [f"fault=[{fault_of('camera-black', start='99.0')}]"],
             "must be before the end of the run",
         ),
-        ([f"fault=[{fault_of('low-friction', radius='0.5')}]"], "radius requires position"),
         ([f"fault=[{fault_of('low-friction', position='[9.0,0.0]')}]"], "outside the field"),
-        ([f"fault=[{fault_of('mover-appears', mover='7')}]"], "unknown mover 7; expected 0 to 0"),
         ([f"fault=[{','.join([fault_of('mover-appears')] * 2)}]"], "mover 0 appears twice"),
         (['robot.body="kinematic"', f"fault=[{fault_of('bump')}]"], "requires robot.body"),
-        (['camera.source="analytic"', f"fault=[{fault_of('lighting')}]"], "requires camera.source"),
         (["camera.latency_ms=450", f"fault=[{fault_of('camera-latency')}]"], "at most 500"),
-        (
-            ["camera.period_ms=160", f"fault=[{fault_of('camera-latency', magnitude='0.49')}]"],
-            "at most 500 ms, got 640",
-        ),
-        (["fault=[" + ",".join([fault_of("imu-frozen")] * 65) + "]"], "64"),
     ],
 )
 def test_an_inconsistent_fault_is_one_mistake(settings, expected):

@@ -6,7 +6,6 @@ import subprocess
 import sys
 from pathlib import Path
 from tempfile import mkdtemp
-from time import process_time
 from unicodedata import normalize
 
 import pytest
@@ -72,49 +71,19 @@ mode = "integrate"
             COURSE + "[world]\nn_static = 1.5",
             "n_static: wrong value, got 1.5; expected a whole number",
         ),
-        (COURSE + 'duration = "long"', 'duration: wrong value, got "long"; expected a number'),
         (COURSE + "duration = nan", "duration: wrong value, got nan; expected a finite number"),
         (COURSE + "world = 3", "world: wrong value, got 3; expected a table"),
-        (
-            COURSE + "[vision]\nmax_obstacle_range = nan",
-            "max_obstacle_range: wrong value, got nan; expected a finite",
-        ),
-        (
-            COURSE + '[vision]\nmax_obstacle_range = "1"',
-            'max_obstacle_range: wrong value, got "1"; expected a number',
-        ),
         (COURSE + "[vision]\nwidth = 1", "vision.width: unknown key"),
         (COURSE + "wold.size = [3, 3]", "file.toml:2: wold: unknown key"),
         (COURSE + "[world]\nradius = [0.1, 0.05]", "the first bound must not be above the second"),
-        (
-            COURSE + "[world]\nn_static = true",
-            "n_static: wrong value, got true; expected a whole number",
-        ),
         ("", "mission: missing; expected a value: Via points and goal"),
-        ("mission = {}", 'kind: missing; expected "tour", "course", "points" or "walk"'),
         ('mission = {kind = "tours"}', "did you mean 'tour'?"),
-        (COURSE + '[navigation.planner]\nmethod = "orka"', "did you mean 'orca'?"),
-        ('mission = {kind = "points"}', "mission.points: missing; expected a value: Points in W"),
-        ('mission = {kind = "course", point = 1}', "mission.point: unknown key"),
-        (
-            COURSE + "[[world.obstacle]]\nposition = [0.0, 0.0]\nradius = -0.1",
-            "world.obstacle[0].radius: wrong value, got -0.1; expected more than 0",
-        ),
     ],
 )
 def test_one_mistake(text, expected):
     (line,) = mistakes(text)
     assert expected in line
     assert line.startswith("  file.toml:") or text == ""
-
-
-def test_lines_of_array_tables():
-    text = COURSE + (
-        "[[world.obstacle]]\nposition = [0.0, 0.0]\n\n"
-        "[[world.obstacle]]\nposition = [1.0, 0.0]\nradius = 7.0\n"
-    )
-    (line,) = mistakes(text)
-    assert line.startswith("  file.toml:7: world.obstacle[1].radius: ")
 
 
 def test_unknown_names_missing_files_and_folders_are_refused(tmp_path):
@@ -131,11 +100,7 @@ def test_unknown_names_missing_files_and_folders_are_refused(tmp_path):
     [
         (b"a = 1\nb = = 2\n", "invalid TOML.*line 2"),
         (b"\xff\xfe", "wrong encoding, got UTF-16; expected UTF-8"),
-        (b"a = '\xe4'", "wrong encoding, got byte 0xe4 at 5; expected UTF-8"),
-        (b"a = " + b"[" * 40_000, "invalid TOML"),
         (b"a = " + b"[" * 100_000, "nested too deeply"),
-        (b"a" + b".a" * 30_000 + b" = 1", "nested too deeply"),
-        (b"a = " + b"9" * 10_000, "invalid TOML"),
     ],
 )
 def test_files_that_are_not_a_scenario(tmp_path, raw, expected):
@@ -186,7 +151,7 @@ def test_another_kind_of_mission_drops_the_old_keys(tmp_path):
     assert load_scenario(str(file)).mission.points == ((1.0, 1.0),)
 
 
-@settings(max_examples=60)
+@settings(max_examples=15)
 @given(
     st.floats(0.001, 7200.0),
     st.floats(0.0, 0.01),
@@ -213,15 +178,9 @@ def test_reading_a_scenario_needs_no_mujoco():
     ("file", "name"),
     [
         ("my room.toml", "my-room"),
-        ("_x.toml", "x"),
         ("ä.toml", "ä"),
         ("a\u0308.toml", "ä"),
-        ("공원 산책.toml", "공원-산책"),
-        ("夜の公園.toml", "夜の公園"),
-        ("सड़क.toml", "सड़क"),
         ("!.toml", "scenario-bb7208bc"),
-        ("\u0301x" + "y" * 80 + ".toml", "x" + "y" * 63),
-        ("a.b-c_d.toml", "a.b-c_d"),
     ],
 )
 def test_a_file_of_any_name_is_a_scenario(tmp_path, file, name):
@@ -235,18 +194,14 @@ def test_a_file_of_any_name_is_a_scenario(tmp_path, file, name):
     "rows",
     [
         [f"key{k} = {k}" for k in range(5000)],
-        ["[walking.gait]", *(f"key{k} = {k}" for k in range(5000))],
-        [f"[navigation.gaze.k{k}]" for k in range(5000)],
         ["text = '''", *["x"] * 2_000, "'''", *(f"key{k} = {k}" for k in range(100))],
     ],
 )
-def test_the_list_of_mistakes_ends_and_takes_no_time(tmp_path, rows):
+def test_the_list_of_mistakes_ends(tmp_path, rows):
     file = tmp_path / "many.toml"
     file.write_text("\n".join(['extends = "course"', *rows]))
-    began = process_time()
     with pytest.raises(ScenarioError) as error:
         load_scenario(str(file))
-    assert process_time() - began < 10.0
     title, *lines = str(error.value).splitlines()
     assert title == f"the first {MAX_LISTED} mistakes in scenario {str(file)!r}"
     assert len(lines) == MAX_LISTED
@@ -254,19 +209,7 @@ def test_the_list_of_mistakes_ends_and_takes_no_time(tmp_path, rows):
     assert places == sorted(set(places))
 
 
-def test_long_chains_of_files_are_refused(tmp_path):
-    for k in range(50):
-        (tmp_path / f"f{k}.toml").write_text(f'extends = "f{k + 1}.toml"\n')
-    with pytest.raises(ScenarioError, match="more than 16 files extend each other"):
-        load_scenario(str(tmp_path / "f0.toml"))
-
-
-def test_a_byte_order_mark_is_no_part_of_the_text(tmp_path):
-    file = tmp_path / "mine.toml"
-    file.write_bytes('\ufeffextends = "course"\nduration = 7.0\n'.encode())
-    assert load_scenario(str(file)).duration == 7.0
-
-
+@settings(max_examples=15)
 @given(
     names=st.lists(
         st.text(st.characters(categories=["L", "N"]), min_size=1, max_size=20), min_size=2

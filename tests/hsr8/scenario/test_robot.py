@@ -41,12 +41,6 @@ def test_a_file_is_searched_next_to_the_scenario_and_in_the_working_folder(model
     assert table["robot"]["model"] == model
 
 
-def test_the_home_folder_is_expanded(folders, monkeypatch):
-    monkeypatch.setenv("HOME", str(folders / "elsewhere"))
-    table = Layer({"robot": {"model": "~/elsewhere.toml"}}, str(folders / "this.toml")).located()
-    assert table["robot"]["model"] == str(folders / "elsewhere" / "elsewhere.toml")
-
-
 def test_a_scenario_has_the_absolute_path_of_its_robot(tmp_path, monkeypatch):
     text = 'model = "hsr8/hsr8.xml"\nfeet = ["l_foot_link", "r_foot_link"]\n'
     (tmp_path / "mine.toml").write_text(text)
@@ -75,7 +69,7 @@ def load(file, *settings):
 
 
 @pytest.mark.parametrize("setting", [STUCK, PUSH, RANDOM])
-@pytest.mark.parametrize("name", ["l_ankle", "torso_link", "nothing-like-it"])
+@pytest.mark.parametrize("name", ["l_ankle"])
 def test_an_unknown_joint_or_body_is_one_mistake_with_the_names_of_the_robot(file, setting, name):
     with pytest.raises(ScenarioError) as error:
         load(file, setting.format(name))

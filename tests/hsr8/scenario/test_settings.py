@@ -60,12 +60,6 @@ def test_overrides_are_strings_or_a_mapping():
         load_scenario("course", {"world.n_moving": None})
 
 
-def test_values_of_a_mapping_are_not_parsed():
-    assert load_scenario("course", {"description": "3 # walks"}).description == "3 # walks"
-    with pytest.raises(ScenarioError, match=r'settings: duration: wrong value, got "3\.0"'):
-        load_scenario("course", {"duration": "3.0"})
-
-
 @pytest.mark.parametrize(
     ("override", "expected"),
     [
@@ -103,40 +97,7 @@ def test_single_keys_take_precedence_over_profile_and_camera():
     assert loads(dump(scenario)) == scenario
 
 
-def test_mistakes_in_varied_values_name_the_option():
-    with pytest.raises(ScenarioError, match=r"--vary wold.x=1: wold: unknown key"):
-        load_scenario("quick", more={"--vary": ["wold.x=1"]})
-    with pytest.raises(ScenarioError, match="--vary x: expected key=value"):
-        load_scenario("quick", more={"--vary": ["x"]})
-
-
 LOOK_TIME = "navigation.gaze.risk.look_time"
-
-
-@pytest.mark.parametrize(
-    ("text", "wanted"),
-    [
-        (
-            f'{LOOK_TIME} = "two"',
-            f'2: {LOOK_TIME}: wrong value, got "two"; expected a number',
-        ),
-        (
-            f"constants.{LOOK_TIME} = 2.0",
-            f"2: constants.{LOOK_TIME}: former key; expected {LOOK_TIME}",
-        ),
-    ],
-)
-def test_a_wrong_value_for_studies_is_refused_with_its_line(text, wanted):
-    with pytest.raises(ScenarioError) as error:
-        loads('mission = {kind = "course"}\n' + text, "file.toml")
-    assert str(error.value).splitlines()[1:] == [f"  file.toml:{wanted}"]
-
-
-def test_a_similar_key_for_studies_is_proposed():
-    with pytest.raises(ScenarioError, match="unknown key; did you mean 'look_time'"):
-        load_scenario("course", [f"{LOOK_TIME[:-1]}=2.0"])
-    with pytest.raises(ScenarioError, match=f"unknown key; did you mean '{LOOK_TIME}'"):
-        load_scenario("course", ["navigation.look_time=2.0"])
 
 
 @pytest.mark.parametrize("profile", ["extended", "paper"])

@@ -2,6 +2,7 @@ from dataclasses import replace
 from types import SimpleNamespace
 
 import cv2
+import mujoco
 import numpy as np
 import pytest
 
@@ -12,6 +13,7 @@ from hsr8.scenario.loader import load_scenario
 from hsr8.simulation.loop import Simulation
 from hsr8.simulation.record import EventWatch
 from hsr8.simulation.robot_builder import MARGINS, walking_parameters
+from hsr8.world.model import assembly
 from hsr8.world.truth.truth import Contact, Truth
 from navigation.decision import GazeDecision, MotionDecision
 from walking.dimension import HSR_VIII, scale_parameters
@@ -74,6 +76,30 @@ def test_the_threads_of_opencv_are_as_before():
     Simulation(quick(0.05), 4).run()
     assert cv2.getNumThreads() == 3
     cv2.setNumThreads(before)
+
+
+@pytest.fixture
+def handler():
+    """Handler of MuJoCo's warnings that somebody else has set."""
+    before = mujoco.get_mju_user_warning()
+
+    def handle(message):
+        """Take a warning."""
+
+    mujoco.set_mju_user_warning(handle)
+    yield handle
+    mujoco.set_mju_user_warning(before)
+
+
+def test_a_new_world_leaves_the_handler_of_warnings(handler, monkeypatch):
+    Simulation(quick(), 0)
+    assert mujoco.get_mju_user_warning() is handler
+
+    for shapes in ("camera_spec", "visual_spec"):
+        monkeypatch.setattr(assembly, shapes, lambda _robot: "not a model")
+    with pytest.raises(TypeError):
+        Simulation(quick(), 0)
+    assert mujoco.get_mju_user_warning() is handler
 
 
 def test_steps_outside_a_run_are_an_error():

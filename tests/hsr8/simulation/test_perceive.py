@@ -59,15 +59,6 @@ def test_decisions_of_a_loop_are_those_of_a_plugin(simulation, settings):
         assert np.array_equal(ours.motion.velocity, theirs.motion.velocity)
 
 
-def test_perceive_alone_changes_nothing(simulation):
-    expected = Simulation(load_scenario("quick", FAST), 4).run()
-    driven = simulation()
-    while driven.exit_reason is None:
-        assert driven.perceive() is driven.perceive()
-        driven.step()
-    assert driven.outcome() == expected
-
-
 def test_a_decision_is_replaced_only_while_it_is_pending(simulation):
     driven = simulation()
     with pytest.raises(RuntimeError, match=r"look: the tick has not begun; expected perceive\(\)"):

@@ -136,16 +136,6 @@ def test_no_common_seed_and_unknown_metrics_are_told():
         compare(_side([_run(1)]), _side([_run(1)]), ["sucess"])
 
 
-def test_one_metric_alone_and_its_page():
-    a = _side([_run(s, success=s > 1) for s in range(4)])
-    comparison = compare(a, _side([_run(s) for s in range(5)]), ["success"])
-    assert [r.metric for r in comparison.metrics] == ["success"]
-    text = page([comparison], "hsr8 compare a b --metric success")
-    assert "| `success` | 4 | 50.0 % | 100.0 % | +50.0 points | - | - | - |" in text
-    assert "`success` in B only: 0, 1" in text
-    assert "(0 more in A, 1 more in B)" in text
-
-
 def test_sweeps_are_opened_without_what_could_not_run(tmp_path):
     folder = SweepFolder.open(tmp_path / "s", DEFINITION)
     for result in (_run(1, mean={"vx": 0.1}), {"seed": 2, "outcome": "refused"}):

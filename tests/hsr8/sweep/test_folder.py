@@ -99,9 +99,7 @@ def test_a_lost_run_is_taken_again(folder, change, lost):
     ("change", "message"),
     [
         ({"code": "abd"}, "code: abc there, abd now"),
-        ({"libraries": {"mujoco": "5"}}, "mujoco: 4 there, 5 now"),
         ({"scenario": "duration = 9.0"}, r"duration: 3\.0 there, 9\.0 now"),
-        ({"scenario": "duration = 3.0"}, r"world.size: \[4\.0, 4\.0\] there, - now"),
     ],
 )
 def test_other_runs_do_not_join(folder, definition, change, message):
@@ -115,7 +113,7 @@ def test_the_seed_of_the_scenario_is_ignored(folder, definition):
     SweepFolder.open(folder.path, other)
 
 
-@pytest.mark.parametrize("text", ["{}", "no json", "[]", '{"name": 3}'])
+@pytest.mark.parametrize("text", ["no json", '{"name": 3}'])
 def test_a_damaged_or_missing_definition_is_reported(folder, tmp_path, definition, text):
     (folder.path / "sweep.json").write_text(text)
     with pytest.raises(UsageError, match=r"sweep\.json"):

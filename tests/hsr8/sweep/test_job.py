@@ -7,7 +7,7 @@ from dataclasses import replace
 
 import pytest
 
-from hsr8.errors import RecordingFailed, SimulationDiverged
+from hsr8.errors import SimulationDiverged
 from hsr8.recording.run import open_run
 from hsr8.scenario.loader import load_scenario
 from hsr8.simulation.loop import Simulation
@@ -62,26 +62,12 @@ def raising(error):
     ("place", "error", "outcome", "word", "folder"),
     [
         ("simulation.loop.Simulation.step", ZeroDivisionError("oh no"), "crashed", "oh no", True),
-        (
-            "simulation.loop.Simulation.step",
-            RecordingFailed("disk full"),
-            "crashed",
-            "disk full",
-            True,
-        ),
         ("simulation.loop.Simulation.step", KeyboardInterrupt(), "crashed", "interrupted", True),
         (
             "world.body.kinematic.KinematicBody.apply",
             SimulationDiverged("too fast"),
             "diverged",
             "too fast",
-            True,
-        ),
-        (
-            "simulation.loop.Simulation._build_robot",
-            RuntimeError("no robot"),
-            "crashed",
-            "no robot",
             True,
         ),
     ],

@@ -16,7 +16,7 @@ from hsr8.trials.robot_check import WalkResult, check_robot
 @pytest.fixture
 def quick(monkeypatch):
     """Short walks, the rehearsed speeds along each axis, and a check that passes."""
-    values = {"STEADY_TIME": 1.0, "RANDOM_TIME": 0.6, "INTERVAL": 0.5, "RANDOM_SEEDS": range(1)}
+    values = {"STEADY_TIME": 0.6, "RANDOM_TIME": 0.6, "INTERVAL": 0.5, "RANDOM_SEEDS": range(1)}
     for name, value in {**values, "SMALLEST": 1.0}.items():
         monkeypatch.setattr(calibration, name, value)
     monkeypatch.setattr(calibration, "check_robot", lambda _robot: ([], []))
@@ -90,6 +90,7 @@ def test_the_speeds_are_reduced_until_the_robot_passes_its_check(quick):
 def test_a_robot_too_slow_for_navigation_is_refused(quick):
     """No description may state such speeds."""
     quick.setattr(calibration, "check_robot", partial(checked_up_to, 0.0))
+    quick.setattr(calibration, "SHRINK", 0.5)
     message = f"expected at least {MIN_SPEED}: l_knee at a limit"
     with pytest.raises(ModelError, match=message):
         calibration.calibrate(load_robot("hsr8"))

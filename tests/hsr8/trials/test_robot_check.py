@@ -97,14 +97,6 @@ def test_a_robot_that_cannot_stand_does_not_walk(tmp_path):
     assert remedy == 'the servos of the model do not hold it: state servo = "rule"'
 
 
-def test_unknown_limits_are_not_uses(tmp_path):
-    (tmp_path / "small.xml").write_text(SmallHumanoid(actuator="").xml())
-    robot = build_robot(described(SmallHumanoid(), model="small.xml"), tmp_path / "small.toml")
-    _, joints = check_robot(robot, duration=0.2)
-    assert {joint.torque for joint in joints} == {None}
-    assert {joint.speed for joint in joints} == {None}
-
-
 def test_the_joint_at_its_limit_is_named():
     model, n = load_robot("hsr8").model, 1000
     zeros = np.zeros(len(model.names), dtype=int)

@@ -3,7 +3,7 @@ import re
 from dataclasses import replace
 
 import pytest
-from hypothesis import given
+from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from hsr8.errors import UsageError
@@ -14,6 +14,7 @@ OUTCOMES = st.lists(
 )
 
 
+@settings(max_examples=25)
 @given(
     course=OUTCOMES,
     crowd=OUTCOMES,
@@ -48,10 +49,8 @@ def test_all_is_the_score_of_all_families(make_entry):
 @pytest.mark.parametrize(
     ("change", "message"),
     [
-        (lambda value: value.update(format=2), "format: wrong value, got 2; expected 1"),
         (lambda value: value.pop("versions"), "versions: missing"),
         (lambda value: value["runs"]["course"][0].update(outcome="good"), "outcome: wrong value"),
-        (lambda value: value["runs"]["course"][0].pop("falls"), "falls: missing"),
     ],
 )
 def test_the_key_of_a_mistake_is_named(make_entry, tmp_path, change, message):
@@ -91,8 +90,3 @@ def test_the_default_is_shown_on_the_same_worlds():
         lines = entry_page(replace(default, runs=changed)).splitlines()
         assert not [line for line in lines if line.startswith((f"| {family}, d", "| all, d"))]
     assert ", default |" not in entry_page(replace(default, suite="mine"))
-
-
-def test_settings_of_an_entry_are_listed(make_entry):
-    entry = make_entry("mine", settings={"robot.body": ('"kinematic"', '"full"')})
-    assert '| `robot.body` | "kinematic" | "full" |' in entry_page(entry)

@@ -1,5 +1,4 @@
 import re
-from pathlib import Path
 
 import pytest
 
@@ -11,7 +10,6 @@ HASHES = {1: "0e8b180c21c0", 2: "664c80072592"}
 """Digest of each version of the shipped suite. Results of a version remain comparable only as long
 as its worlds, robot and camera do: give a changed suite a new version in `suite.toml`.
 A new key whose default changes no world changes the digest only."""
-PAGE = Path(__file__).parents[4] / "docs" / "bench.md"
 SMALL = """
 name = "small"
 version = 3
@@ -55,13 +53,6 @@ def test_the_shipped_suite_has_six_families_and_seeds_for_reporting():
     assert {s.robot.model for s in standard.values()} == {"hsr8"}
 
 
-def test_the_page_explains_every_family_of_the_shipped_suite():
-    rows = re.findall(r"^\| `([\w-]+)` \| (.*) \|$", PAGE.read_text(), re.M)
-    assert [row for row in rows if row[0] in shipped()[1]] == list(
-        read_suite(SHIPPED).families.items()
-    )
-
-
 def test_settings_of_the_algorithms_do_not_change_the_suite(small):
     suite = read_suite(small)
     standard = suite.scenarios(small)
@@ -71,9 +62,7 @@ def test_settings_of_the_algorithms_do_not_change_the_suite(small):
     assert scenario_hash(other["yard"]) != scenario_hash(standard["yard"])
 
 
-@pytest.mark.parametrize(
-    "setting", ["robot.body=full", "camera.preset=ideal", "walking.head.max_rate=2"]
-)
+@pytest.mark.parametrize("setting", ["robot.body=full", "camera.preset=ideal"])
 def test_body_and_camera_may_change_and_are_reported(small, setting):
     suite = read_suite(small)
     standard, other = suite.scenarios(small), suite.scenarios(small, [setting])
@@ -85,7 +74,6 @@ def test_body_and_camera_may_change_and_are_reported(small, setting):
     "setting",
     [
         *("world.n_static=3", "duration=5", "robot.speed.vx=0.1"),
-        *("navigation.mission.r_via=1", "navigation.mission.heading_tolerance=3"),
     ],
 )
 def test_worlds_and_missions_may_not_change(small, setting):
@@ -130,7 +118,6 @@ def test_files_of_scenarios_are_next_to_the_suite(small, monkeypatch):
 @pytest.mark.parametrize(
     ("old", "new", "message"),
     [
-        ("version = 3", "", "small.toml: version: missing; expected a value"),
         (
             "version = 3",
             "version = 0",
@@ -141,10 +128,7 @@ def test_files_of_scenarios_are_next_to_the_suite(small, monkeypatch):
             "version = 3\nsize = 3",
             "size: unknown key; expected one of name, version",
         ),
-        ('quick = "1000"', 'quick = "x"', "quick: not a seed or a range, got 'x'"),
         ('name = "small"', "name = ", "invalid TOML"),
-        ('"small"', '"A/b"', "name: .*, got 'A/b'; expected letters, digits, '.', '_' and '-'"),
-        ("[families]", "[familes]", "familes: unknown key; did you mean 'families'"),
     ],
 )
 def test_mistakes_in_a_suite_are_named(small, old, new, message):
@@ -153,16 +137,10 @@ def test_mistakes_in_a_suite_are_named(small, old, new, message):
         read_suite(small)
 
 
-def test_a_missing_suite_is_named(tmp_path):
-    with pytest.raises(UsageError, match="cannot be read: No such file"):
-        read_suite(tmp_path / "none.toml")
-
-
 @pytest.mark.parametrize(
     ("old", "new", "message"),
     [
         ('quick = "a name"', 'quik = ""', "families.quik: unknown scenario 'quik'; did you mean"),
-        ('"yard.toml"', '"yad.toml"', "families.yad.toml: scenario file '.*' does not exist"),
         ("source=", "sorce=", r"families.yard.toml: .*\n *small.toml: settings camera.sorce=.*"),
     ],
 )
@@ -171,9 +149,3 @@ def test_mistakes_in_families_and_settings_name_the_suite(small, old, new, messa
     with pytest.raises(ScenarioError, match=f"^{re.escape(str(small))}: {message}") as error:
         read_suite(small).scenarios(small)
     assert "--set" not in str(error.value)
-
-
-def test_mistakes_in_settings_of_an_entry_name_the_option(small):
-    with pytest.raises(ScenarioError, match=r"--set world.n=3: world.n: unknown key") as error:
-        read_suite(small).scenarios(small, ["world.n=3"])
-    assert "small.toml" not in str(error.value)

@@ -24,7 +24,7 @@ TIMES = {"time_scale", "depart", "times", "begin", "linger", "first", "period"}
 SPEEDS = {"speed", "rate", "rates"}
 
 
-@pytest.fixture(params=[(2.0, 1.0), (2.0, 3.0), (0.5, 0.25), (2.9, 1.7)], ids=str)
+@pytest.fixture(params=[(0.5, 0.25), (2.9, 1.7)], ids=str)
 def scale(request, monkeypatch):
     length, speed = request.param
     scale = RobotScale(length, speed, speed / length)
@@ -63,21 +63,20 @@ def assert_similar(big, small, scale, ratio=1.0):
 @pytest.mark.parametrize("name", built_in_names())
 def test_the_world_of_another_robot_is_similar(name, scale):
     big = load_scenario(name, ["robot.model=big"])
-    for seed in (1000, 1001):
-        one, other = draw_world(big, seed), default_world(name, seed)
-        assert_similar(one.layout, other.layout, scale)
-        x, y, heading = other.layout.start
-        expected = (scale.length * x, scale.length * y, heading)
-        assert one.layout.start == pytest.approx(expected)
-        assert (one.rejected, one.crowded) == (other.rejected, other.crowded)
-        assert one.certificate.solvable == other.certificate.solvable
-        if scale.length == 2.9:  # inexact: a disc that just fits into a gap may fit or not
-            continue
-        assert one.certificate.time == pytest.approx(scale.time * other.certificate.time)
-        units = (scale.time, scale.length, scale.length, 1.0)
-        np.testing.assert_allclose(
-            one.certificate.path, other.certificate.path * units, rtol=1e-9, atol=1e-9
-        )
+    one, other = draw_world(big, 1000), default_world(name, 1000)
+    assert_similar(one.layout, other.layout, scale)
+    x, y, heading = other.layout.start
+    expected = (scale.length * x, scale.length * y, heading)
+    assert one.layout.start == pytest.approx(expected)
+    assert (one.rejected, one.crowded) == (other.rejected, other.crowded)
+    assert one.certificate.solvable == other.certificate.solvable
+    if scale.length == 2.9:  # inexact: a disc that just fits into a gap may fit or not
+        return
+    assert one.certificate.time == pytest.approx(scale.time * other.certificate.time)
+    units = (scale.time, scale.length, scale.length, 1.0)
+    np.testing.assert_allclose(
+        one.certificate.path, other.certificate.path * units, rtol=1e-9, atol=1e-9
+    )
 
 
 def test_clearances_are_similar(scale):
