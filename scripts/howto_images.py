@@ -228,7 +228,9 @@ def terminal(file: Path) -> None:
     with TemporaryDirectory() as folder:
         for words in ("run quick", "info runs/quick"):
             console.print(Text(f"$ hsr8 {words}", style="bold"))
-            console.print(Text.from_ansi(called(folder, words)))
+            lines = called(folder, words).splitlines()
+            shown = [line for line in lines if not line.startswith("│ machine")]
+            console.print(Text.from_ansi("\n".join(shown)))
     text = console.export_svg(title="a first run")
     file.write_text(re.sub(r"@font-face \{.*?\}", "", text, flags=re.DOTALL), encoding="utf-8")
 
