@@ -225,10 +225,10 @@ def called(folder: str, words: str) -> str:
 def terminal(folder: Path) -> None:
     """Write the terminal of a first run as SVG, without its fonts, which are on the network."""
     console = Console(record=True, width=100, file=io.StringIO())
-    with TemporaryDirectory() as place:
+    with TemporaryDirectory() as scratch:
         for words in ("run quick", "info runs/quick"):
             console.print(Text(f"$ hsr8 {words}", style="bold"))
-            lines = called(place, words).splitlines()
+            lines = called(scratch, words).splitlines()
             shown = [line for line in lines if not line.startswith("│ machine")]
             console.print(Text.from_ansi("\n".join(shown)))
     text = console.export_svg(title="a first run")
@@ -240,18 +240,18 @@ def terminal(folder: Path) -> None:
 def comparison(folder: Path) -> None:
     """Write the forest plot of the sweeps of the tutorial as SVG."""
     page = (ROOT / "docs" / "tutorial.md").read_text(encoding="utf-8")
-    with TemporaryDirectory() as place:
+    with TemporaryDirectory() as scratch:
         for name, kind in (("yard.toml", "toml"), ("shy.py", "python")):
             text = re.search(rf"`{name}`:\n\n```{kind}\n(.*?)```", page, re.DOTALL)
             assert text is not None
-            Path(place, name).write_text(text[1], encoding="utf-8")
+            Path(scratch, name).write_text(text[1], encoding="utf-8")
         sweeps = re.findall(r"^hsr8 (sweep .*)$", page, re.MULTILINE)
         arms = [line.split()[-1] for line in sweeps]
         for line in sweeps:
-            called(place, line)
+            called(scratch, line)
         file = shlex.quote(str(folder / "comparison.svg"))
         metrics = " ".join(f"--metric {name}" for name in COMPARED)
-        called(place, f"compare {' '.join(arms)} {metrics} --figure {file}")
+        called(scratch, f"compare {' '.join(arms)} {metrics} --figure {file}")
 
 
 HOWTO = {
