@@ -222,31 +222,36 @@ def called(folder: str, words: str) -> str:
     ).stdout
 
 
-def terminal(file: Path) -> None:
+def terminal(folder: Path) -> None:
     """Write the terminal of a first run as SVG, without its fonts, which are on the network."""
     console = Console(record=True, width=100, file=io.StringIO())
-    with TemporaryDirectory() as folder:
+    with TemporaryDirectory() as scratch:
         for words in ("run quick", "info runs/quick"):
             console.print(Text(f"$ hsr8 {words}", style="bold"))
-            console.print(Text.from_ansi(called(folder, words)))
+            lines = called(scratch, words).splitlines()
+            shown = [line for line in lines if not line.startswith("│ machine")]
+            console.print(Text.from_ansi("\n".join(shown)))
     text = console.export_svg(title="a first run")
-    file.write_text(re.sub(r"@font-face \{.*?\}", "", text, flags=re.DOTALL), encoding="utf-8")
+    (folder / "terminal.svg").write_text(
+        re.sub(r"@font-face \{.*?\}", "", text, flags=re.DOTALL), encoding="utf-8"
+    )
 
 
-def comparison(file: Path) -> None:
+def comparison(folder: Path) -> None:
     """Write the forest plot of the sweeps of the tutorial as SVG."""
     page = (ROOT / "docs" / "tutorial.md").read_text(encoding="utf-8")
-    with TemporaryDirectory() as folder:
+    with TemporaryDirectory() as scratch:
         for name, kind in (("yard.toml", "toml"), ("shy.py", "python")):
             text = re.search(rf"`{name}`:\n\n```{kind}\n(.*?)```", page, re.DOTALL)
             assert text is not None
-            Path(folder, name).write_text(text[1], encoding="utf-8")
+            Path(scratch, name).write_text(text[1], encoding="utf-8")
         sweeps = re.findall(r"^hsr8 (sweep .*)$", page, re.MULTILINE)
         arms = [line.split()[-1] for line in sweeps]
         for line in sweeps:
-            called(folder, line)
+            called(scratch, line)
+        file = shlex.quote(str(folder / "comparison.svg"))
         metrics = " ".join(f"--metric {name}" for name in COMPARED)
-        called(folder, f"compare {' '.join(arms)} {metrics} --figure {shlex.quote(str(file))}")
+        called(scratch, f"compare {' '.join(arms)} {metrics} --figure {file}")
 
 
 HOWTO = {
@@ -262,17 +267,18 @@ HOWTO = {
 
 def worlds(folder: Path) -> None:
     """Write the plans of the built-in scenarios, as ``hsr8 check --image`` draws them."""
-    folder.mkdir(exist_ok=True)
+    plans = folder / "worlds"
+    plans.mkdir(exist_ok=True)
     for name in WORLDS:
         scenario = load_scenario(name)
         drawn = draw_world(scenario, scenario.seed)
         plan = PlanView(drawn.layout, scenario.robot.radius, 600, drawn.certificate)
-        Image.fromarray(plan.draw()).save(folder / f"{name}.webp", quality=85)
+        Image.fromarray(plan.draw()).save(plans / f"{name}.webp", quality=85)
 
 
 WRITTEN: dict[str, Callable[[Path], None]] = {
-    "terminal.svg": terminal,
-    "comparison.svg": comparison,
+    "terminal": terminal,
+    "comparison": comparison,
     "worlds": worlds,
 }
-"""Images that are written without Matplotlib of this process, by file or folder."""
+"""Functions that write their images into a folder themselves."""

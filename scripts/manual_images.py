@@ -374,7 +374,7 @@ def main() -> None:
     options = parser.parse_args()
     for name in options.names or [*DRAWINGS, *WRITTEN]:
         if name in WRITTEN:
-            WRITTEN[name](options.out.resolve() / name)
+            WRITTEN[name](options.out.resolve())
             continue
         with styled():
             made = DRAWINGS[name]()

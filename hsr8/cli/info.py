@@ -97,7 +97,7 @@ def show(run: Run, criteria: Sequence[Criterion], console: Console, *, everythin
     values = {_head(name): run.metrics.get(name) for name in names}
     console.print(tables.facts(values, "results"))
     if criteria:
-        console.print(tables.rows([asdict(criterion) for criterion in criteria]))
+        console.print(tables.rows([asdict(criterion) for criterion in criteria], "criteria"))
 
 
 def _head(name: str) -> str:

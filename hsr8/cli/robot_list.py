@@ -34,7 +34,7 @@ def main(options: RobotList) -> int:
         print(atomic.dumps({"robots": entries, "remedies": remedies}))
         return 0
     console = Console(highlight=False)
-    shown = ("name", "title", "source", "mass_kg", "leg_m", "joints")
+    shown = ("name", "title", "mass_kg", "leg_m", "joints")
     state = {True: "missing", False: "found"}
     rows = [{**{k: e[k] for k in shown}, "model": state[e["model"] is None]} for e in entries]
     console.print(tables.rows(rows))

@@ -41,7 +41,10 @@ def _label(key: str) -> str:
 
 
 def _cell(value: object) -> str:
-    return escape(escaped_lines(_text(value).removeprefix("(").removesuffix(")")))
+    text = _text(value)
+    if not isinstance(value, str):
+        text = text.removeprefix("(").removesuffix(")")
+    return escape(escaped_lines(text))
 
 
 def _text(value: object) -> str:

@@ -5,6 +5,7 @@ from math import ceil, floor
 
 import cv2
 import numpy as np
+from numpy.typing import NDArray
 
 from hsr8.show.image import Color, Image, draw_text, text_width
 from hsr8.show.plan_view import FLOOR, INK, LANE, PAPER, PATH, ROBOT, ROUTE, PlanView
@@ -12,9 +13,11 @@ from hsr8.show.plan_view import FLOOR, INK, LANE, PAPER, PATH, ROBOT, ROUTE, Pla
 TITLE, LETTERS = 17, 13  # font sizes [pixel]
 PAD, LINE = 14, 24  # margin and height of a row of the legend [pixel]
 TICK = 5  # length of a tick [pixel]
+BESIDE, BELOW = 44, 44  # room for the numbers of the axes [pixel]
 STEPS = (0.5, 1.0, 2.0, 5.0, 10.0, 20.0, 50.0)  # between ticks [m]
 MAX_TICKS = 9  # along the longer side
 RADIUS = 6  # of the symbols [pixel]
+Array = NDArray[np.float64]
 Symbol = Callable[[Image, tuple[int, int]], None]
 """Draws the symbol of an entry around a pixel."""
 
@@ -26,8 +29,15 @@ def plan_sheet(plan: PlanView, title: str) -> Image:
         plan: plan to draw.
         title: one line, such as the name of the scenario and the seed.
     """
-    drawn = plan.draw()
-    _draw_axes(drawn, plan)
+    plain = plan.draw()
+    half = 0.5 * np.asarray(plan.layout.field_size)
+    left, bottom = plan.pixel(-half)
+    beside, below = max(0, BESIDE - left), max(0, BELOW - (len(plain) - bottom))
+    above = max(0, 2 * LETTERS - plan.pixel(half)[1])
+    drawn = cv2.copyMakeBorder(
+        plain, above, below, beside, beside, cv2.BORDER_CONSTANT, value=PAPER
+    )
+    _draw_axes(drawn, plan, (beside, above))
     width = drawn.shape[1]
     entries = [*_entries(plan)]
     cell = 5 * RADIUS + PAD + max(text_width(text, LETTERS) for text, _ in entries)
@@ -45,8 +55,19 @@ def plan_sheet(plan: PlanView, title: str) -> Image:
     return page
 
 
-def _draw_axes(image: Image, plan: PlanView) -> None:
-    """Draw ticks in metres along the lower and the left border of the field."""
+def _draw_axes(image: Image, plan: PlanView, offset: tuple[int, int]) -> None:
+    """Draw ticks in metres along the lower and the left border of the field.
+
+    Args:
+        image: image to draw into.
+        plan: the plan in it.
+        offset: column and row of the plan in the image [pixel].
+    """
+
+    def pixel(at: Array) -> tuple[int, int]:
+        u, v = plan.pixel(at)
+        return u + offset[0], v + offset[1]
+
     half = 0.5 * np.asarray(plan.layout.field_size)
     longer = 2.0 * float(half.max())
     step = next((s for s in STEPS if longer / s <= MAX_TICKS), STEPS[-1])
@@ -55,7 +76,7 @@ def _draw_axes(image: Image, plan: PlanView) -> None:
         for k in range(ceil(-side / step), floor(side / step) + 1):
             at = -half
             at[axis] = k * step
-            u, v = plan.pixel(at)
+            u, v = pixel(at)
             tip = (u, v + TICK) if axis == 0 else (u - TICK, v)
             cv2.line(image, (u, v), tip, INK, 1)
             text = f"{k * step:g}"
@@ -63,8 +84,8 @@ def _draw_axes(image: Image, plan: PlanView) -> None:
                 draw_text(image, (u, v + gap + LETTERS), text, INK, LETTERS, side="middle")
             else:
                 draw_text(image, (u - gap, v + LETTERS // 3), text, INK, LETTERS, side="right")
-    right, bottom = plan.pixel((half[0], -half[1]))
-    left, top = plan.pixel((-half[0], half[1]))
+    right, bottom = pixel(half * (1.0, -1.0))
+    left, top = pixel(half * (-1.0, 1.0))
     draw_text(image, (right, bottom + gap + 2 * LETTERS + 4), "x [m]", INK, LETTERS, side="right")
     draw_text(image, (left, top - gap), "y [m]", INK, LETTERS, side="right")
 

@@ -79,7 +79,10 @@ def _about(comparison: Comparison) -> Iterator[str]:
     more = [f"{len(side.runs) - len(seeds)} more in {name}" for name, side in (("A", a), ("B", b))]
     yield from ("## B against A", "")
     yield from (f"- {label}: `{side.name}`, {side.text}" for label, side in (("A", a), ("B", b)))
-    yield from (f"- {len(seeds)} common seeds, {seeds[0]} to {seeds[-1]} ({', '.join(more)})", "")
+    common = f"{len(seeds)} common seeds, {seeds[0]} to {seeds[-1]}"
+    if len(seeds) == 1:
+        common = f"1 common seed, {seeds[0]}"
+    yield from (f"- {common} ({', '.join(more)})", "")
     changed = {**comparison.settings, **comparison.versions}
     if changed:
         pairs = [(f"`{key}`", str(x), str(y)) for key, (x, y) in changed.items()]

@@ -27,6 +27,7 @@ def printed(table):
         ("points", [(1, 2), (3, 4)], "points", "(1, 2), (3, 4)"),
         ("by", {"l_knee": 3, "at": [1, 2]}, "by", "l_knee 3, at (1, 2)"),
         ("text", "[markup]", "text", "[markup]"),
+        ("renderer", "llvmpipe (256 bits)", "renderer", "llvmpipe (256 bits)"),
     ],
 )
 def test_labels_have_units_and_values_are_short(key, value, label, text):
