@@ -13,7 +13,7 @@ from hsr8.show.plan_view import FLOOR, INK, LANE, PAPER, PATH, ROBOT, ROUTE, Pla
 TITLE, LETTERS = 17, 13  # font sizes [pixel]
 PAD, LINE = 14, 24  # margin and height of a row of the legend [pixel]
 TICK = 5  # length of a tick [pixel]
-BESIDE, BELOW = 44, 44  # room for the numbers of the axes [pixel]
+MARGIN_LEFT, MARGIN_BELOW = 44, 44  # room for the numbers of the axes [pixel]
 STEPS = (0.5, 1.0, 2.0, 5.0, 10.0, 20.0, 50.0)  # between ticks [m]
 MAX_TICKS = 9  # along the longer side
 RADIUS = 6  # of the symbols [pixel]
@@ -32,12 +32,12 @@ def plan_sheet(plan: PlanView, title: str) -> Image:
     plain = plan.draw()
     half = 0.5 * np.asarray(plan.layout.field_size)
     left, bottom = plan.pixel(-half)
-    beside, below = max(0, BESIDE - left), max(0, BELOW - (len(plain) - bottom))
+    margin, below = max(0, MARGIN_LEFT - left), max(0, MARGIN_BELOW - (len(plain) - bottom))
     above = max(0, 2 * LETTERS - plan.pixel(half)[1])
     drawn = cv2.copyMakeBorder(
-        plain, above, below, beside, beside, cv2.BORDER_CONSTANT, value=PAPER
+        plain, above, below, margin, margin, cv2.BORDER_CONSTANT, value=PAPER
     )
-    _draw_axes(drawn, plan, (beside, above))
+    _draw_axes(drawn, plan, (margin, above))
     width = drawn.shape[1]
     entries = [*_entries(plan)]
     cell = 5 * RADIUS + PAD + max(text_width(text, LETTERS) for text, _ in entries)

@@ -22,10 +22,10 @@ def test_the_axes_have_numbers_in_fields_of_any_size(size):
     rows, columns = image.sum(axis=1), image.sum(axis=0)
     left = int(np.flatnonzero(columns > 400)[0])  # the border of the field
     top, bottom = np.flatnonzero(rows > 400)[[0, -1]].tolist()
-    beside = image[top + 20 : bottom - 20, : left - 6]
+    margin = image[top + 20 : bottom - 20, : left - 6]
     below = image[bottom + 8 : bottom + 26, left:]
-    assert beside[:, left - 20 :].any(axis=1).sum() > 20
-    assert not beside[:, 0].any()
+    assert margin[:, left - 20 :].any(axis=1).sum() > 20
+    assert not margin[:, 0].any()
     assert below.any(axis=0).sum() > 20
 
 
