@@ -1,15 +1,9 @@
 """Whole runs for the system tests."""
 
-import sys
-from pathlib import Path
-
 import pytest
 
 from hsr8.scenario.loader import load_scenario
 from hsr8.simulation.loop import Simulation
-
-# `scaled_model` is a script; scripts are not a package.
-sys.path.insert(0, str(Path(__file__).parents[2] / "scripts"))
 
 
 class Recorded:

@@ -1,11 +1,10 @@
 """Camera faults: the robot recovers from each, and a wrong belief is known to be lost."""
 
-import runpy
-from pathlib import Path
-
 import numpy as np
 import pytest
 
+from hsr8.cli.color_table import mask_colors
+from tests.system.labelled_images import labelled
 from vision.color import save_table
 from vision.color_learning import learn
 
@@ -95,12 +94,11 @@ def test_a_brightness_step_changes_the_image_and_not_the_detections(simulate):
 
 @pytest.mark.gl
 def test_a_table_learnt_from_rendered_images_detects_as_the_declared_one(simulate, tmp_path):
-    script = runpy.run_path(str(Path(__file__).parents[2] / "scripts" / "label_images.py"))
     pairs = []
     for pan in (-0.9, -0.3, 0.3, 0.9):
-        image, mask = script["labelled"](0, pan, -0.3)
+        image, mask = labelled(0, pan, -0.3)
         labels = np.zeros(mask.shape[:2], np.uint8)
-        for label, rgb in enumerate(script["mask_colors"]().values(), start=1):
+        for label, rgb in enumerate(mask_colors().values(), start=1):
             labels[(mask == rgb).all(axis=2)] = label
         pairs.append((image, labels))
     save_table(learn(pairs), tmp_path / "colors.npz")

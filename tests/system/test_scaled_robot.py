@@ -5,12 +5,12 @@ from math import sqrt
 
 import numpy as np
 import pytest
-from scaled_model import scaled_robot
 
 from hsr8.scenario.sensors import SensorNoise
 from hsr8.world.body.physics import PhysicsBody
 from hsr8.world.field.layout import Layout
 from hsr8.world.model.assembly import Optics, assemble
+from tests.system.scaled_model import scaled_robot
 from walking.command import CommandState, HeadTarget, VelocityCommand
 from walking.constants import parameters_for
 from walking.dimension import HSR_VIII, scale_parameters

@@ -1,16 +1,9 @@
-"""Images of the simulated camera with the masks that `hsr8 color-table` learns from.
+"""Images of the simulated camera with the masks that `hsr8 color-table` learns from."""
 
-python scripts/label_images.py --out runs/labelled --count 8
-hsr8 color-table runs/labelled/[0-9][0-9].png --out runs/colors.npz
-"""
+import mujoco
+import numpy as np
 
-import argparse
-import os
-from pathlib import Path
-
-os.environ.setdefault("MUJOCO_GL", "egl")
-
-from hsr8.cli.color_table import MASK, mask_colors
+from hsr8.cli.color_table import mask_colors
 from hsr8.robots.loaded import load_robot
 from hsr8.robots.model.normal_form import HEAD_CAMERA
 from hsr8.scenario.loader import load_scenario
@@ -20,18 +13,9 @@ from hsr8.world.camera.rendered import RenderedCamera
 from hsr8.world.field.generator import draw_layout
 from hsr8.world.model.assembly import FIELD, Optics, assemble
 
-import cv2
-import mujoco
-import numpy as np
-from numpy.typing import NDArray
 
-Image = NDArray[np.uint8]
-
-LOOKS = ((-0.9, -0.3), (-0.3, -0.4), (0.3, -0.3), (0.9, -0.2))  # pan and tilt [rad]
-
-
-def labelled(seed: int, pan: float, tilt: float) -> tuple[Image, Image]:
-    """A noisy image of the world of `seed`, and its mask."""
+def labelled(seed, pan, tilt):
+    """Return a noisy image of `course` and its mask, for a pan and tilt of the camera [rad]."""
     scenario = load_scenario("course")
     layout = draw_layout(scenario, seed)
     camera = scenario.camera
@@ -56,20 +40,3 @@ def labelled(seed: int, pan: float, tilt: float) -> tuple[Image, Image]:
         if name in paints:
             mask[geoms == geom] = paints[name]
     return image, mask
-
-
-def main() -> None:
-    parser = argparse.ArgumentParser(description=__doc__.partition("\n")[0])
-    parser.add_argument("--out", type=Path, required=True)
-    parser.add_argument("--count", type=int, default=8)
-    parser.add_argument("--seed", type=int, default=0, help="of the first world")
-    args = parser.parse_args()
-    args.out.mkdir(parents=True, exist_ok=True)
-    for k in range(args.count):
-        image, mask = labelled(args.seed + k // len(LOOKS), *LOOKS[k % len(LOOKS)])
-        cv2.imwrite(str(args.out / f"{k:02d}.png"), image[:, :, ::-1])
-        cv2.imwrite(str(args.out / f"{k:02d}{MASK}"), mask[:, :, ::-1])
-
-
-if __name__ == "__main__":
-    main()

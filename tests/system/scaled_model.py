@@ -9,13 +9,13 @@ from dataclasses import dataclass
 from math import sqrt
 from pathlib import Path
 
-from hsr8.robots.file.files import models_dir
-from hsr8.robots.file.locate import find_description
-from hsr8.robots.loaded import LoadedRobot, load_robot
-
 import mujoco
 import numpy as np
 from numpy.typing import NDArray
+
+from hsr8.robots.file.files import models_dir
+from hsr8.robots.file.locate import find_description
+from hsr8.robots.loaded import LoadedRobot, load_robot
 
 
 @dataclass(frozen=True, slots=True)

@@ -5,9 +5,9 @@ from math import sqrt
 import mujoco
 import numpy as np
 import pytest
-from scaled_model import scale_robot, scaled_robot
 
 from hsr8.robots.file.files import models_dir
+from tests.system.scaled_model import scale_robot, scaled_robot
 from walking.dimension import HSR_VIII
 
 ROBOT = models_dir() / "hsr8" / "hsr8.xml"
