@@ -32,7 +32,7 @@ test-all: setup  ## all tests, including the slow studies
 interpreters: setup  ## system tests, runs and exports with every further supported Python found here
 	@$(PY) scripts/check_interpreters.py
 
-benchmarks: setup  ## results, about three hours, resumable: make benchmarks ONLY="gaze planners"
+benchmarks: setup  ## results, about five hours, resumable: make benchmarks ONLY="gaze planners"
 	@$(PY) scripts/benchmarks.py $(if $(ONLY),--only $(ONLY)) $(ARGS)
 
 docs: setup  ## the manual in build/docs (installs Sphinx the first time)

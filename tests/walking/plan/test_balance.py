@@ -124,6 +124,22 @@ def test_small_errors_need_no_step_and_larger_ones_grow_from_nothing(model, stri
     assert capture.ticks == 40
 
 
+def test_an_error_beyond_the_dead_zone_keeps_the_timing_where_the_ankles_have_no_room(
+    model, strides_of
+):
+    """The planned ZMP is at the edge of the sole; the landing alone captures the error."""
+    robot, landing = model.robot, landing_of(LEFT, strides_of(STILL))
+    length = float(robot.support.half_length) - STABILIZER.sole_margin
+    zone = STABILIZER.capture_dead_zone * length
+    zmp = (LEFT.x + float(robot.support.centre) + length, zmp_under(LEFT, robot)[1])
+    dcm = (zmp[0] + AHEAD[0], zmp[1] + AHEAD[1])
+    for error in (zone + 0.002, zone + 0.005):
+        capture = capture_step(LEFT, landing, (error, 0.0), zmp, dcm, 30, robot)
+        assert capture.needed
+        assert capture.landing.x > landing.x
+        assert capture.ticks == 30
+
+
 @pytest.mark.parametrize("yaw", [0.0, 0.6])
 def test_the_room_of_the_ankles_is_from_the_planned_zmp_to_the_edge(model, yaw):
     robot, foot = model.robot, Foothold(True, 0.3, 0.1, yaw)
