@@ -23,6 +23,7 @@ from walking.plan.balance import (
     place_foot,
     zmp_shift,
 )
+from walking.plan.decision import detect_touchdown
 from walking.plan.departure import end_capture
 from walking.plan.footsteps import (
     STILL,
@@ -282,6 +283,20 @@ def test_a_capture_step_follows_the_error_and_reports_balance(
     landing = foothold(walk.gait.landing)
     within = reachable(support_foot(walk.gait), landing, 0.0, 0.0, robot)
     assert is_same(within, landing, robot)
+
+
+@pytest.mark.parametrize(("ratio", "ends"), [(0.1, False), (0.9, False), (1.1, True)])
+def test_an_early_touchdown_ends_the_support_only_beyond_the_margin(models, make_walk, ratio, ends):
+    walk, velocity = Walk(models["preview"], make_walk), (0.1, 0.0, 0.0)
+    walk.to_swing(velocity, 0.7)
+    state, robot = walk.walk, walk.model.robot
+    margin = float(robot.support.half_length) - STABILIZER.sole_margin
+    state.error.dcm_x, state.error.dcm_y = ratio * margin, 0.0
+    state.body.feet[swing_of(walk.gait)].load = 10.0 * robot.estimator.contact_force
+    for _ in range(int(robot.estimator.contact_ticks)):
+        detect_touchdown(state, robot)
+    assert walk.gait.landed_early
+    assert (phase_of(walk.gait).ticks_left <= 1) is ends
 
 
 def test_during_a_capture_step_the_plan_goes_on_without_the_body_until_touchdown(models, make_walk):
