@@ -9,7 +9,7 @@ import numpy as np
 
 from walking.body.robot_model import RobotModel
 from walking.command import Command, CommandLimits, CommandState, HeadTarget, Limit, VelocityCommand
-from walking.engine import WalkingEngine
+from walking.engine import PlanDiverged, WalkingEngine
 from walking.estimate.odometry import LegOdometry
 from walking.get_up import GetUp, Outcome
 from walking.parameters import CONTROL_PERIOD, GRAVITY, WalkingParameters
@@ -66,8 +66,9 @@ class Engine(Protocol):
 class Walker:
     """Walking engine with fall recovery: call `step` once per control tick of 5 ms.
 
-    After a fall a new engine starts from standing. It keeps the odometry, whose covariance grows by
-    the unmeasured motion of the fall.
+    After a fall a new engine starts from standing, and also if the plan diverges, say between two
+    people who squeeze the robot. It keeps the odometry, whose covariance grows by the unmeasured
+    motion.
 
     Args:
         robot: model of the robot.
@@ -129,7 +130,11 @@ class Walker:
         """
         get_up, self._command = self.get_up, command
         if get_up is None:
-            targets = self._engine.step(sensors, command, head)
+            try:
+                targets = self._engine.step(sensors, command, head)
+            except PlanDiverged:
+                self._stand()
+                targets = self._engine.step(sensors, command, head)
             if self._parameters.get_up.enabled and self._engine.fallen:
                 angles = targets.setpoint
                 self.get_up = GetUp(self._robot, self._parameters.get_up, angles)

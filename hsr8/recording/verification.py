@@ -84,12 +84,10 @@ def recompute_physics(run: Run) -> Recomputed:
     layout = draw_layout(scenario, run.seed)
     body = build_body(scenario, run.seed, layout, build_model(scenario, layout))
     setpoints = run.ticks["setpoint"]
-    sent = not (len(setpoints) and np.isnan(setpoints[-1]).all())
-    if not sent:
-        setpoints = setpoints[:-1]
+    if len(setpoints) and np.isnan(setpoints[-1]).all():
+        setpoints = setpoints[:-1]  # a run that ends before a tick is applied
     due = run.seconds["tick"].tolist()
-    # A plan that diverges sends no setpoints.
-    diverged = sent and run.manifest.get("exit_reason") == "diverged"
+    diverged = run.manifest.get("exit_reason") == "diverged"
     if diverged and due:
         due[-1] += 1  # the hash follows the tick that diverged, which is not counted
     ticks = 0

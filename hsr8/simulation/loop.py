@@ -32,7 +32,6 @@ from hsr8.world.camera.head_camera import HeadCamera
 from hsr8.world.field.generator import draw_world
 from hsr8.world.truth.truth import Truth
 from navigation.decision import GazeDecision, MotionDecision
-from walking.engine import PlanDiverged
 from walking.parameters import CONTROL_PERIOD
 from walking.state import JointTargets, Phase
 
@@ -49,19 +48,17 @@ class _BegunTick:
     Attributes:
         seconds: states with hashes at its start.
         sensed: sensor readings.
-        targets: setpoints of the walking engine; None if its plan diverged.
+        targets: setpoints of the walking engine.
         walking_time: wall time of the walking engine [s].
         situation: situation that the robot decides in; None without a decision.
-        diverged: reason why the plan diverged; empty if it did not.
         motion, gaze: decisions that replace those of the robot.
     """
 
     seconds: list[Second]
     sensed: SensorFrame
-    targets: JointTargets | None
+    targets: JointTargets
     walking_time: float
     situation: Situation | None
-    diverged: str = ""
     motion: MotionDecision | None = None
     gaze: GazeDecision | None = None
 
@@ -309,17 +306,13 @@ class Simulation:
         number, robot = self.tick, self._robot
         seconds = [self._mark()] if number % TICKS_PER_SECOND == 0 else []
         sensed = self._sense(number)
-        targets, diverged = None, ""
         started = perf_counter()
-        try:
-            targets = robot.walk(sensed)
-        except PlanDiverged as error:
-            diverged = f"{error}, at tick {number} (t = {self._body.time:.3f} s)"
+        targets = robot.walk(sensed)
         walking_time = perf_counter() - started
-        situation = None if diverged else robot.perceive(sensed)
+        situation = robot.perceive(sensed)
         if number % self._record_ticks == 0:
             self.truth = self._body.truth()
-        return _BegunTick(seconds, sensed, targets, walking_time, situation, diverged)
+        return _BegunTick(seconds, sensed, targets, walking_time, situation)
 
     def _complete(self, begun: _BegunTick) -> Tick:
         number, seconds, targets = self.tick, begun.seconds, begun.targets
@@ -328,10 +321,7 @@ class Simulation:
         walker, setpoint = self._robot.walking, self._not_sent
         record, events = self._record(number)
         reason = self._reason(number)
-        if targets is None:
-            reason = "diverged"
-            events.append(Event(self._body.time, reason, begun.diverged))
-        elif not reason:
+        if not reason:
             targets = self._servo_faults.apply_fault(targets, number)
             setpoint = self._body.setpoints(targets).copy()
             reason, diverged = self._apply(targets)

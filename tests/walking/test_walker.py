@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from walking.command import CommandLimits, HeadTarget, Limit, VelocityCommand
-from walking.engine import WalkingEngine
+from walking.engine import PlanDiverged, WalkingEngine
 from walking.get_up import Outcome
 from walking.parameters import GetUpParameters, WalkingParameters
 from walking.state import Phase
@@ -77,3 +77,24 @@ def test_once_up_it_goes_on_with_the_odometry_and_the_count_of_steps(robot, idea
     assert hidden[0, 0] == pytest.approx(RISING.get_up.displacement_sigma**2, rel=0.1)
     walk(walker, standing, 400)
     assert walker.state().step_count > after.step_count
+
+
+def test_a_plan_that_diverges_starts_again_from_standing(robot, ideal_body):
+    class Diverging(WalkingEngine):
+        def step(self, *inputs):
+            targets = super().step(*inputs)
+            if self.state().step_count == 3 and not engines[1:]:
+                raise PlanDiverged("far from the feet")
+            return targets
+
+    def make(odometry):
+        engines.append(Diverging(robot, WalkingParameters(), odometry))
+        return engines[-1]
+
+    engines = []
+    walker = Walker(robot, WalkingParameters(), make)
+    walk(walker, ideal_body, 1000)
+    after = walker.state()
+    assert len(engines) == 2
+    assert after.step_count == 3 + engines[1].state().step_count > 5
+    assert after.odometry.covariance[0, 0] > RISING.get_up.displacement_sigma**2

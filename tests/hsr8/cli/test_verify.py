@@ -10,7 +10,6 @@ from hsr8.errors import SimulationDiverged
 from hsr8.recording.run import open_run
 from hsr8.robots.file.locate import find_description
 from hsr8.world.body.kinematic import KinematicBody
-from walking.engine import PlanDiverged, WalkingEngine
 
 RUN = ["run", "quick", "--body", "kinematic", "--camera", "analytic", "--duration", "2"]
 
@@ -214,27 +213,6 @@ def test_a_diverged_run_diverges_again_at_the_same_tick(tmp_path, monkeypatch, r
     assert stages(capsys)["physics"]["count"] == len(run.ticks)
     rewrite(run.path, "seconds", "world", len(run.seconds) - 1, flipped)
     assert entry(["verify", str(run.path)]) == 1
-
-
-def test_a_planned_walk_that_diverges_ends_the_run_with_its_time(tmp_path, monkeypatch, capsys):
-    step, ticks = WalkingEngine.step, iter(range(1000))
-
-    def diverging(self, *inputs):
-        if next(ticks) == 299:
-            raise PlanDiverged("the planned walk diverged")
-        return step(self, *inputs)
-
-    monkeypatch.setattr(WalkingEngine, "step", diverging)
-    assert entry([*RUN[:-2], "--duration", "4", "--quiet", "--out", str(tmp_path)]) == 3
-    shown = capsys.readouterr()
-    assert "the planned walk diverged" in shown.err
-    assert "Traceback" not in shown.err
-    run = open_run(tmp_path)
-    assert (run.manifest["exit_reason"], run.events["kind"][-1]) == ("diverged", "diverged")
-    assert run.events["time"][-1] == pytest.approx(run.ticks["time"][-1])
-    assert np.isnan(run.ticks["setpoint"][-1]).all()
-    assert entry(["verify", str(run.path), "--json"]) == 0
-    assert stages(capsys)["physics"]["count"] == len(run.ticks) - 1
 
 
 def test_physics_that_diverges_only_in_the_replay_is_different(run, monkeypatch, capsys):
