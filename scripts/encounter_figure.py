@@ -37,6 +37,16 @@ CASES = {
     "b": ("fig4b", "(b) inside the band: escape", {"escape"}, 24.0),
     "c": ("fig4c", "(c) definite collision: another path", {"path_change"}, 26.0),
 }
+DRAWN = {
+    "c": (
+        "navigation.planner.paper.d_e=0.15",
+        "navigation.planner.paper.d_b=0.30",
+        "navigation.planner.paper.k_r=0.30",
+        "navigation.planner.paper.omega_dist=12",
+        "navigation.univector.eta_vo=0.5",
+    )
+}
+"""Wide bands and a long virtual path, as the paper draws (c); those of the profile are short."""
 LARGE = 0.10  # radius of a virtual obstacle worth an image [m]
 STAMP = 4.0  # between two drawn positions [s]
 
@@ -65,9 +75,10 @@ class Case:
 def case(letter: str) -> Case:
     """Run one case with and without the scheme and find the decision to show."""
     name, title, situations, duration = CASES[letter]
+    settings = (PAPER, *STAND_INS, *DRAWN.get(letter, ()))
     ran = (
-        run(name, (PAPER, *STAND_INS), 0, duration),
-        run(name, (PAPER, *STAND_INS, *WITHOUT), 0, duration),
+        run(name, settings, 0, duration),
+        run(name, (*settings, *WITHOUT), 0, duration),
     )
     v_max = ran[0].scenario.robot.speed.vx
     horizon = ran[0].scenario.navigation.planner.paper.horizon
@@ -224,8 +235,11 @@ def _paths(axes: Axes, shown: Case) -> None:
 
 
 def _gaps(axes: Axes, shown: Case) -> None:
-    for ran, color in zip(shown.ran, (ROBOT, STILL), strict=True):
-        axes.plot(ran.time, clearance(ran), color=color, linewidth=1.3)
+    gaps = [clearance(ran) for ran in shown.ran]
+    for ran, gap, color in zip(shown.ran, gaps, (ROBOT, STILL), strict=True):
+        axes.plot(ran.time, gap, color=color, linewidth=1.3)
+    least = [f"{100.0 * gap.min():.0f} cm" for gap in gaps]
+    axes.set_title(f"minimum {least[0]}, without the scheme {least[1]}", fontsize=8)
     axes.axhspan(-1.0, 0.0, color=MOVER, alpha=0.15, linewidth=0)
     axes.axvline(shown.frame.time, color=ROBOT, linewidth=0.8, linestyle=":")
     axes.set(xlabel="time [s]", ylabel="clearance [m]", ylim=(-0.2, 1.6))

@@ -43,6 +43,16 @@ class FieldPanel:
     arrived: NDArray[np.bool_]
     clearance: Array
 
+    @property
+    def title(self) -> str:
+        """The name, and how closely the paths pass if all lead to the goal."""
+        if not self.arrived.all():
+            return self.name
+        least, touching = 100.0 * float(self.clearance.min()), int((self.clearance < 0.0).sum())
+        if not touching:
+            return f"{self.name}: all {len(self.paths)} paths at least {least:.0f} cm clear"
+        return f"{self.name}: {touching} of {len(self.paths)} paths touch, by up to {-least:.0f} cm"
+
 
 def grid() -> Array:
     """Points of the arrows (n, 2) [m]."""
@@ -106,7 +116,7 @@ def draw() -> Figure:
         made = figure(11.0, 7.6, "Fig. 3  Univector field, arrival heading π/6")
         points = grid()
         for axes, panel in zip(made.subplots(2, 2).ravel(), panels(), strict=True):
-            axes.set_title(panel.name)
+            axes.set_title(panel.title)
             u = panel.arrows
             acts = np.abs(u).sum(axis=1) > 0.0
             axes.quiver(
