@@ -15,7 +15,7 @@ from navigation.transform import in_robot
 Array = NDArray[np.float64]
 Rows = NDArray[np.record]
 
-MAX_AGE = 1e3  # of ground never seen [s]
+MAX_AGE = 1e3  # age of ground that was never seen [s]
 
 
 @compiled
@@ -29,7 +29,7 @@ def set_look(
         point: position in R [m].
         weight: weight of the look [1].
         shadow: distance up to which the body hides the floor, see `CameraModel` (n,) [m].
-        p: parameters; a camera that is not above the obstacles sees their feet only.
+        p: parameters; `obstacle_height` is 0 for a camera below the tops of the obstacles.
     """
     distance = sqrt(point[0] * point[0] + point[1] * point[1])
     look.x, look.y, look.weight, look.urgency, look.rate = point[0], point[1], weight, 1.0, 0.0
@@ -94,13 +94,13 @@ def track_looks(
     (pose, course), count = robot, 0
     for i in range(len(tracks)):
         track = tracks[i]
-        share = p.static_weight if track.motion == STATIC else 1.0
+        track_weight = p.static_weight if track.motion == STATIC else 1.0
         approach, age = approach_speed(track, p), visual_age(track, p)
         for k in range(1 if track.cloud < 0 else clouds.shape[2]):
-            x, y, weight = track.position[0], track.position[1], share
+            x, y, weight = track.position[0], track.position[1], track_weight
             if track.cloud >= 0:
                 cloud = clouds[track.cloud]
-                x, y, weight = cloud[X, k], cloud[Y, k], share * cloud[WEIGHT, k]
+                x, y, weight = cloud[X, k], cloud[Y, k], track_weight * cloud[WEIGHT, k]
             x, y = in_robot(pose, x, y)
             distance = sqrt(x * x + y * y)
             if distance > p.attention_range:
@@ -120,12 +120,14 @@ def track_looks(
 def ground_looks(
     looks: Rows, ground: Array, ages: Array, pose: Array, shadow: Array, p: np.record
 ) -> int:
-    """Write the looks at the ground ahead: its age over the time until the robot is there.
+    """Write the looks at the ground ahead; return their number.
+
+    The urgency is the age of the ground over the time until the robot is there.
 
     Args:
         looks: records of type `Look`, enough for all.
         ground: points in W (n, 2) [m].
-        ages: times since they were seen (n,) [s].
+        ages: times since they were seen, infinite if never (n,) [s].
         pose: x, y, heading of R in W (3,) [m, m, rad].
         shadow: see `set_look`.
         p: parameters.
@@ -140,7 +142,9 @@ def ground_looks(
 
 @compiled
 def beacon_looks(looks: Rows, beacons: Array, pose: Array, value: float, p: np.record) -> int:
-    """Write the looks at beacons, of which a view must show the seam of both colours halfway up.
+    """Write the looks at the beacons in reach; return their number.
+
+    A view must show the seam of the two colours of a beacon, halfway up.
 
     Args:
         looks: records of type `Look`, enough for all.
@@ -165,7 +169,7 @@ def beacon_looks(looks: Rows, beacons: Array, pose: Array, value: float, p: np.r
 
 @compiled
 def known_discs(tracks: Rows, pose: Array, p: np.record) -> Array:
-    """Return the tracks that hide the floor behind them, relative to R; see `relative_discs`."""
+    """Return the tracks that hide the floor behind them, in R, see `relative_discs` (m, 4)."""
     discs, count = np.empty((len(tracks), 4)), 0
     for i in range(len(tracks)):
         track = tracks[i]
@@ -201,14 +205,12 @@ def looks_of(
         shadow: see `set_look`.
         parameters: record of the parameters (1,).
     """
-    p = parameters[0]
-    pose, _ = robot
+    p, pose = parameters[0], robot[0]
     size = len(cells) + len(tracks) * max(1, clouds.shape[2]) + len(ground[0]) + len(beacons[0])
-    looks, count = np.empty(size, Look), 0
+    looks, count = np.empty(size, Look), len(cells)
     for i in range(len(cells)):
         point = in_robot(pose, cells[i, 0], cells[i, 1])
         set_look(looks[i], point, cells[i, 2], shadow, p)
-    count = len(cells)
     count += track_looks(looks[count:], tracks, clouds, robot, shadow, p)
     count += ground_looks(looks[count:], ground[0], ground[1], pose, shadow, p)
     count += beacon_looks(looks[count:], beacons[0], pose, beacons[1], p)
