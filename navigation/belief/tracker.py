@@ -22,7 +22,7 @@ from navigation.belief.tracked_object import (
     published,
     search_radius,
 )
-from navigation.belief.tracks import STATIC, UNKNOWN, VX, Tracks, X, Y
+from navigation.belief.tracks import STATIC, UNKNOWN, VX, WEIGHT, Tracks, X, Y
 from navigation.belief.visibility import (
     Mask,
     Viewpoint,
@@ -50,7 +50,7 @@ class Tracker:
 
     def __init__(self, parameters: TrackingParameters, rng: np.random.Generator) -> None:
         self._parameters = parameters
-        self._limits = record(parameters)
+        self._record = record(parameters)
         self._rng = rng
         # Costs of a track birth on unseen floor and on floor seen empty.
         self._birth_cost = 2.0 * log(2.0 * pi * parameters.birth_density)
@@ -78,7 +78,7 @@ class Tracker:
             on_free_floor: whether each detection is on floor seen empty before (m,): a new obstacle
                 there has moved.
         """
-        p, rows = self._limits, detections.rows
+        p, rows = self._record, detections.rows
         dt = 0.0 if self._time is None else time - self._time
         self._time = time
         labels = self._labels_of(detections)
@@ -107,10 +107,10 @@ class Tracker:
 
     def _predict(self, dt: float) -> None:
         count, rng = self._parameters.particles, self._rng
-        predict_all(self._objects, dt, self._limits)
+        predict_all(self._objects, dt, self._record)
         for i in np.flatnonzero(self._objects["lost"]).tolist():
             noise, draws = rng.standard_normal(count), rng.random(count)
-            particles.advance(self._clouds[i], noise, draws, dt, self._limits)
+            particles.advance(self._clouds[i], noise, draws, dt, self._record)
 
     def _add(self, born: Rows) -> None:
         """Add new objects."""
@@ -133,7 +133,7 @@ class Tracker:
         if (self._objects["last_time"] == time).all():
             return
         p, clouds, rng = self._parameters, self._clouds, self._rng
-        fates = misses(self._objects, clouds, detections.rows, *viewpoint, time, dt, self._limits)
+        fates = misses(self._objects, clouds, detections.rows, *viewpoint, time, dt, self._record)
         for i in np.flatnonzero(fates >= SPAWNS).tolist():
             if fates[i] == REFUTED:
                 clouds[i] = particles.resample(clouds[i], p, rng)
@@ -150,12 +150,12 @@ class Tracker:
         refuted = objects["lost"] & (objects["existence"] < p.min_existence)
         if not refuted.any():
             return
-        # An undecided one neither moved nor is at its position: most likely a false detection.
+        # An undecided object neither moved nor is at its position: a likely false detection.
         kept = ~(refuted & (objects["motion"] == UNKNOWN))
         for i in np.flatnonzero(refuted & kept).tolist():
             o = objects[i]
             velocity = imm.mean(o["weights"], o["states"])[2:4]
-            radius = search_radius(o, time, self._limits[0])
+            radius = search_radius(o, time, self._record[0])
             cloud = particles.redistribute(o["last_seen"], radius, velocity, p, self._rng)
             hidden = np.flatnonzero(~self._in_clear_view(cloud, detections, viewpoint))
             hidden = hidden[: p.particles]
@@ -163,14 +163,14 @@ class Tracker:
             if len(hidden) < p.particles:
                 kept[i] = False
             else:
-                self._clouds[i, :5] = cloud[:5, hidden]
-                self._clouds[i, 5] = 1.0 / p.particles
+                self._clouds[i, :WEIGHT] = cloud[:WEIGHT, hidden]
+                self._clouds[i, WEIGHT] = 1.0 / p.particles
         self._keep(kept)
 
     def _in_clear_view(self, cloud: Array, detections: Detections, viewpoint: Viewpoint) -> Mask:
         """Return whether each particle of a cloud (6, m) is in clear view (m,)."""
         eye, points = viewpoint.eye, np.ascontiguousarray(cloud[X : Y + 1].T)
-        discs = occluders(self._objects, detections.rows, eye, self._limits)
+        discs = occluders(self._objects, detections.rows, eye, self._record)
         return clearly_visible(points, eye[0], viewpoint.shadow, discs)
 
 
@@ -193,7 +193,15 @@ def correct_all(
 
 @compiled
 def is_part_of(o: np.record, d: np.record, label: int, time: float, p: np.record) -> bool:
-    """Return whether a detection lies in an object that was detected in the same frame."""
+    """Return whether a detection lies in an object of its colour, detected in its frame.
+
+    Args:
+        o: record of type `ObjectRecord`.
+        d: record of type `DetectionRecord`.
+        label: colour class of the detection.
+        time: time of the frame [s].
+        p: parameters of tracking.
+    """
     if o.label != label or o.last_time != time:
         return False
     x, y = position_of(o)
@@ -212,7 +220,9 @@ def births(
     time: float,
     parameters: Rows,
 ) -> Rows:
-    """Return a tentative track, without a number, at each unassigned detection.
+    """Return tentative tracks, without numbers, at the unassigned detections within range.
+
+    A detection that lies in an object of its colour and frame is a part of that object.
 
     Args:
         objects: records of type `ObjectRecord` (n,).
@@ -227,12 +237,12 @@ def births(
     born, count = np.zeros(len(detections), ObjectRecord), 0
     for j in range(len(detections)):
         d = detections[j]
-        part = assigned[j] or d.distance > p.birth_range
+        excluded = assigned[j] or d.distance > p.birth_range
         for i in range(len(objects)):
-            part = part or is_part_of(objects[i], d, labels[j], time, p)
+            excluded = excluded or is_part_of(objects[i], d, labels[j], time, p)
         for i in range(count):
-            part = part or is_part_of(born[i], d, labels[j], time, p)
-        if not part:
+            excluded = excluded or is_part_of(born[i], d, labels[j], time, p)
+        if not excluded:
             born[count].label = labels[j]
             begin(born[count], d, on_free_floor[j], time, p)
             count += 1
