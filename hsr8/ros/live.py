@@ -34,7 +34,7 @@ class LiveTopics:
     """Topics of a run in a process that publishes them: a context for the run.
 
     Args:
-        network: place in the network.
+        network: domain and endpoints.
         setup: constants of the run.
         robot: the robot.
         scale: scale of the world [1].

@@ -1,4 +1,4 @@
-"""The process that publishes: it makes the messages, and the Zenoh session lives in it."""
+"""Publishing process of live topics: it makes the messages and holds the Zenoh session."""
 
 import json
 import re
@@ -19,13 +19,13 @@ from hsr8.ros.graph import PUBLISHER, SUBSCRIPTION, Endpoint, attachment, node_t
 from hsr8.ros.inputs import DRIVEN, INPUTS, Command, Input
 
 HERE = "tcp/127.0.0.1:7447"  # where nodes of ROS 2 look for their router
-ANYWHERE = "tcp/127.0.0.1:0"
-QUALITY = 75  # of the compressed images [%]
+ANYWHERE = "tcp/127.0.0.1:0"  # at any free port of this machine
+QUALITY = 75  # JPEG quality of the compressed images, from 0 to 100
 
 
 @dataclass(frozen=True, slots=True)
 class Network:
-    """Place in a network.
+    """Domain and endpoints of the node in a network.
 
     Attributes:
         domain: ROS domain.
@@ -42,7 +42,8 @@ class Network:
     def config(self) -> Any:
         """Return the configuration of Zenoh.
 
-        A router, as nodes of ROS 2 expect one, but for a connection to another router.
+        The session is a router, which nodes of ROS 2 expect. It is a peer if it only connects to
+        another router.
 
         Raises:
             zenoh.ZError: an endpoint is invalid.
@@ -71,14 +72,16 @@ class Objects(dict[str, Any]):
 
 def rows_of(values: Mapping[str, Any]) -> Rows:
     """Return the values of one row by column as rows; a mapping has the columns of its objects."""
-    return {
-        name: Objects({part: _array(column) for part, column in value.items()})
-        if isinstance(value, Mapping)
-        else [value]
-        if value is None or isinstance(value, bytes)
-        else np.asarray(value)[None]
-        for name, value in values.items()
-    }
+    return {name: _column(value) for name, value in values.items()}
+
+
+def _column(value: Any) -> Any:
+    """Return the column of one row with a value."""
+    if isinstance(value, Mapping):
+        return Objects({name: _array(column) for name, column in value.items()})
+    if value is None or isinstance(value, bytes):
+        return [value]
+    return np.asarray(value)[None]
 
 
 def _array(column: Any) -> NDArray[Any]:
@@ -89,7 +92,7 @@ class Session:
     """Node with its publishers and subscriptions.
 
     Args:
-        network: place in the network.
+        network: domain and endpoints.
         translator: makes the messages.
 
     Attributes:
@@ -178,11 +181,11 @@ class Session:
 def serve(network: Network, setup: Setup, ticks: Connection, parent: Connection) -> None:
     """Publish the rows of ticks until their sender closes or ends.
 
-    It sends the parent ``ready`` or ``failed``, then commands and refusals, and at the end the
-    number of messages.
+    The process sends the parent ``ready`` or ``failed``, then commands and refusals, and at the
+    end the number of messages.
 
     Args:
-        network: place in the network.
+        network: domain and endpoints.
         setup: constants of the run.
         ticks: sends lists of table and row, one for each tick.
         parent: receives the answers.
@@ -192,7 +195,7 @@ def serve(network: Network, setup: Setup, ticks: Connection, parent: Connection)
     with suppress(BrokenPipeError):  # the parent ended
         try:
             session = Session(network, Translator(messages, setup))
-        except Exception as error:  # zenoh.ZError, which is not importable without the extra
+        except Exception as error:  # mostly zenoh.ZError; the parent reports any
             parent.send(("failed", re.sub(r" at \S+\.rs:\d+\.?", "", str(error))))
             return
         parent.send(("ready", ""))
