@@ -65,8 +65,8 @@ def points_to_robot(pose: Sequence[float] | Array, points: Array) -> Array:
     return in_robot
 
 
-def points_to_world(pose: Array, points: Array) -> Array:
-    """Transform points (n, 2) from R of the robot at `pose` (3,) to W [m]."""
+def points_to_world(pose: Sequence[float] | Array, points: Array) -> Array:
+    """Transform points (n, 2) from R of the robot at `pose` to W [m]."""
     c, s = cos(pose[2]), sin(pose[2])
     in_world: Array = points @ np.array([[c, s], [-s, c]]) + pose[:2]
     return in_world

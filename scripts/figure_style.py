@@ -1,4 +1,4 @@
-"""How the paper's figures look, and what several of them draw."""
+"""Style of the figures and images, and the marks that several of them share."""
 
 from collections.abc import Sequence
 from math import cos, pi, sin, tan
@@ -6,11 +6,11 @@ from typing import Any
 
 from hsr8.show.walk_figure import STYLE as WALK_STYLE
 from hsr8.show.walk_panels import BLUE, GREEN, ORANGE, PURPLE, VERMILION
+from navigation.transform import points_to_world
 
 import numpy as np
 from matplotlib import rc_context
 from matplotlib.axes import Axes
-from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 from matplotlib.patches import Circle, Polygon
 from numpy.typing import NDArray
@@ -22,48 +22,46 @@ STYLE |= {"xtick.labelsize": 7.5, "ytick.labelsize": 7.5, "axes.titlelocation": 
 ROBOT, MOVER, STILL, GOAL, VIEW = BLUE, VERMILION, "#8A8A8A", ORANGE, "#E8B93C"
 VIRTUAL, CONFIDENT = PURPLE, GREEN
 FAR = 1.6  # drawn length of the gaze window where it reaches the horizon [m]
-ARROW = np.array([[0.16, 0.0], [-0.10, 0.09], [-0.05, 0.0], [-0.10, -0.09]])  # the robot [m]
+ARROW = np.array([[0.16, 0.0], [-0.10, 0.09], [-0.05, 0.0], [-0.10, -0.09]])  # outline in R [m]
 
 
 def figure(width: float, height: float, title: str) -> Figure:
-    """An empty figure; draw into it within `rc_context(STYLE)`."""
+    """Return an empty figure with a title; draw into it within `styled`.
+
+    Args:
+        width: width [inch].
+        height: height [inch].
+        title: title at the top left.
+    """
     made = Figure(figsize=(width, height), layout="constrained")
-    FigureCanvasAgg(made)
     made.suptitle(title, fontsize=11, x=0.01, ha="left", weight="bold")
     return made
 
 
 def styled() -> Any:
-    """The style of all figures, as a context."""
+    """Return a context with the style of all figures."""
     return rc_context(STYLE)
 
 
 def disc(axes: Axes, at: Sequence[float], radius: float, **look: Any) -> None:
-    """A circle in the scale of the axes."""
+    """Draw a circle of a radius in the unit of the axes."""
     axes.add_patch(Circle((float(at[0]), float(at[1])), radius, **look))
 
 
-def placed(points: Array, pose: Sequence[float]) -> Array:
-    """Points of R (n, 2) where `pose` puts them [m]."""
-    x, y, yaw = pose
-    c, s = cos(yaw), sin(yaw)
-    return np.array([x, y]) + points @ np.array([[c, s], [-s, c]])
-
-
 def robot(axes: Axes, pose: Sequence[float], scale: float = 1.0, **look: Any) -> None:
-    """The robot as an arrow head of so many times its size."""
+    """Draw the robot as an arrow head at `pose` (3,) [m, m, rad], `scale` times as large."""
     look = {"facecolor": ROBOT, "edgecolor": "white", "linewidth": 0.4, "zorder": 6} | look
-    axes.add_patch(Polygon(placed(scale * ARROW, pose), closed=True, **look))
+    axes.add_patch(Polygon(points_to_world(pose, scale * ARROW), closed=True, **look))
 
 
 def window(pan: float, tilt: float, fov: tuple[float, float], height: float) -> Array:
-    """Gaze window on the floor in R (n, 2) [m], cut off at `FAR`.
+    """Return the outline of the gaze window on the floor in R (n, 2) [m], cut off at `FAR`.
 
-    The image's border is followed and each of its rays is met with the floor.
+    Its points are the intersections of the rays of the image's border with the floor.
 
     Args:
-        pan: left positive [rad].
-        tilt: up positive [rad].
+        pan: pan of the camera, left positive [rad].
+        tilt: tilt of the camera, up positive [rad].
         fov: horizontal and vertical field of view [rad].
         height: height of the camera [m].
     """
@@ -84,7 +82,7 @@ def window(pan: float, tilt: float, fov: tuple[float, float], height: float) -> 
 
 
 def square(axes: Axes, x: tuple[float, float], y: tuple[float, float], frame: str = "") -> None:
-    """Equal scales, limits and labels with units."""
+    """Set equal scales, limits [m] and labels, with the name of the frame if there is one."""
     axes.set_aspect("equal")
     axes.set_xlim(*x)
     axes.set_ylim(*y)
@@ -94,7 +92,7 @@ def square(axes: Axes, x: tuple[float, float], y: tuple[float, float], frame: st
 
 
 def covariance(axes: Axes, at: Sequence[float], matrix: Array, sigmas: float, **look: Any) -> None:
-    """An ellipse of so many standard deviations."""
+    """Draw the ellipse of `sigmas` standard deviations of a covariance (2, 2) [m²]."""
     value, vector = np.linalg.eigh(matrix)
     turn = np.linspace(0.0, 2.0 * pi, 60)
     half = sigmas * np.sqrt(np.maximum(value, 0.0))

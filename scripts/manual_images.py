@@ -27,6 +27,7 @@ from hsr8.simulation.decisions import FrameRecord
 from hsr8.simulation.loop import Simulation
 from hsr8.simulation.record import TickRecord
 from hsr8.world.field.generator import draw_world
+from navigation.transform import points_to_world
 from vision.detection import Detection
 
 import numpy as np
@@ -40,7 +41,6 @@ from figure_style import (
     covariance,
     disc,
     figure,
-    placed,
     robot,
     square,
     styled,
@@ -81,7 +81,7 @@ def view(axes: Axes, record: TickRecord, fov: float) -> None:
     frame = frame_of(record)
     angles = frame.context.view.pan + 0.5 * fov * np.linspace(-1.0, 1.0, 20)
     rim = 2.0 * np.stack([np.cos(angles), np.sin(angles)], axis=1)
-    points = placed(np.vstack([np.zeros((1, 2)), rim]), frame.belief.pose.tolist())
+    points = points_to_world(frame.belief.pose, np.vstack([np.zeros((1, 2)), rim]))
     axes.add_patch(Polygon(points, closed=True, facecolor=VIEW, alpha=0.25, zorder=0))
 
 
@@ -297,7 +297,7 @@ def footsteps() -> Figure:
     axes = made.subplots()
     for foot in feet.values():
         half = np.array([(1, 1), (-1, 1), (-1, -1), (1, -1)]) * (sole.half_length, sole.half_width)
-        corners = placed(half + np.array([sole.centre, 0.0]), (foot.x, foot.y, foot.yaw))
+        corners = points_to_world((foot.x, foot.y, foot.yaw), half + np.array([sole.centre, 0.0]))
         axes.add_patch(
             Polygon(corners, facecolor=ROBOT if foot.left else ORANGE, alpha=0.22, edgecolor=STILL)
         )

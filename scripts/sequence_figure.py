@@ -20,6 +20,7 @@ from navigation.belief.belief import Motion, Track
 from navigation.belief.tracks import Tracks
 from navigation.partial_evaluation import psi_obstacle
 from navigation.scene import extended_radius
+from navigation.transform import points_to_world
 from walking.body.robot_model import RobotModel
 
 import numpy as np
@@ -32,7 +33,6 @@ from figure_style import (
     VIRTUAL,
     disc,
     figure,
-    placed,
     robot,
     square,
     styled,
@@ -182,7 +182,7 @@ def _snapshot(axes: Axes, shown: Tour, frame: SimpleNamespace) -> None:
     earlier = records.at(np.linspace(frame.time - 8.0, frame.time, 20))
     movers = records["obstacle_positions"][:, len(shown.layout.static) :]
     fov = frame.fov[0], shown.scenario.camera.vertical_fov
-    visible = placed(window(*frame.head, fov, shown.height), frame.truth)
+    visible = points_to_world(frame.truth, window(*frame.head, fov, shown.height))
     axes.add_patch(Polygon(visible, closed=True, facecolor=VIEW, alpha=0.35, edgecolor="none"))
     for obstacle in shown.layout.static:
         disc(axes, obstacle.position, obstacle.radius, facecolor=STILL, edgecolor="none")
