@@ -124,8 +124,7 @@ def _write_world(
     if option == "--irsim":
         new.write_text(irsim_yaml(layout, scenario), encoding="utf-8")
     else:
-        image = path.with_suffix(IMAGE)
-        write_map(layout, new, drafts.enter_context(draft(image)), image.name)
+        write_map(layout, new, drafts.enter_context(draft(path.with_suffix(IMAGE))))
 
 
 def _require_new(targets: Mapping[str, Path]) -> None:

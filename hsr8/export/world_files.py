@@ -33,7 +33,8 @@ def irsim_yaml(layout: Layout, scenario: Scenario) -> str:
     """Return a world for IR-SIM: field, obstacles and beacons, movers, start and waypoints.
 
     The robot is a disc that moves in all directions at its speed limits. A mover follows the goals
-    along its lane; it neither yields nor appears, waits nor departs late. A crowd avoids by RVO.
+    along its lane from the start; it does not appear, depart later, wait or yield. A crowd avoids
+    by RVO.
 
     Args:
         layout: the world.
@@ -52,7 +53,7 @@ def irsim_yaml(layout: Layout, scenario: Scenario) -> str:
         "step_time": STEP,
         "sample_time": STEP,
     }
-    obstacles = [{**_disc(o), "color": _color(o)} for o in _standing(layout)]
+    obstacles = [{**_disc(o), "color": _color(o)} for o in _cylinders(layout)]
     obstacles += [_mover(mover, layout, scenario.duration) for mover in layout.movers]
     lines = ["world:", *(f"  {key}: {json.dumps(value)}" for key, value in world.items())]
     lines += ["robot:", f"  - {json.dumps(_robot(layout, scenario))}", "obstacle:"]
@@ -60,7 +61,8 @@ def irsim_yaml(layout: Layout, scenario: Scenario) -> str:
     return "\n".join(lines) + "\n"
 
 
-def _standing(layout: Layout) -> tuple[Obstacle | Beacon, ...]:
+def _cylinders(layout: Layout) -> tuple[Obstacle | Beacon, ...]:
+    """Return static obstacles and beacons."""
     return (*layout.static, *layout.beacons)
 
 
@@ -110,7 +112,7 @@ def _mover(mover: Obstacle, layout: Layout, duration: float) -> Table:
 
 
 def _goals(motion: MotionLaw, duration: float) -> tuple[list[tuple[float, float]], bool]:
-    """Return the goals along a lane in their order from time zero, and whether they repeat."""
+    """Return the goals along a lane, in order from time zero [m], and whether they repeat."""
     if isinstance(motion, Passage):
         return [motion.end], False
     if isinstance(motion, Shuttle):
@@ -124,39 +126,38 @@ def _goals(motion: MotionLaw, duration: float) -> tuple[list[tuple[float, float]
         return [(x + motion.radius * cos(a), y + motion.radius * sin(a)) for a in angles], True
     if isinstance(motion, Wander):
         first = int(motion.offset % motion.length // motion.side) + 1
-        track = [*motion.track[first:], *motion.track[:first]]
-        return track, True
+        return [*motion.track[first:], *motion.track[:first]], True
     return [motion.position(duration)], False
 
 
 def occupancy_map(layout: Layout) -> Image:
-    """Return the occupancy of the field, the first row at its largest y (rows, columns).
+    """Return the map of the field: OCCUPIED and FREE cells (rows, columns).
 
-    Static obstacles and beacons are occupied; movers are not in the map.
+    The first row is at the maximum y. Static obstacles and beacons are occupied; movers are not in
+    the map.
     """
     cell = CELL * layout.scale
-    standing = _standing(layout)
-    reach = [np.abs(c.position) + c.radius for c in standing]
+    cylinders = _cylinders(layout)
+    reach = [np.abs(c.position) + c.radius for c in cylinders]
     half = np.max([0.5 * np.array(layout.field_size), *reach], axis=0)
     columns, rows = np.ceil(2.0 * half / cell - 1e-9).astype(int).tolist()
     half_x, half_y = 0.5 * columns * cell, 0.5 * rows * cell
     x = -half_x + (np.arange(columns) + 0.5) * cell
     y = half_y - (np.arange(rows) + 0.5) * cell
     image = np.full((rows, columns), FREE, np.uint8)
-    for cylinder in standing:
+    for cylinder in cylinders:
         (cx, cy), radius = cylinder.position, cylinder.radius
         image[(x - cx) ** 2 + (y[:, None] - cy) ** 2 <= radius**2] = OCCUPIED
     return image
 
 
-def write_map(layout: Layout, file: Path, image_file: Path, image_name: str) -> None:
+def write_map(layout: Layout, file: Path, image_file: Path) -> None:
     """Write the map of the ROS map server: a YAML file and its image.
 
     Args:
         layout: the world.
         file: new YAML file.
-        image_file: new PGM file.
-        image_name: name of the image in the YAML file.
+        image_file: new PGM file; the YAML file refers to its name.
 
     Raises:
         OSError: a file cannot be written.
@@ -165,7 +166,7 @@ def write_map(layout: Layout, file: Path, image_file: Path, image_name: str) -> 
     rows, columns = image.shape
     image_file.write_bytes(f"P5\n{columns} {rows}\n255\n".encode() + image.tobytes())
     values = {
-        "image": image_name,
+        "image": image_file.name,
         "mode": "trinary",
         "resolution": cell,
         "origin": [-0.5 * columns * cell, -0.5 * rows * cell, 0.0],

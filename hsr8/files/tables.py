@@ -5,7 +5,7 @@ from typing import Any
 
 
 def table(head: Sequence[str], rows: Iterable[Sequence[str]]) -> list[str]:
-    """Return the lines of a table and an empty line."""
+    """Return the lines of a Markdown table, then an empty line; a `|` in a cell is escaped."""
     lines = [
         "| " + " | ".join(cell.replace("|", r"\|") for cell in cells) + " |"
         for cells in (head, *rows)
