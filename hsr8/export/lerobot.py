@@ -30,8 +30,9 @@ Statistics = dict[str, Any]
 VERSION = "v3.0"
 CAMERA = "observation.images.head"
 FILE = "chunk-{chunk_index:03d}/file-{file_index:03d}"
-FIRST = FILE.format(chunk_index=0, file_index=0)
-CODEC = ("libx264", {"preset": "veryfast", "crf": "21", "g": "10", "threads": "1"})
+FIRST = FILE.format(chunk_index=0, file_index=0)  # the only file of each part
+CODEC = "libx264"
+CODEC_OPTIONS = {"preset": "veryfast", "crf": "21", "g": "10", "threads": "1"}
 QUANTILES = {f"q{percent:02d}": percent / 100.0 for percent in (1, 10, 50, 90, 99)}
 PIXEL_STEP = 4  # of the pixels in the statistics, in both directions
 NUMBERS = ("timestamp", "frame_index", "episode_index", "index", "task_index")
@@ -43,8 +44,8 @@ class _Episode:
 
     Attributes:
         run: the run.
-        task: its scenario.
-        joints: names.
+        task: name of its scenario.
+        joints: names of the joints of the robot.
         period: interval between samples [s].
         values: numbers of each sample by feature (n, ...).
         images: JPEG of each sample; None in a run without images.
@@ -70,7 +71,7 @@ def write_lerobot(runs: Sequence[Run], folder: Path) -> int:
 
     Args:
         runs: one or more runs of one robot and camera.
-        folder: new.
+        folder: new folder.
 
     Raises:
         UsageError: a run cannot be read, has no camera frames or differs from the first.
@@ -85,20 +86,19 @@ def write_lerobot(runs: Sequence[Run], folder: Path) -> int:
                 f"{episodes[0].run.folder}"
             )
     tasks = sorted({episode.task for episode in episodes})
-    for part in ("meta/episodes", "data", f"videos/{CAMERA}"):
-        if part[0] != "v" or episodes[0].images is not None:
-            (folder / part / FIRST).parent.mkdir(parents=True)
+    for part in ("meta/episodes", "data"):
+        (folder / part / FIRST).parent.mkdir(parents=True)
     images = _video(folder, episodes) if episodes[0].images is not None else []
     numbers = _data(folder, episodes, tasks)
     statistics = [
         {key: _statistics(values) for key, values in episode.items()} for episode in numbers
     ]
-    for known, pixels in zip(statistics, images, strict=False):
-        known[CAMERA] = pixels
-    _meta(folder, episodes, tasks, statistics)
     merged = {key: _statistics(np.concatenate([n[key] for n in numbers])) for key in numbers[0]}
     if images:
-        merged[CAMERA] = _merged(images)
+        for features, pixels in zip(statistics, images, strict=True):
+            features[CAMERA] = pixels
+        merged[CAMERA] = _merged_statistics(images)
+    _meta(folder, episodes, tasks, statistics)
     atomic.write_json(folder / "meta/stats.json", merged)
     return sum(len(episode.values["action"]) for episode in episodes)
 
@@ -128,6 +128,7 @@ def _episode(run: Run) -> _Episode:
 
 
 def _values(ticks: Table, frames: Table, rows: NDArray[np.intp]) -> dict[str, Array]:
+    """Return the numbers of the frames `rows` (n,) by feature; missing ones become 0."""
     pose, variance = frames["pose"][rows], frames["pose_covariance"][rows]
     ahead = frames["target"][rows] - pose[:, :2]
     c, s = np.cos(pose[:, 2]), np.sin(pose[:, 2])
@@ -163,13 +164,13 @@ def _data(
     writer: pq.ParquetWriter | None = None
     for number, episode in enumerate(episodes):
         count = len(episode.values["action"])
-        own = np.arange(count)
+        frame_index = np.arange(count)
         columns: dict[str, NDArray[Any]] = {
             **episode.values,
-            "timestamp": (own * float(episode.period)).astype(np.float32),
-            "frame_index": own,
+            "timestamp": (frame_index * float(episode.period)).astype(np.float32),
+            "frame_index": frame_index,
             "episode_index": np.full(count, number),
-            "index": start + own,
+            "index": start + frame_index,
             "task_index": np.full(count, tasks.index(episode.task)),
         }
         table = pa.table({key: _column(value) for key, value in columns.items()})
@@ -191,8 +192,10 @@ def _column(values: NDArray[Any]) -> pa.Array:
 def _video(folder: Path, episodes: Sequence[_Episode]) -> list[Statistics]:
     """Write the images of all episodes as one video and return the statistics of each."""
     rate, result = 1 / episodes[0].period, []
-    with av.open(str(folder / "videos" / CAMERA / f"{FIRST}.mp4"), "w") as container:
-        stream = container.add_stream(CODEC[0], rate=rate, options=CODEC[1])
+    file = folder / "videos" / CAMERA / f"{FIRST}.mp4"
+    file.parent.mkdir(parents=True)
+    with av.open(str(file), "w") as container:
+        stream = container.add_stream(CODEC, rate=rate, options=CODEC_OPTIONS)
         stream.height, stream.width = episodes[0].size
         stream.pix_fmt = "yuv420p"
         for episode in episodes:
@@ -200,7 +203,7 @@ def _video(folder: Path, episodes: Sequence[_Episode]) -> list[Statistics]:
             for image in _decoded(episode):
                 container.mux(stream.encode(av.VideoFrame.from_ndarray(image, format="rgb24")))
                 pixels.append(image[::PIXEL_STEP, ::PIXEL_STEP].reshape(-1, 3))
-            result.append(_of_pixels(np.concatenate(pixels), len(pixels)))
+            result.append(_pixel_statistics(np.concatenate(pixels), len(pixels)))
         container.mux(stream.encode())
     return result
 
@@ -209,7 +212,7 @@ def _decoded(episode: _Episode) -> Iterator[Image]:
     for jpeg in episode.images or ():
         image = cv2.imdecode(np.frombuffer(jpeg, np.uint8), cv2.IMREAD_COLOR)
         assert image is not None
-        yield cv2.cvtColor(image, cv2.COLOR_BGR2RGB).astype(np.uint8)
+        yield cv2.cvtColor(image, cv2.COLOR_BGR2RGB)
 
 
 def _statistics(values: NDArray[Any]) -> Statistics:
@@ -226,14 +229,22 @@ def _statistics(values: NDArray[Any]) -> Statistics:
     }
 
 
-def _of_pixels(pixels: Image, count: int) -> Statistics:
-    """Return the statistics of each colour from 0 to 1, shape (3, 1, 1), of some images."""
+def _pixel_statistics(pixels: Image, count: int) -> Statistics:
+    """Return the statistics of each colour, from 0 to 1, of some images.
+
+    Args:
+        pixels: pixels of the images (n, 3).
+        count: number of the images.
+
+    Returns:
+        Statistics of shape (3, 1, 1), and `count`.
+    """
     statistics = _statistics(pixels / np.float32(255.0))
     shaped = {key: [[[v]] for v in values] for key, values in statistics.items()}
     return {**shaped, "count": [count]}
 
 
-def _merged(parts: Sequence[Statistics]) -> Statistics:
+def _merged_statistics(parts: Sequence[Statistics]) -> Statistics:
     """Return the statistics of all images; quantiles are means of those of the episodes."""
     counts = np.array([part["count"][0] for part in parts])
     stacks = {key: np.array([part[key] for part in parts]) for key in parts[0] if key != "count"}
@@ -257,7 +268,7 @@ def _meta(
 ) -> None:
     """Write the description of the dataset, its tasks and its episodes."""
     first, rows, start = episodes[0], [], 0
-    for number, (episode, known) in enumerate(zip(episodes, statistics, strict=True)):
+    for number, (episode, features) in enumerate(zip(episodes, statistics, strict=True)):
         end = start + len(episode.values["action"])
         row: dict[str, Any] = {
             "episode_index": number,
@@ -265,14 +276,14 @@ def _meta(
             "length": end - start,
             "dataset_from_index": start,
             "dataset_to_index": end,
-            **_place("data"),
-            **_place("meta/episodes"),
+            **_file_indices("data"),
+            **_file_indices("meta/episodes"),
         }
         if episode.images is not None:
-            row |= _place(f"videos/{CAMERA}")
+            row |= _file_indices(f"videos/{CAMERA}")
             row[f"videos/{CAMERA}/from_timestamp"] = float(start * episode.period)
             row[f"videos/{CAMERA}/to_timestamp"] = float(end * episode.period)
-        for key, parts in known.items():
+        for key, parts in features.items():
             row |= {f"stats/{key}/{name}": value for name, value in parts.items()}
         rows.append(row)
         start = end
@@ -297,8 +308,8 @@ def _meta(
     atomic.write_json(folder / "meta/info.json", info)
 
 
-def _place(part: str) -> dict[str, int]:
-    """Return the file of a part of an episode: the first of the first folder."""
+def _file_indices(part: str) -> dict[str, int]:
+    """Return the indices of the file `FIRST` with a part of an episode."""
     return {f"{part}/chunk_index": 0, f"{part}/file_index": 0}
 
 
