@@ -14,11 +14,12 @@ from math import atan2, hypot
 
 os.environ.setdefault("MUJOCO_GL", "egl")
 
+from hsr8.robots.loaded import load_robot
 from hsr8.robots.model.normal_form import HEAD_CAMERA
 from hsr8.scenario.loader import load_scenario
 from hsr8.simulation.loop import Simulation
 from hsr8.simulation.record import TickRecord
-from hsr8.world.model.assembly import FIELD
+from hsr8.world.model.index import ModelIndex
 
 import mujoco
 import numpy as np
@@ -28,21 +29,26 @@ from vision_truth import Array, Target, sights
 
 
 class Referee:
-    """Listens to a run and compares every frame with the truth.
+    """Comparison of every frame of a run with the truth.
 
     Args:
         simulation: the run.
         study: counts of all frames.
         verbose: print every mistake.
+
+    Attributes:
+        pose_errors: errors of the believed camera pose in every frame, see `pose_error`.
     """
 
     def __init__(self, simulation: Simulation, study: Study, verbose: bool) -> None:
-        self.layout = simulation.layout
+        self.layout = layout = simulation.layout
         self.study = study
         self.verbose = verbose
         self.model = simulation.model
         self.data = mujoco.MjData(self.model)
-        camera = simulation.scenario.camera
+        camera, robot = simulation.scenario.camera, load_robot(simulation.scenario.robot.model)
+        counts = len(layout.static), len(layout.movers)
+        self.index = ModelIndex.of(self.model, robot, *counts)
         self.pinhole = camera.pinhole
         self.renderer = mujoco.Renderer(self.model, camera.height, camera.width)
         self.renderer.enable_segmentation_rendering()
@@ -50,16 +56,19 @@ class Referee:
         self.pose_errors: list[tuple[float, ...]] = []
 
     def on_record(self, record: TickRecord) -> None:
-        """Judge the frame of this record, if there is one."""
+        """Judge the frame of a record, if it has one.
+
+        Raises:
+            SystemExit: the frame was taken before its record.
+        """
         if record.frame is None:
             return
         if abs(record.frame.measured.time - record.time) > 1e-9:
-            raise SystemExit("this study needs camera.latency_ms = 0 and frames at records")
+            raise SystemExit("camera.latency_ms: this study requires 0, and frames at records")
         data, truth = self.data, record.truth
         data.qpos[:] = truth.qpos
-        static = len(self.layout.static)
-        if len(self.layout.movers):
-            data.mocap_pos[:, :2] = truth.obstacle_positions[static:]
+        movers = truth.obstacle_positions[len(self.layout.static) :]
+        data.mocap_pos[self.index.mover_mocap, :2] = movers
         mujoco.mj_kinematics(self.model, data)
         mujoco.mj_comPos(self.model, data)
         mujoco.mj_camlight(self.model, data)
@@ -82,30 +91,27 @@ class Referee:
             print(f"{record.time:.2f} s", *mistakes, sep="\n    ")
 
     def targets(self, positions: Array, R_RW: Array, x: float, y: float) -> list[Target]:
-        """All cylinders in the true robot frame."""
-        visible = []
-        shapes = [
-            *((o.color, o.radius, o.height) for o in self.layout.obstacles),
-            *((b.name, b.radius, b.height) for b in self.layout.beacons),
+        """Return all obstacles and beacons in the true robot frame R.
+
+        Args:
+            positions: true positions of the obstacles in W (n, 2) [m].
+            R_RW: rotation from W to R (3, 3).
+            x: position of the robot in W [m].
+            y: position of the robot in W [m].
+        """
+        layout, index = self.layout, self.index
+        cylinders = [
+            *(("obstacle", o.color, o) for o in layout.obstacles),
+            *(("beacon", b.name, b) for b in layout.beacons),
         ]
-        places = [*positions.tolist(), *(b.position for b in self.layout.beacons)]
-        static = len(self.layout.static)
-        for i, ((label, radius, height), position) in enumerate(zip(shapes, places, strict=True)):
-            obstacle = i < len(self.layout.obstacles)
-            if not obstacle:
-                top, bottom = label.split("/")
-                name = f"{FIELD}beacon_{top}_{bottom}"
-            else:
-                name = (
-                    f"{FIELD}obstacle_{i:02d}" if i < static else f"{FIELD}mover_{i - static:02d}"
-                )
-            body = self.model.body(name)
-            first = int(body.geomadr[0])
-            geoms = tuple(range(first, first + int(body.geomnum[0])))
-            forward, left, _ = (R_RW @ np.array([position[0] - x, position[1] - y, 0.0])).tolist()
-            kind = "obstacle" if obstacle else "beacon"
-            visible.append(Target(kind, label, forward, left, radius, height, geoms))
-        return visible
+        centres = [*positions.tolist(), *(b.position for b in layout.beacons)]
+        geoms = [*index.obstacle_geoms[:, None].tolist(), *index.beacon_geoms.tolist()]
+        targets = []
+        for (kind, label, shape), centre, parts in zip(cylinders, centres, geoms, strict=True):
+            ahead, left, _ = (R_RW @ np.array([centre[0] - x, centre[1] - y, 0.0])).tolist()
+            size = shape.radius, shape.height
+            targets.append(Target(kind, label, ahead, left, *size, tuple(parts)))
+        return targets
 
     def close(self) -> None:
         """Free the renderer."""
@@ -115,7 +121,14 @@ class Referee:
 def pose_error(
     believed_R: Array, believed_p: Array, true_R: Array, true_p: Array
 ) -> tuple[float, float, float, float, float]:
-    """Tilt, roll, yaw [rad], height and horizontal offset [m] of the believed camera."""
+    """Return the errors of the believed camera: tilt, roll, yaw [rad], height and offset [m].
+
+    Args:
+        believed_R: believed rotation of the camera in R (3, 3).
+        believed_p: believed position of the camera in R (3,) [m].
+        true_R: true rotation (3, 3).
+        true_p: true position (3,) [m].
+    """
     turn = believed_R @ true_R.T
     w = 0.5 * np.array([turn[2, 1] - turn[1, 2], turn[0, 2] - turn[2, 0], turn[1, 0] - turn[0, 1]])
     heading = atan2(true_R[1, 0], true_R[0, 0]) + 0.5 * np.pi
