@@ -134,7 +134,7 @@ class CommandLimits:
             reverse, only while switching is blocked.
         limits: constraints that bind in this tick, including those on the present footstep. Empty
             when the command is followed: exactly in control ticks, and within the tolerance of
-            `walking.plan.footsteps.is_same` in the present landing.
+            `walking.plan.footsteps.is_close` in the present landing.
     """
 
     commanded: Command

@@ -16,7 +16,7 @@ from walking.plan.footsteps import (
     STILL,
     command_strides,
     foothold,
-    is_same,
+    is_close,
     landing_of,
     velocity_strides,
 )
@@ -170,7 +170,7 @@ class Observer:
             (not is_double(gait) or gait.clock.shift.end == timing.double)
             and gait.clock.single.ticks == timing.single
             and (is_double(gait) or abs(gait.swing_height - timing.swing_height) < ROUNDING)
-            and is_same(nominal, foothold(gait.landing), self._usual)
+            and is_close(nominal, foothold(gait.landing), self._usual)
         )
 
 

@@ -19,7 +19,7 @@ from walking.plan.footsteps import (
     equal,
     equal_strides,
     foothold,
-    is_same,
+    is_close,
     landing_of,
     put,
     reachable,
@@ -282,7 +282,7 @@ def place_foot(walk: Data, region: Region, robot: Model) -> int:
         return bound | _capture(walk, landing, bound != 0, robot)
     if gait.stepping:
         nominal = landing_of(support_foot(gait), wanted)
-        if not is_same(nominal, foothold(gait.landing), robot):
+        if not is_close(nominal, foothold(gait.landing), robot):
             bound |= LANDING_FROZEN
     return bound
 
@@ -315,7 +315,7 @@ def _differs(walk: Data, robot: Model) -> bool:
         return True
     nominal = landing_of(support_foot(live.gait), walk.steering.wanted)
     adjustable = is_adjustable(live.gait, robot)
-    return adjustable and not is_same(nominal, foothold(live.steps[0]), robot)
+    return adjustable and not is_close(nominal, foothold(live.steps[0]), robot)
 
 
 @compiled
@@ -344,8 +344,8 @@ def _capture(walk: Data, landing: Foothold, limited: bool, robot: Model) -> int:
     placing.shift.x, placing.shift.y = now.x - landing.x, now.y - landing.y
     if not keeps_plan(gait, robot) and not equal(now, landing):
         plan_walk(plan, now, steering.wanted, moves(steering), robot)
-    if gait.shortened or not is_same(goal, landing, robot):
+    if gait.shortened or not is_close(goal, landing, robot):
         return BALANCE
-    if not limited and not is_same(nominal, now, robot):
+    if not limited and not is_close(nominal, now, robot):
         return LANDING_SPEED
     return 0

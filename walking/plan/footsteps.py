@@ -15,8 +15,8 @@ from walking.model import FootholdRecord, Model, Sole, Strides
 from walking.parameters import CONTROL_PERIOD
 from walking.plane import Point, Vector, clamp, from_frame, rotate_back
 
-POSITION_TOLERANCE = 0.024  # of equal footholds, per half stance [1]
-YAW_TOLERANCE = 1e-3  # of equal footholds [rad]
+POSITION_TOLERANCE = 0.024  # of close footholds, per half stance [1]
+YAW_TOLERANCE = 1e-3  # of close footholds [rad]
 STANCE_TOLERANCE = 0.6  # of a parallel stance, per half stance [1]
 STANCE_YAW_TOLERANCE = 0.05  # of a parallel stance [rad]
 STILL = (0.0, 0.0, 0.0)
@@ -43,13 +43,13 @@ class Foothold(NamedTuple):
 
 @compiled
 def foothold(record: FootholdRecord) -> Foothold:
-    """Return the value of a record."""
+    """Return the foothold in a record."""
     return Foothold(record.left, record.x, record.y, record.yaw)
 
 
 @compiled
 def put(record: FootholdRecord, foot: Foothold) -> None:
-    """Set a record."""
+    """Set a record to a foothold."""
     record.left, record.x, record.y, record.yaw = foot.left, foot.x, foot.y, foot.yaw
 
 
@@ -73,7 +73,7 @@ def placed(support: Foothold, x: float, y: float, yaw: float) -> Foothold:
 
 @compiled
 def equal(one: Foothold, other: Foothold) -> bool:
-    """Whether two footholds are the same number by number."""
+    """Return whether two footholds are exactly equal."""
     return one.left == other.left and one.x == other.x and one.y == other.y and one.yaw == other.yaw
 
 
@@ -86,7 +86,7 @@ def landing_of(support: Foothold, strides: Strides) -> Foothold:
 
 @compiled
 def is_parallel(support: Foothold, other: Foothold, robot: Model) -> bool:
-    """Whether the stance is parallel within tolerance.
+    """Return whether the stance is parallel within tolerance.
 
     After an early touchdown or a capture step the foot is off its planned landing, with the
     pendulum at rest: another footstep would start it again from an infeasible state.
@@ -100,8 +100,8 @@ def is_parallel(support: Foothold, other: Foothold, robot: Model) -> bool:
 
 
 @compiled
-def is_same(one: Foothold, other: Foothold, robot: Model) -> bool:
-    """Whether two footholds of a foot are equal within tolerance."""
+def is_close(one: Foothold, other: Foothold, robot: Model) -> bool:
+    """Return whether two footholds of a foot are equal within tolerance."""
     near = POSITION_TOLERANCE * robot.gait.half_stance
     return (
         abs(one.x - other.x) < near
@@ -169,10 +169,10 @@ def velocity_strides(strides: Strides, velocity: Vector, time: float, robot: Mod
     """Set the strides of a velocity; return the limits that bind.
 
     Args:
-        strides: set.
+        strides: strides to set.
         velocity: velocity of the middle of the stance (vx, vy, wz) [m/s, m/s, rad/s].
         time: duration of a footstep [s].
-        robot: constants.
+        robot: constants of the walk.
     """
     (vx, vy, wz), limits, bound = velocity, robot.limits, 0
     if abs(vx) * time > limits.step_forward:
@@ -210,13 +210,13 @@ def _opened(velocity: Vector, time: float, side: float, robot: Model) -> Vector:
 def command_strides(strides: Strides, command: StepCommand, turn: float, robot: Model) -> int:
     """Set the strides of a command state and a `turn` [rad]; return the limits that bind."""
     limits, gap, bound = robot.limits, robot.gait.foot_clearance, 0
-    forward, side_by, direction = command.forward, command.side, command.direction
+    forward, lateral, direction = command.forward, command.side, command.direction
     dx = clamp(forward, limits.step_forward)
-    apart = min(2.0 * robot.gait.half_stance + limits.step_side, side_by)
+    apart = min(2.0 * robot.gait.half_stance + limits.step_side, lateral)
     yaw = clamp(direction + turn, limits.step_turn)
     if dx != forward:
         bound |= STEP_LENGTH
-    if apart != side_by:
+    if apart != lateral:
         bound |= STEP_SIDE
     if abs(direction) > limits.step_turn:
         bound |= STEP_TURN
@@ -272,7 +272,7 @@ def towards_strides(strides: Strides, one: Strides, other: Strides, fraction: fl
 
 @compiled
 def equal_strides(one: Strides, other: Strides) -> bool:
-    """Whether strides are the same number by number."""
+    """Return whether strides are exactly equal."""
     return equal(foothold(one.right), foothold(other.right)) and equal(
         foothold(one.left), foothold(other.left)
     )

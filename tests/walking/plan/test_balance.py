@@ -29,7 +29,7 @@ from walking.plan.footsteps import (
     STILL,
     Foothold,
     foothold,
-    is_same,
+    is_close,
     landing_of,
     put,
     reachable,
@@ -282,7 +282,7 @@ def test_a_capture_step_follows_the_error_and_reports_balance(
     robot = walk.model.robot
     landing = foothold(walk.gait.landing)
     within = reachable(support_foot(walk.gait), landing, 0.0, 0.0, robot)
-    assert is_same(within, landing, robot)
+    assert is_close(within, landing, robot)
 
 
 @pytest.mark.parametrize(("ratio", "ends"), [(0.1, False), (0.9, False), (1.1, True)])
