@@ -10,7 +10,6 @@ from scipy.spatial import ConvexHull
 
 from tests.walking.conftest import IdealBody
 from walking.body.robot_model import RobotModel
-from walking.body.tree import HEAD
 from walking.command import CommandState, HeadTarget, Limit, VelocityCommand
 from walking.engine import PlanDiverged, WalkingEngine
 from walking.parameters import CONTROL_PERIOD, HeadParameters, WalkingParameters
@@ -152,7 +151,7 @@ def test_setpoints_stay_within_the_range_of_the_joints(robot, ideal_body):
         ideal_body.apply(targets)
         assert (targets.setpoint >= robot.lower).all()
         assert (targets.setpoint <= robot.upper).all()
-        pan = HEAD.start
+        pan = robot.tree.head[0]
         at_stop += targets.setpoint[pan] in {robot.lower[pan], robot.upper[pan]}
     assert at_stop > 10
 

@@ -5,12 +5,13 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from walking.body.tree import HEAD, LEFT_ARM, LEFT_LEG, RIGHT_ARM, RIGHT_LEG
+from walking.body.tree import LEFT_LEG, RIGHT_LEG
 from walking.command import CommandState, HeadTarget, VelocityCommand
 from walking.engine import WalkingEngine
 from walking.parameters import WalkingParameters
 
 GENERATORS = ["preview", "mwpg"]
+HEAD, LEFT_ARM, RIGHT_ARM = slice(12, 14), slice(14, 20), slice(20, 26)  # of HSR-VIII
 LEG, ARM = np.array([-1, -1, 1, 1, 1, -1]), np.array([1, -1, -1, 1, -1, -1])
 ALONG = np.array([1.0, -1.0, 1.0])  # a vector mirrored at the sagittal plane
 ABOUT = np.array([-1.0, 1.0, -1.0])  # an axial vector

@@ -1,4 +1,4 @@
-"""Kinematic tree of a robot: everything that the walking engine knows of its body."""
+"""Kinematic tree of a robot: the body as the walking engine receives it."""
 
 from dataclasses import dataclass
 
@@ -20,9 +20,6 @@ JOINT_NAMES: tuple[str, ...] = (
 """Joints of HSR-VIII, in the order of its arrays."""
 
 LEFT_LEG, RIGHT_LEG = slice(0, 6), slice(6, 12)  # of every robot, in every array
-HEAD = slice(12, 14)
-LEFT_ARM = slice(14, 20)
-RIGHT_ARM = slice(20, 26)
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -95,11 +92,8 @@ class RobotTree:
     shoulders: tuple[int, int] | None = None
 
     def carries(self, one: int, other: int) -> bool:
-        """Whether a joint carries another one."""
-        joint = int(self.parents[other])
-        while joint >= 0 and joint != one:
-            joint = int(self.parents[joint])
-        return joint == one
+        """Return whether a joint carries another one."""
+        return one in self.path(int(self.parents[other]))
 
     def path(self, joint: int) -> list[int]:
         """Return the joints from the base to a joint, itself included."""
@@ -145,7 +139,8 @@ class RobotTree:
             links[body.joint, 6] += mass
             links[body.joint, 7:] += mass * body.position
         joints = sorted(range(n), key=lambda joint: len(self.path(joint)))
-        return links, np.column_stack([joints, self.parents[joints] % (n + 1)])
+        parents = self.parents[joints] % (n + 1)  # the base, -1, becomes n
+        return links, np.column_stack([joints, parents])
 
 
 def turn(axis: Array, angle: float) -> Array:

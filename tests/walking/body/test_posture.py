@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from walking.body.posture import pelvis_over, set_posture
-from walking.body.tree import HEAD, LEFT_ARM, LEFT_LEG, RIGHT_ARM, RIGHT_LEG
+from walking.body.tree import LEFT_LEG, RIGHT_LEG
 from walking.constants import joint_records
 from walking.parameters import WalkingParameters
 from walking.plan.footsteps import Foothold
@@ -48,7 +48,7 @@ def test_feet_are_at_their_planned_poses(robot, body):
         assert (x, y, pose.yaw + yaw) == pytest.approx((foot.x, foot.y, foot.yaw))
         assert pose.z == pytest.approx(-PARAMETERS.pattern.pelvis_height)
         assert (pose.roll, pose.pitch) == pytest.approx((0.0, 0.0), abs=1e-9)
-    assert q[HEAD].tolist() == [0.3, -0.2]
+    assert q[list(robot.tree.head)].tolist() == [0.3, -0.2]
     assert body.limbs.leg_error < 1e-9
 
 
@@ -81,5 +81,6 @@ def test_a_foot_in_the_air_stays_level_under_a_tilted_trunk(robot, model, body):
 def test_the_arms_swing_against_the_feet_within_limits(robot, body, apart, swing):
     feet = body.limbs.feet
     feet["x"], feet["y"], feet["yaw"] = (0.5 * apart, -0.5 * apart), (0.04, -0.04), 0.0
-    shoulders = [LEFT_ARM.start, RIGHT_ARM.start]
-    assert (body.posture()[0] - robot.ready)[shoulders] == pytest.approx([swing, -swing])
+    assert (body.posture()[0] - robot.ready)[list(robot.tree.shoulders)] == pytest.approx(
+        [swing, -swing]
+    )
