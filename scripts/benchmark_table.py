@@ -1,8 +1,9 @@
 """Numbers of the result pages: rows of runs, and the columns of a table as functions of them."""
 
 from collections.abc import Callable, Sequence
+from functools import partial
 from math import hypot
-from statistics import median
+from statistics import fmean, median
 from typing import Any
 
 from hsr8.measure.statistics import Proportion, compare_successes, spl
@@ -16,10 +17,17 @@ NUMBERS = (
     "personal_space_intrusions",
 )
 """Metrics of a run that the columns use, with these names."""
+Column = Callable[[Sequence[Run], Sequence[Run]], str]
+"""Text of a cell from its runs and those of the reference."""
 
 
 def row(cell: Any, result: Run) -> Run:
-    """Return the row of a run in the data of a page."""
+    """Return the row of a run in the data of a page.
+
+    Args:
+        cell: cell of the run, a `benchmark_runs.Cell`.
+        result: metrics of the run.
+    """
     recognised = result.get("movers_recognised_after_s")
     error = (result.get("velocity_error_rms") or {}).get("applied") or {}
     return {
@@ -47,18 +55,29 @@ def values(runs: Sequence[Run], name: str) -> list[float]:
 
 
 def pair(runs: Sequence[Run], others: Sequence[Run]) -> list[tuple[Run, Run]]:
-    """Return the runs of two arms in the same worlds."""
+    """Return the runs of two arms in the same worlds: those of `others` first."""
     known = {(run["scenario"], run["seed"]): run for run in others}
     keys = [(run["scenario"], run["seed"]) for run in runs]
     return [(known[k], run) for k, run in zip(keys, runs, strict=True) if k in known]
 
 
-def _middle(name: str, scale: float = 1.0, form: str = ".2f", unit: str = "") -> "Column":
+def _number_of(
+    statistic: Callable[[list[float]], float],
+    name: str,
+    scale: float = 1.0,
+    form: str = ".2f",
+    unit: str = "",
+) -> Column:
+    """Return a column with a statistic of a metric; empty where it was not measured."""
+
     def text(runs: Sequence[Run], _: Sequence[Run]) -> str:
         numbers = values(runs, name)
-        return f"{scale * median(numbers):{form}}{unit}" if numbers else ""
+        return f"{scale * statistic(numbers):{form}}{unit}" if numbers else ""
 
     return text
+
+
+_median, _mean = partial(_number_of, median), partial(_number_of, fmean)
 
 
 def _success(runs: Sequence[Run], _: Sequence[Run]) -> str:
@@ -71,7 +90,7 @@ def proportion(outcomes: Sequence[bool]) -> str:
     return f"{p.count} of {p.n} ({100 * p.low:.0f}–{100 * p.high:.0f} %)"
 
 
-def _count(test: Callable[[Run], bool]) -> "Column":
+def _count(test: Callable[[Run], bool]) -> Column:
     return lambda runs, _: f"{sum(map(test, runs))} of {len(runs)}"
 
 
@@ -100,14 +119,6 @@ def _difference(runs: Sequence[Run], reference: Sequence[Run]) -> str:
     return difference.points()
 
 
-def _mean(name: str) -> "Column":
-    def text(runs: Sequence[Run], _: Sequence[Run]) -> str:
-        numbers = values(runs, name)
-        return f"{sum(numbers) / len(numbers):.2f}" if numbers else ""
-
-    return text
-
-
 def _equal(runs: Sequence[Run], reference: Sequence[Run]) -> str:
     pairs = pair(runs, reference) if runs is not reference else []
     if not pairs:
@@ -115,8 +126,6 @@ def _equal(runs: Sequence[Run], reference: Sequence[Run]) -> str:
     return f"{sum(a['state_hash'] == b['state_hash'] for a, b in pairs)} of {len(pairs)}"
 
 
-Column = Callable[[Sequence[Run], Sequence[Run]], str]
-"""Text of a cell from its runs and those of the reference."""
 COLUMNS: dict[str, tuple[str, Column]] = {
     "success": ("success, 95 % interval", _success),
     "difference": ("difference [points], p", _difference),
@@ -131,31 +140,31 @@ COLUMNS: dict[str, tuple[str, Column]] = {
         lambda runs, _: proportion([not run["falls"] for run in runs]),
     ),
     "spt": ("SPT", _spt),
-    "clearance": ("min clearance, median [mm]", _middle("min_clearance_m", 1e3, ".0f")),
+    "clearance": ("min clearance, median [mm]", _median("min_clearance_m", 1e3, ".0f")),
     "time": ("time to goal, median [s]", _time),
-    "head": ("head travel, median [rad/s]", _middle("head_travel_radps")),
-    "position": ("position RMSE, median", _middle("localization_rmse_m", 1e3, ".1f", " mm")),
-    "heading": ("heading RMSE, median [deg]", _middle("heading_rmse_deg", 1.0, ".3f")),
+    "head": ("head travel, median [rad/s]", _median("head_travel_radps")),
+    "position": ("position RMSE, median", _median("localization_rmse_m", 1e3, ".1f", " mm")),
+    "heading": ("heading RMSE, median [deg]", _median("heading_rmse_deg", 1.0, ".3f")),
     "nees": ("NEES / 3, mean", _mean("nees_mean")),
     "static_track": (
         "static tracks RMSE, median [mm]",
-        _middle("static_track_rmse_m", 1e3, ".1f"),
+        _median("static_track_rmse_m", 1e3, ".1f"),
     ),
     "mover_velocity": (
         "mover velocity RMSE, median",
-        _middle("mover_velocity_rmse_mps", 1e2, ".1f", " cm/s"),
+        _median("mover_velocity_rmse_mps", 1e2, ".1f", " cm/s"),
     ),
-    "recognised": ("mover recognised after, median [s]", _middle("recognised_s")),
-    "tilt": ("max tilt, median [deg]", _middle("max_tilt_deg", 1.0, ".1f")),
+    "recognised": ("mover recognised after, median [s]", _median("recognised_s")),
+    "tilt": ("max tilt, median [deg]", _median("max_tilt_deg", 1.0, ".1f")),
     "velocity_error": (
         "velocity error RMS, median [cm/s]",
-        _middle("velocity_error_mps", 1e2, ".1f"),
+        _median("velocity_error_mps", 1e2, ".1f"),
     ),
     "intrusions": ("in personal space, mean", _mean("personal_space_intrusions")),
-    "limited": ("limited ticks, median [1]", _middle("limited_fraction")),
-    "speed": ("speed over real time, median", _middle("real_time_factor", 1.0, ".1f", " times")),
-    "wall": ("wall time, median [s]", _middle("wall_time_s", 1.0, ".1f")),
-    "tick": ("walking tick, median of means [ms]", _middle("walk_tick_mean_ms", 1.0, ".3f")),
+    "limited": ("limited ticks, median [1]", _median("limited_fraction")),
+    "speed": ("speed over real time, median", _median("real_time_factor", 1.0, ".1f", " times")),
+    "wall": ("wall time, median [s]", _median("wall_time_s", 1.0, ".1f")),
+    "tick": ("walking tick, median of means [ms]", _median("walk_tick_mean_ms", 1.0, ".3f")),
     "crashed": (
         "crashed or diverged",
         _count(lambda run: run["outcome"] in ("crashed", "diverged")),
