@@ -26,12 +26,19 @@ RUNS = ROOT / "benchmarks"
 
 
 def status(definition: Definition, pages: Sequence[str], root: Path, results: Path) -> list[str]:
-    """Return one line per page: missing runs, time left, and the version of the page."""
+    """Return one line per page: missing runs, time left, and the version of the page.
+
+    Args:
+        definition: definition of all results.
+        pages: names of the pages.
+        root: folder of the runs of the present code.
+        results: folder of the pages.
+    """
     code, made = code_digest(), versions(definition, results)
-    lines, known = [], set()
+    lines, listed = [], set()
     for name in pages:
-        cells = [cell for cell in definition.page_cells([name]) if cell not in known]
-        known.update(cells)
+        cells = [cell for cell in definition.page_cells([name]) if cell not in listed]
+        listed.update(cells)
         missing = sum(cell.missing(root) for cell in cells if not cell.unavailable())
         version = made.get(name, {}).get("code")
         state = "not measured" if version is None else "current" if version == code else "old"
@@ -51,7 +58,7 @@ def _time_left(cells: Sequence[Cell], root: Path) -> str:
 
 
 def make(definition: Definition, pages: Sequence[str], root: Path, results: Path) -> None:
-    """Run the cells of pages, and write each page when its runs are complete."""
+    """Run the cells of pages, and write each page when its runs are complete; see `status`."""
     made = {
         "version": VERSION,
         "code": code_digest(),
@@ -80,7 +87,9 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--only", nargs="+", metavar="PAGE", help="pages to make; default: all")
     parser.add_argument("--runs", type=int, metavar="N", help="at most N runs per sweep, to try")
-    parser.add_argument("--out", type=Path, metavar="DIR", help="folder of pages; default: docs")
+    parser.add_argument(
+        "--out", type=Path, metavar="DIR", help="folder of pages; default: docs/results"
+    )
     parser.add_argument("--status", action="store_true", help="only show what is missing")
     options = parser.parse_args()
     definition = Definition(runs=options.runs)
@@ -102,8 +111,8 @@ def main() -> None:
     except KeyboardInterrupt:
         sys.exit("stopped; the same command continues")
     write(definition, results)
-    made = {page["code"] for page in versions(definition, results).values()}
-    if len(made) > 1:
+    codes = {page["code"] for page in versions(definition, results).values()}
+    if len(codes) > 1:
         print("!! the pages are of different versions: make benchmarks without ONLY")
 
 
