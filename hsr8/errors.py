@@ -1,5 +1,6 @@
 """Errors that a user may encounter, each with the exit code of the command line."""
 
+INTERRUPTED = 130  # exit code after Ctrl-C
 MAX_LINE, KEPT_START = 1000, 100  # characters of a line of a message, and of its start
 
 

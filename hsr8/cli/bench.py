@@ -5,8 +5,8 @@ from pathlib import Path
 
 from hsr8.cli.command_line import command_words, settings
 from hsr8.cli.options import Bench, Run
-from hsr8.cli.sweep import INTERRUPTED, folder_name, report_lost_runs, require_no_seed
-from hsr8.errors import Hsr8Error, UsageError
+from hsr8.cli.sweep import folder_name, report_lost_runs, require_no_seed
+from hsr8.errors import INTERRUPTED, Hsr8Error, UsageError
 from hsr8.files import atomic
 from hsr8.files.text import shell_line
 from hsr8.process.signals import like_ctrl_c

@@ -15,7 +15,7 @@ import tyro
 
 from hsr8.cli.options import BenchCompare, Command
 from hsr8.cli.robot_options import Robot, RobotAction
-from hsr8.errors import Hsr8Error, UsageError
+from hsr8.errors import INTERRUPTED, Hsr8Error, UsageError
 from hsr8.recording.crash import crash_report
 from hsr8.suggestion import suggestion
 from hsr8.version import VERSION
@@ -30,7 +30,6 @@ of a shell: bash, zsh or fish.
 
 Exit codes: 0 done or criteria met, 1 criteria missed or runs differ, 2 wrong usage or input, \
 3 diverged or internal error, 130 interrupted."""
-INTERRUPTED = 130
 SIGPIPE_EXIT = 141  # the code of a program that SIGPIPE ends
 COLLECT_AFTER = 20_000  # new objects; the default takes 0.3 s more, most of it in imports
 SHELLS = ("bash", "zsh", "fish")

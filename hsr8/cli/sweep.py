@@ -13,7 +13,7 @@ from rich.table import Table
 
 from hsr8.cli.command_line import command_words, flat, option_tables, run_options, settings
 from hsr8.cli.options import Sweep
-from hsr8.errors import Hsr8Error, UsageError
+from hsr8.errors import INTERRUPTED, Hsr8Error, UsageError
 from hsr8.files import atomic
 from hsr8.files.text import shell_line
 from hsr8.process.signals import like_ctrl_c
@@ -26,7 +26,6 @@ from hsr8.sweep.seeds import parse_seeds, parse_values
 from hsr8.sweep.summary import Summary, summarize
 
 MAX_NAME = 120  # of a folder [characters]
-INTERRUPTED = 130
 
 
 def main(options: Sweep) -> int:
@@ -108,9 +107,13 @@ def _exit_code(summaries: Sequence[Summary]) -> int:
     return 0 if all(s.criteria_met.count == s.runs for s in summaries) else 1
 
 
-def folder_name(settings: Sequence[str]) -> str:
-    """Return settings as a file name, with a digest if characters are replaced or cut."""
-    text = ",".join(settings)
+def folder_name(parts: Sequence[str]) -> str:
+    """Return settings as a file name, with a digest if characters are replaced or cut.
+
+    Args:
+        parts: settings KEY=VALUE, or other parts of the name.
+    """
+    text = ",".join(parts)
     name = re.sub(r"[^A-Za-z0-9._=+,-]+", "_", text)
     if name == text and len(name) <= MAX_NAME:
         return name
@@ -118,18 +121,18 @@ def folder_name(settings: Sequence[str]) -> str:
     return f"{name[: MAX_NAME - 9]}-{digest}"
 
 
-def require_no_seed(option: str, settings: Iterable[str], expected: str = "--seeds") -> None:
+def require_no_seed(option: str, given: Iterable[str], expected: str = "--seeds") -> None:
     """Check that no setting is the seed.
 
     Args:
-        option: named in the message.
-        settings: KEY=VALUE.
-        expected: named in the message.
+        option: option with the settings, for the message.
+        given: settings KEY=VALUE.
+        expected: option or source of the seeds, for the message.
 
     Raises:
-        UsageError: a setting is.
+        UsageError: a setting is the seed.
     """
-    for setting in settings:
+    for setting in given:
         if setting.partition("=")[0].strip() == "seed":
             raise UsageError(
                 f"{option}: the seed is not a setting, got {setting}; expected {expected}"
@@ -137,7 +140,12 @@ def require_no_seed(option: str, settings: Iterable[str], expected: str = "--see
 
 
 def report_lost_runs(summaries: Iterable[Summary], where: Path) -> None:
-    """Print the numbers of crashed, diverged and refused runs on standard error."""
+    """Print the numbers of crashed, diverged and refused runs on standard error, if any.
+
+    Args:
+        summaries: summaries of sweeps.
+        where: file with the reasons.
+    """
     summaries = list(summaries)
     counts = {
         kind: sum(getattr(s, kind) for s in summaries)

@@ -8,6 +8,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
+from hsr8.errors import INTERRUPTED, SimulationDiverged
 from hsr8.scenario.schema import Criteria
 
 ENDED_BY_OTHERS = ("interrupted", "diverged", "running", "failed", "error")
@@ -55,7 +56,7 @@ def evaluate_criteria(criteria: Criteria, results: Mapping[str, Any]) -> tuple[C
 
 def exit_code(exit_reason: str, criteria: Sequence[Criterion]) -> int:
     """Return 0 if all criteria are met, 1 if not, 3 if diverged, 130 if interrupted."""
-    special = {"interrupted": 130, "diverged": 3}
+    special = {"interrupted": INTERRUPTED, "diverged": SimulationDiverged.exit_code}
     if exit_reason in special:
         return special[exit_reason]
     return 0 if all(criterion.met for criterion in criteria) else 1
