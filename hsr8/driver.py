@@ -9,14 +9,13 @@ from types import TracebackType
 from typing import Self
 
 from hsr8.errors import RecordingFailed
-from hsr8.files.atomic import FAILED
 from hsr8.measure.metrics import measure
 from hsr8.plugins.decisions import GazePlugin, PlannerPlugin
 from hsr8.plugins.walker import CustomWalker
 from hsr8.process.compilation_watch import CompilationWatch
 from hsr8.process.gl import require_gl
 from hsr8.process.signals import stop_on_signals
-from hsr8.recording.manifest import CALL
+from hsr8.recording.manifest import CALL, FAILED
 from hsr8.recording.recorder import IMAGES, PERIOD, Recorder, Sink
 from hsr8.recording.run import Run, open_run
 from hsr8.recording.run_folder import RunFolder

@@ -1,4 +1,4 @@
-"""Output: a draft that replaces its target when it is complete.
+"""Atomic output: a draft that replaces its target when it is complete.
 
 After a crash a target is either the old or the new one, and several processes may write one
 target. A link in place of the target is replaced, never followed.
@@ -14,10 +14,7 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
-from hsr8.errors import RecordingFailed, UsageError
-
-FAILED = "failed"  # exit reason of a run whose records could not be written
-NO_ROOM = (errno.ENOSPC, errno.EDQUOT, errno.EROFS, errno.EACCES, errno.EPERM, errno.EIO)
+from hsr8.errors import UsageError
 
 
 @contextmanager
@@ -122,7 +119,7 @@ def dumps(value: Any, indent: int | None = None) -> str:
     become escapes, which JSON decodes again.
     """
     text = json.dumps(_finite(value), indent=indent, allow_nan=False, ensure_ascii=False)
-    if not text.isprintable():  # only in texts: the rest is ASCII
+    if not text.isprintable():  # such characters are in strings only: all others are ASCII
         text = "".join(c if c.isprintable() or c == "\n" else json.dumps(c)[1:-1] for c in text)
     return text
 
@@ -135,24 +132,6 @@ def _finite(value: Any) -> Any:
     if isinstance(value, list | tuple):
         return [_finite(item) for item in value]
     return value
-
-
-@contextmanager
-def writing(folder: Path | None) -> Iterator[None]:
-    """Convert an `OSError` while writing into `folder` into `RecordingFailed`.
-
-    Raises:
-        RecordingFailed: a file could not be written; earlier contents stay.
-    """
-    try:
-        yield
-    except OSError as error:
-        raise failure(folder or Path(), error.strerror or str(error)) from error
-
-
-def failure(folder: Path, reason: str) -> RecordingFailed:
-    """Return the error of a run whose `folder` cannot be written."""
-    return RecordingFailed(f"cannot write the run folder {folder}: {reason}")
 
 
 def require_temporary() -> None:

@@ -35,7 +35,8 @@ PACKAGES = ("compilation", "hsr8", "navigation", "walking", "vision")
 # Folders and files of hsr8 that influence no run:
 NOT_IN_DIGEST = ("cli", "show", "export", "sweep", "measure/registry", "_models")
 FORMAT = 7  # of run folders; those without a number are of format 1
-RUNNING = "running"
+RUNNING = "running"  # exit reason until the run ends
+FAILED = "failed"  # exit reason of a run whose records could not be written
 CALL = "hsr8.run("  # begins the command of a run with a planner or gaze object
 
 

@@ -8,10 +8,9 @@ from pathlib import Path
 from typing import Any
 
 from hsr8.errors import ScenarioError, UsageError
-from hsr8.files.atomic import FAILED
 from hsr8.files.text import read_text
 from hsr8.recording import run_folder
-from hsr8.recording.manifest import FORMAT, RUNNING
+from hsr8.recording.manifest import FAILED, FORMAT, RUNNING
 from hsr8.recording.rows import TABLES
 from hsr8.recording.run_folder import Memory
 from hsr8.recording.stream import SUFFIX, read_table

@@ -22,10 +22,10 @@ import pyarrow as pa
 
 from hsr8.errors import UsageError
 from hsr8.files import atomic
-from hsr8.files.atomic import NO_ROOM, failure, writing
 from hsr8.recording.manifest import Manifest
 from hsr8.recording.stream import ArrowFiles
 from hsr8.recording.table import Table
+from hsr8.recording.write_errors import NO_ROOM, failure, writing
 from hsr8.scenario.loader import dump
 from hsr8.scenario.schema import Scenario
 

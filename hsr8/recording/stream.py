@@ -11,10 +11,10 @@ from typing import BinaryIO
 
 import pyarrow as pa
 
-from hsr8.files.atomic import writing
 from hsr8.recording.columns import Row, schema_of
 from hsr8.recording.rows import TABLES
 from hsr8.recording.table import Table
+from hsr8.recording.write_errors import writing
 
 SUFFIX = ".arrows"
 WRITE = pa.ipc.IpcWriteOptions(compression="lz4", use_threads=False)  # zstd: 7 % less, 6x as slow

@@ -10,12 +10,12 @@ import rerun as rr
 from numpy.typing import NDArray
 
 from hsr8.files import atomic
-from hsr8.files.atomic import failure, writing
 from hsr8.recording import palette, run_folder
 from hsr8.recording.derived import Speedometer
 from hsr8.recording.recorder import Tables
 from hsr8.recording.run import Run
 from hsr8.recording.table import Table
+from hsr8.recording.write_errors import failure, writing
 from hsr8.robots.loaded import LoadedRobot, load_robot
 from hsr8.robots.scale import DEFAULT_ROBOT, DEFAULT_STATURE
 from hsr8.robots.shown import stature, visual_model
