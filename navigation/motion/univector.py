@@ -42,7 +42,7 @@ def nearness(rho: Array, s_oe: Array, d_e: ArrayLike, d_b: float) -> Array:
 
 
 def blended_sum(u_muf: Array, u_auf: Array, ramp: Array) -> Array:
-    """Return the sum weighted by distance: 0 far from the nearest obstacle, 1 at the obstacle.
+    """Return the sum of both fields, weighted by the nearness of the nearest obstacle.
 
     Fixed weights limit the turn of the field from the direction of the destination to
     asin(w_auf/w_muf). This sum has no such limit and is continuous.
@@ -53,7 +53,7 @@ def blended_sum(u_muf: Array, u_auf: Array, ramp: Array) -> Array:
         ramp: nearness of the obstacles (..., n).
 
     Returns:
-        (..., 2).
+        Vectors from u_muf, far from all obstacles, to the mean of u_auf, at an obstacle (..., 2).
     """
     avoid = normalized((ramp[..., None] ** 2 * u_auf).sum(axis=-2))
     w_auf = ramp.max(axis=-1, initial=0.0)[..., None]
@@ -70,11 +70,11 @@ def shrunk_for_goal(
     Args:
         s_oe: extended radii (n,) [m].
         s_physical: radii at which the bodies touch (n,) [m].
-        goal_distance: rho_od (n,) [m].
+        goal_distance: distance rho_od of the destination from the obstacles (n,) [m].
         parameters: radius offset and lower bounds.
 
     Returns:
-        Radii and offsets (n,), (n,) [m].
+        Radii (n,) and offsets (n,) [m].
     """
     p, d_e = parameters, parameters.d_e
     room = p.goal_fraction * np.maximum(p.min_goal_gap, goal_distance - s_physical)
@@ -111,11 +111,10 @@ class UnivectorField:
     @classmethod
     def of(cls, s: PlanningScene) -> "UnivectorField":
         """Return the field of a scene; radii leave the destination reachable."""
-        p, target = s.parameters.univector, s.task.target
-        offset = target - s.obstacles.position
-        distance = np.hypot(offset[:, 0], offset[:, 1])
+        p, target, centres = s.parameters.univector, s.task.target, s.obstacles.position
+        p_od = target - centres
+        distance = np.hypot(p_od[:, 0], p_od[:, 1])
         radii, offsets = shrunk_for_goal(s.s_oe, s.touching, distance, p)
-        centres = s.obstacles.position
         return cls(centres, radii, offsets, target, s.task.heading, s.side, p)
 
     def at(self, points: Array) -> Array:
@@ -129,14 +128,14 @@ class UnivectorField:
         sign = turning_sign(self.target - self.centres, p_or)
         turn = spiral_turn(rho - self.radii, self.radii, self.offsets, p.k_r)
         outward = np.arctan2(p_or[..., 1], p_or[..., 0])
-        ramp = nearness(rho, self.radii, self.offsets, p.d_b) * self._in_the_way(points, p_or, rho)
+        ramp = nearness(rho, self.radii, self.offsets, p.d_b) * self._relevance(points, p_or, rho)
         return blended_sum(u_muf, unit_vectors(outward + sign * turn), ramp)
 
-    def _in_the_way(self, points: Array, p_or: Array, rho: Array) -> Array:
-        """Return from 1 to 0 whether obstacles are ahead and before the destination (..., n).
+    def _relevance(self, points: Array, p_or: Array, rho: Array) -> Array:
+        """Return weights: 1 for obstacles ahead and before the destination, fading to 0 (..., n).
 
-        These are the second and third condition of (9), faded. Inside the extended radius they do
-        not count.
+        The weights replace the second and third condition of (9). Inside the extended radius they
+        rise to 1 in any direction.
         """
         p, p_rd = self.parameters, (self.target - points)[..., None, :]
         rho_rd = np.hypot(p_rd[..., 0], p_rd[..., 1])
