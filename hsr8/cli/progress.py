@@ -1,4 +1,4 @@
-"""Progress of a run, one line on standard error, and its pace."""
+"""Progress of a run in a line on standard error, and its pace."""
 
 import sys
 import time as clock
@@ -63,7 +63,7 @@ class Progress:
                 self._next_line += PLAIN_PERIOD
                 print(self.line(record), file=self._stream, flush=True)
             return
-        self._live.start()  # hides the cursor: only once the end of the context is sure
+        self._live.start()  # not before the context: it hides the cursor, whose end shows it
         now = clock.perf_counter()
         if now - self._shown_at >= REFRESH:
             self._shown_at = now
@@ -95,11 +95,11 @@ class Pace:
 
     def __init__(self, factor: float) -> None:
         self._factor = factor
-        self._due: float | None = None  # wall time of the tick at time zero [s]
+        self._origin: float | None = None  # wall time of simulated time zero [s]
 
     def wait(self, tick: Tick) -> None:
         """Wait until a tick is due."""
         now, elapsed = clock.perf_counter(), tick.time / self._factor
-        if self._due is None or now - self._due - elapsed > TOLERANCE:
-            self._due = now - elapsed
-        clock.sleep(max(0.0, self._due + elapsed - now))
+        if self._origin is None or now - self._origin - elapsed > TOLERANCE:
+            self._origin = now - elapsed
+        clock.sleep(max(0.0, self._origin + elapsed - now))
