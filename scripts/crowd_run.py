@@ -23,12 +23,12 @@ SEED, DURATION = 3, 40.0
 
 @dataclass(frozen=True)
 class Veto:
-    """A decision of the safety filter.
+    """Decision of the safety filter against the desired velocity.
 
     Attributes:
         start: start of the rollout.
         desired: desired velocity in W (2,) [m/s].
-        discs: collision hypotheses.
+        discs: collision hypotheses, records of type `Disc` (m,).
         paths: positions of every candidate after each footstep (n, steps + 1, 2) [m].
         loss: loss of every candidate (n,) [s].
     """
@@ -42,10 +42,10 @@ class Veto:
 
 @dataclass(frozen=True)
 class CrowdRun:
-    """A run as the images need it.
+    """Run of `crowd` for the images.
 
     Attributes:
-        layout: world.
+        layout: layout of the world.
         records: records with a camera frame.
         vetoes: decisions of the safety filter by the time of their frame.
         fov: horizontal and vertical field of view of the camera [rad].
@@ -77,7 +77,7 @@ def crowd() -> CrowdRun:
 
 @contextmanager
 def watched() -> Iterator[list[Veto]]:
-    """Collect the vetoes of the safety filter."""
+    """Yield a list with the latest veto of the safety filter, or empty once it is taken."""
     vetoes: list[Veto] = []
     choose = SafetyFilter.choose
 
