@@ -10,7 +10,7 @@ from hsr8.measure.registry import METRICS
 from hsr8.recording.run import Run
 from hsr8.recording.verdict import Criterion, counted, exit_code, reason_of
 
-VERDICTS = {  # definitions
+VERDICTS = {  # definitions in JSON output
     "success": METRICS["success"].text,
     "criteria_met": "ended by itself and met all [criteria] of the scenario: exit code 0",
 }
@@ -25,20 +25,24 @@ def lines(run: Run, criteria: Sequence[Criterion], target: Path) -> list[str]:
         target: the run in the commands, its folder or one above it.
     """
     results = run.metrics
-    verdict = f"no: {reason_of(results)}"
-    if results["success"]:
-        time = results.get("time_to_goal_s") or results["sim_time_s"]
-        verdict = f"success in {time:.1f} s"
-    missed = [f"{c.name} {c.actual}, expected {c.expected}" for c in criteria if not c.met]
-    if results["success"] and missed:
-        verdict += f"; criteria missed: {'; '.join(missed)}"
-    elif not results["success"] and exit_code(run.exit_reason, criteria) == 0:
-        verdict += "; the criteria are met"
     name = escaped(f"{run.manifest.get('scenario')}, seed {run.seed}")
     word = shell_word(str(target))
     commands = f"hsr8 replay {word}, hsr8 render {word}"
     folder = shell_word(str(run.folder))
+    verdict = _verdict(run, criteria)
     return [f"{name}: {verdict}   ({_counts(results)})", f"{folder}   next: {commands}"]
+
+
+def _verdict(run: Run, criteria: Sequence[Criterion]) -> str:
+    """Return whether a run has success, and where its criteria differ from that."""
+    results = run.metrics
+    if not results["success"]:
+        met = exit_code(run.exit_reason, criteria) == 0
+        return f"no: {reason_of(results)}" + ("; the criteria are met" if met else "")
+    time = results.get("time_to_goal_s") or results["sim_time_s"]
+    missed = [f"{c.name} {c.actual}, expected {c.expected}" for c in criteria if not c.met]
+    remark = f"; criteria missed: {'; '.join(missed)}" if missed else ""
+    return f"success in {time:.1f} s{remark}"
 
 
 def _counts(results: Mapping[str, Any]) -> str:
