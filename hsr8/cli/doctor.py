@@ -18,9 +18,9 @@ from hsr8.robots.file.files import models_dir
 from hsr8.show import viewer
 from hsr8.version import VERSION
 
-PROBE_LIMIT = 60.0  # an OpenGL that takes longer hangs [s]
+PROBE_LIMIT = 60.0  # an OpenGL backend that takes longer hangs [s]
 VULKAN_FOLDERS = ("/usr/share", "/usr/local/share", "/etc")
-MIN_DISK = 1.0  # [GB]
+MIN_DISK = 1.0  # free space without a note [GB]
 PROBE = "from hsr8.process.gl import require_gl; print(require_gl())"
 
 
@@ -31,7 +31,7 @@ class Finding:
     Attributes:
         name: the part.
         state: ok, note or missing.
-        text: the version or path, or the remedy.
+        text: version or path of the part, or the remedy.
     """
 
     name: str
@@ -40,10 +40,10 @@ class Finding:
 
 
 def main(options: Doctor) -> int:
-    """Report the findings; 0 where a full run can be made, else 2."""
+    """Report the findings; return 0 if a full run can be made, else 2."""
     findings = [
         *examine(),
-        *([_compiled_code(options)] if options.compile else []),
+        *([_compiled_code(quiet=options.json)] if options.compile else []),
     ]
     if options.json:
         print(atomic.dumps({"findings": [asdict(finding) for finding in findings]}))
@@ -54,7 +54,7 @@ def main(options: Doctor) -> int:
 
 
 def examine() -> list[Finding]:
-    """Check everything that `hsr8` needs."""
+    """Return the findings of all parts that `hsr8` needs."""
     libraries = versions().items()
     return [
         Finding("hsr8", "ok", f"{VERSION}, {sys.prefix}"),
@@ -71,7 +71,7 @@ def examine() -> list[Finding]:
 
 
 def copied_checkout(installed: Path, folder: Path) -> list[Finding]:
-    """Return a finding where a folder is in a checkout, of which another copy is installed.
+    """Return a finding if a folder is in a checkout of which another copy is installed.
 
     Args:
         installed: parent of the package that runs.
@@ -132,12 +132,12 @@ def _requested_opengl(backend: str) -> list[Finding]:
     return [Finding(name, "ok", f"is set and draws: {renderer}")]
 
 
-def _compiled_code(options: Doctor) -> Finding:
+def _compiled_code(*, quiet: bool) -> Finding:
     """Compile the functions that are not on disk."""
     from hsr8.cli.first_compilation import compile_all  # noqa: PLC0415  loads MuJoCo
 
     started = perf_counter()
-    compiled = compile_all(quiet=options.json)
+    compiled = compile_all(quiet=quiet)
     text = "all compiled before"
     if compiled:
         text = f"compiled in {perf_counter() - started:.0f} s"
@@ -174,6 +174,6 @@ def _viewer() -> Finding:
         text = f"{viewer.executable()}; bound to 127.0.0.1 only"
     except Hsr8Error as error:
         return Finding("Rerun viewer", "note", str(error))
-    if not any(file for f in VULKAN_FOLDERS for file in Path(f, "vulkan/icd.d").glob("*.json")):
+    if not any(any(Path(folder, "vulkan/icd.d").glob("*.json")) for folder in VULKAN_FOLDERS):
         return Finding("Rerun viewer", "note", f"{text}; it draws with Vulkan: {VULKAN_LINE}")
     return Finding("Rerun viewer", "ok", text)

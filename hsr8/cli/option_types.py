@@ -2,7 +2,7 @@
 
 from collections.abc import Callable
 from pathlib import Path
-from typing import Annotated, Any, Literal
+from typing import Annotated, Any, Literal, get_args
 
 from tyro.conf import Positional, UseAppendAction, arg
 from tyro.constructors import PrimitiveConstructorSpec
@@ -22,23 +22,24 @@ def _optional(
     )
 
 
-def _choice(*choices: str) -> PrimitiveConstructorSpec[Any]:
+def _choice(kind: Any) -> PrimitiveConstructorSpec[Any]:
+    """Parse one value of a `Literal` of texts, of an option whose default is None."""
+    choices = get_args(kind)
     return _optional(str, f"{{{','.join(choices)}}}", choices)
 
 
+BodyKind = Literal["full", "kinematic"]
+CameraKind = Literal["rendered", "analytic", "neck-reach", "omnidirectional"]
+ViewKind = Literal["native", "web"]
 NO_DEFAULT = arg(help_behavior_hint="")  # in the help
 Integer = Annotated[int | None, _optional(int, "N"), NO_DEFAULT]
 Number = Annotated[float | None, _optional(float, "X"), NO_DEFAULT]
 Seconds = Annotated[float | None, _optional(float, "S"), NO_DEFAULT]
 Text = Annotated[str | None, _optional(str, "TEXT"), NO_DEFAULT]
 File = Annotated[Path | None, _optional(Path, "FILE"), NO_DEFAULT]
-Body = Annotated[Literal["full", "kinematic"] | None, _choice("full", "kinematic"), NO_DEFAULT]
-Camera = Annotated[
-    Literal["rendered", "analytic", "neck-reach", "omnidirectional"] | None,
-    _choice("rendered", "analytic", "neck-reach", "omnidirectional"),
-    NO_DEFAULT,
-]
-View = Annotated[Literal["native", "web"] | None, _choice("native", "web"), NO_DEFAULT]
+Body = Annotated[BodyKind | None, _choice(BodyKind), NO_DEFAULT]
+Camera = Annotated[CameraKind | None, _choice(CameraKind), NO_DEFAULT]
+View = Annotated[ViewKind | None, _choice(ViewKind), NO_DEFAULT]
 Flag = Annotated[bool, NO_DEFAULT]
 Scenario = Positional[
     Annotated[str, arg(metavar="SCENARIO", help="name (see `hsr8 list`) or TOML file")]

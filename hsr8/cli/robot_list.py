@@ -35,8 +35,10 @@ def main(options: RobotList) -> int:
         return 0
     console = Console(highlight=False)
     shown = ("name", "title", "mass_kg", "leg_m", "joints")
-    state = {True: "missing", False: "found"}
-    rows = [{**{k: e[k] for k in shown}, "model": state[e["model"] is None]} for e in entries]
+    rows = [
+        {key: entry[key] for key in shown} | {"model": "found" if entry["model"] else "missing"}
+        for entry in entries
+    ]
     console.print(tables.rows(rows))
     for text in dict.fromkeys(remedies.values()):
         names = ", ".join(name for name in remedies if remedies[name] == text)
