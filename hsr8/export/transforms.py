@@ -20,8 +20,8 @@ class Transforms:
 
     Attributes:
         frames: names of parent and child of each transform.
-        positions: (n, transforms, 3) [m].
-        orientations: quaternions w-x-y-z (n, transforms, 4) [1].
+        positions: positions of the children (n, transforms, 3) [m].
+        orientations: quaternions w-x-y-z of the children (n, transforms, 4) [1].
     """
 
     frames: tuple[tuple[str, str], ...]
@@ -55,26 +55,26 @@ def moving_transforms(
 ) -> Transforms:
     """Return the transforms at n times, at least one.
 
-    The frame map is W, base_footprint R. The base is where the camera pose of the robot puts it.
+    The frame map is W, base_footprint is R. The pose of the base follows from that of the camera.
 
     Args:
         robot: links and joints.
-        joints: measured angles (n, joints) [rad].
+        joints: measured angles of the joints of the robot (n, joints) [rad].
         correction: pose of odom in the map (n, 3) [m, m, rad].
         odometry: pose of R in odom (n, 3) [m, m, rad].
-        camera: position (n, 3) [m] and rotation (n, 3, 3) of the camera in R.
+        camera: believed position (n, 3) [m] and rotation (n, 3, 3) of the camera in R.
     """
     angles, held = dict(zip(robot.joints, joints.T, strict=True)), robot.held
     moved = _of_links(
         [k for k in robot.links if k.parent and k.joint in angles], held, angles, len(joints)
     )
     base = _base(robot.links, held, angles, *camera)
-    ahead = [_planar(correction), _planar(odometry), base]
+    to_root = [_planar(correction), _planar(odometry), base]
     root = next(link.name for link in robot.links if not link.parent)
     return Transforms(
         ((MAP, ODOM), (ODOM, FOOTPRINT), (FOOTPRINT, root), *moved.frames),
-        np.concatenate([np.stack([p for p, _ in ahead], axis=1), moved.positions], axis=1),
-        np.concatenate([np.stack([q for _, q in ahead], axis=1), moved.orientations], axis=1),
+        np.concatenate([np.stack([p for p, _ in to_root], axis=1), moved.positions], axis=1),
+        np.concatenate([np.stack([q for _, q in to_root], axis=1), moved.orientations], axis=1),
     )
 
 
@@ -124,7 +124,12 @@ def _base(
 
 
 def odom_in_map(pose: Array, odometry: Array) -> Array:
-    """Return the pose of odom in the map (n, 3) from those of R in both."""
+    """Return the pose of odom in the map (n, 3) [m, m, rad].
+
+    Args:
+        pose: pose of R in the map (n, 3) [m, m, rad].
+        odometry: pose of R in odom (n, 3) [m, m, rad].
+    """
     yaw = pose[:, 2] - odometry[:, 2]
     c, s = np.cos(yaw), np.sin(yaw)
     x, y = odometry[:, 0], odometry[:, 1]
