@@ -63,7 +63,7 @@ class Progress:
                 self._next_line += PLAIN_PERIOD
                 print(self.line(record), file=self._stream, flush=True)
             return
-        self._live.start()  # not before the context: it hides the cursor, whose end shows it
+        self._live.start()  # hides the cursor until `__exit__`, so not in the constructor
         now = clock.perf_counter()
         if now - self._shown_at >= REFRESH:
             self._shown_at = now
