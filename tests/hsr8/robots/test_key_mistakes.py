@@ -135,11 +135,8 @@ def test_joints_whose_range_excludes_zero_are_held_inside_it(described):
     assert f"posture: {joint!r} 0.000 -> 1.020 rad, within its range" in robot.notes
 
 
-def test_a_limit_of_the_model_is_not_blamed_on_a_key(described, tmp_path, monkeypatch):
+def test_a_limit_of_the_model_is_not_blamed_on_a_key(described, tmp_path):
     """The number of the message is enough, although it is rounded."""
-    monkeypatch.setattr(
-        "hsr8.robots.walk.fitting.within_joints", lambda _robot, fitted, _: (fitted, [])
-    )
     file = described("", urdf)
     model = tmp_path / "small.urdf"
     root = ElementTree.fromstring(model.read_text())
