@@ -13,7 +13,9 @@ choose_backend()  # before any test imports MuJoCo
 gc.set_threshold(50_000)  # the default takes a tenth of the time of the suite
 
 # The same examples on every machine and in every run: a failure is never a matter of luck.
-settings.register_profile("repeatable", derandomize=True, deadline=None, database=None)
+settings.register_profile(
+    "repeatable", derandomize=True, deadline=None, database=None, max_examples=50
+)
 settings.load_profile("repeatable")
 
 

@@ -1,4 +1,4 @@
-"""Robots without their rehearsal, for tests of models: walks take nine tenths of the time of loading."""
+"""Robots without their rehearsal, whose walks take most of the time of loading."""
 
 from collections.abc import Iterator
 from contextlib import contextmanager
