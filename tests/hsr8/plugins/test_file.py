@@ -127,7 +127,7 @@ def test_digests_depend_on_the_content_of_the_file(tmp_path_factory, other):
 
 def test_plugins_of_a_scenario_decide_as_the_same_objects_in_python(folder):
     named = {"plugin.planner": "mine.py:Ahead", "plugin.gaze": "mine.py:Down"}
-    fast = dict(setting.split("=") for setting in SETTINGS)
+    fast = dict(setting.split("=") for setting in SETTINGS) | {"duration": 1.5}
     given_ = hsr8.run(
         "quick",
         settings=fast,
