@@ -55,7 +55,7 @@ BANNED = {
     r"\d+ (?!if )(?:\w+ )?an? (?:second|tick|level|frame|run|metre|minute|step|seed)": "per",
 }
 PATTERN = re.compile(
-    "|".join(f"(?P<p{k}>(?<![\\w-])(?:{p})(?!\\w))" for k, p in enumerate(BANNED)),
+    "(?<![\\w-])(?:" + "|".join(f"(?P<p{k}>{p})" for k, p in enumerate(BANNED)) + r")(?!\w)",
     re.IGNORECASE | re.MULTILINE,
 )
 SUGGESTIONS = list(BANNED.values())

@@ -17,6 +17,7 @@ from hsr8.recording.table import Table
 from hsr8.robots.loaded import load_robot
 from hsr8.simulation.decisions import Decision, DecisionContext, FrameRecord
 from hsr8.simulation.record import TickRecord
+from hsr8.sweep.job import run_job
 from hsr8.world.field.layout import Beacon, Layout, Obstacle
 from hsr8.world.field.motion import Shuttle
 from hsr8.world.model.assembly import Optics, assemble
@@ -55,6 +56,31 @@ def quick_runs(tmp_path_factory):
 def quick_run(quick_runs, tmp_path_factory):
     """Copy of that run, in the folder `quick` of a folder of runs."""
     return open_run(shutil.copytree(quick_runs, tmp_path_factory.mktemp("copy") / "runs"))
+
+
+class InThisProcess:
+    """Pool that does its runs in this process."""
+
+    free = 1
+
+    def __init__(self, *_):
+        self.jobs = []
+
+    def submit(self, job):
+        self.jobs.append(job)
+
+    def wait(self, _seconds):
+        job = self.jobs.pop()
+        return [(job, run_job(job) | {"seed": job.seed, "run": job.run, "attempts": job.attempt})]
+
+    def close(self):
+        """Leave the runs that have not begun."""
+
+
+@pytest.fixture
+def sweeps_in_process(monkeypatch):
+    """Replace the pool of processes, which takes seconds to start."""
+    monkeypatch.setattr("hsr8.sweep.runs.open_pool", InThisProcess)
 
 
 @pytest.fixture(scope="session")

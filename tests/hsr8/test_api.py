@@ -59,7 +59,7 @@ def test_ctrl_c_ends_the_loop_around_a_run_and_leaves_its_folder(tmp_path):
 @pytest.mark.gl
 @pytest.mark.parametrize(("kept", "period"), [("full", 1), ("standard", 3)])
 def test_images_are_kept_by_their_setting_with_or_without_a_log(tmp_path, kept, period):
-    settings = {"robot.body": "kinematic", "duration": 1.0, "recorder.images": kept}
+    settings = {"robot.body": "kinematic", "duration": 0.4, "recorder.images": kept}
     for log in (False, True):
         out = tmp_path / str(log) if period == 3 or log else None
         run = hsr8.run("quick", settings=settings, out=out, log=log)

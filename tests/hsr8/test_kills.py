@@ -61,7 +61,7 @@ def test_a_killed_run_is_readable_up_to_its_last_second(kills, tmp_path):
     for k in range(kills):
         folder = tmp_path / str(k)
         folder.mkdir()
-        run, end = killed(folder, 1000 + k, () if k % 10 == 9 else LIGHT, rng.uniform(0.2, 3.0))
+        run, end = killed(folder, 1000 + k, () if k % 10 == 9 else LIGHT, rng.uniform(0.2, 2.0))
         for table in (run.ticks, run.records, run.frames):
             times = table["time"].tolist()
             last = times[-1] + times[-1] - times[-2] if len(times) > 1 else 0.0

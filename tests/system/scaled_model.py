@@ -115,6 +115,9 @@ def _scale_servo(actuator: mujoco.MjsActuator, scale: _Scale) -> None:
 
 def scaled_robot(size: float, folder: Path) -> LoadedRobot:
     """Return HSR-VIII of another size, written to a folder and loaded from there."""
+    file = folder / f"size-{size}.toml"
+    if file.exists():
+        return load_robot(str(file))
     spec = mujoco.MjSpec.from_file(str(models_dir() / "hsr8" / "hsr8.xml"))
     scale_robot(spec, size)
     spec.compile()
@@ -123,6 +126,5 @@ def scaled_robot(size: float, folder: Path) -> LoadedRobot:
     text = text.replace('"hsr8/hsr8.xml"', f'"size-{size}.xml"')
     for line in ("radius = 0.12\n", "tuned = true\n"):  # of the original only
         text = text.replace(line, "")
-    file = folder / f"size-{size}.toml"
     file.write_text(text, encoding="utf-8")
     return load_robot(str(file))

@@ -11,12 +11,11 @@ from vision.color_learning import learn
 MAX_ERROR = 0.12  # position error beyond which the belief must be lost [m]
 FINAL_ERROR = 0.06  # median position error at the end [m]
 FAULTS = {
-    "black for 1 s": ['fault=[{kind="camera-black",start=2.0,duration=1.0}]'],
+    "black for 1 s": ['fault=[{kind="camera-black",start=1.0,duration=1.0}]'],
     "20 % missed": ['fault=[{kind="missed-detections",magnitude=0.2}]'],
     "false blobs": ['fault=[{kind="false-detections",magnitude=0.5}]'],
     "20 % dropped": ['fault=[{kind="camera-drops",magnitude=0.2}]'],
-    "100 ms late": ['fault=[{kind="camera-latency",start=1.0,duration=2.0,magnitude=0.1}]'],
-    "60 ms late": ["camera.latency_ms=60"],
+    "100 ms late": ['fault=[{kind="camera-latency",start=0.5,duration=1.5,magnitude=0.1}]'],
 }
 RENDERED = {
     "darker, then brighter": [
@@ -48,7 +47,7 @@ def assert_recovered(outcome, recorded, reason):
 @pytest.mark.parametrize(
     ("duration", "reason"),
     [
-        (4.0, "timeout"),
+        (3.2, "timeout"),
         pytest.param(90.0, "goal", marks=[pytest.mark.slow, pytest.mark.timeout(1800)]),
     ],
 )

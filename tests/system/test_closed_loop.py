@@ -1,4 +1,4 @@
-"""The closed loop: full physics and rendering once, the fast stand-ins often."""
+"""The closed loop: full physics and rendering once, else the fast stand-ins."""
 
 import numpy as np
 import pytest
@@ -30,17 +30,8 @@ def test_quick_in_full_physics_through_the_camera(simulate):
     assert all(f.image is not None and f.image.shape == (240, 320, 3) for f in recorded.frames)
 
 
-@pytest.mark.parametrize("seed", range(2))
-def test_quick_with_the_stand_ins(simulate, seed):
-    outcome, recorded, simulation = simulate("quick", seed=seed, duration=90)
-    assert outcome.exit_reason == "goal"
-    end = recorded.records[-1].truth.robot
-    assert np.hypot(*(end[:2] - simulation.layout.waypoints[-1])) < 0.15
-    assert abs(wrap(end[2] - simulation.layout.goal_heading)) < np.radians(15)
-
-
 def test_the_paper_profile_runs_too(simulate):
-    outcome, recorded, _ = simulate("quick", 'navigation.profile="paper"', duration=10.0)
+    outcome, recorded, _ = simulate("quick", 'navigation.profile="paper"', duration=6.0)
     assert outcome.exit_reason in {"timeout", "goal"}
     first, last = recorded.records[0].truth.robot, recorded.records[-1].truth.robot
     assert np.hypot(*(last - first)[:2]) > 0.3

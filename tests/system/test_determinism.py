@@ -14,7 +14,7 @@ from hsr8.recording.verification import recompute
 from hsr8.sweep.folder import SweepFolder
 
 STAND_INS = {"robot.body": "kinematic", "camera.source": "analytic", "duration": 2.0}
-WORDS = ["--body", "kinematic", "--camera", "analytic", "--duration", "2", "--quiet"]
+WORDS = ["--body", "kinematic", "--camera", "analytic", "--quiet"]
 DIFFERENT = ({}, {"robot.speed.vx": 0.1, "walking.gait.swing_height": 0.02}, {})
 
 
@@ -39,7 +39,7 @@ def test_a_seed_repeats_its_run_and_another_seed_is_another_run(alone):
 
 @pytest.mark.gl
 def test_physics_and_pixels_repeat():
-    settings = {"duration": 2.0}
+    settings = {"duration": 1.5}
     assert simulation(5, settings).run() == simulation(5, settings).run()
 
 
@@ -98,12 +98,16 @@ def test_a_run_in_memory_is_that_on_disk_with_and_without_a_log(alone, tmp_path,
 
 
 @pytest.mark.gl
-def test_a_video_and_a_log_change_nothing(alone, tmp_path):
-    words = ["run", "course", "--seed", "3", *WORDS, "--log", "--video", "--out", str(tmp_path)]
-    assert entry(words) == 1
+def test_a_video_and_a_log_change_nothing_and_render_draws_the_video_again(tmp_path):
+    short = STAND_INS | {"duration": 0.4}
+    words = [*WORDS, "--duration", "0.4", "--log", "--video", "--out", str(tmp_path)]
+    assert entry(["run", "course", "--seed", "3", *words]) == 1
     run = hsr8.open_run(tmp_path)
-    assert (run.path / "video.mp4").exists()
-    assert state(run) == alone.state_hash
+    assert state(run) == simulation(settings=short).run().state_hash
+    assert entry(["render", str(run.path), "--out", str(tmp_path / "again.mp4"), "--quiet"]) == 0
+    for suffix in (".mp4", ".png"):
+        drawn, again = run.path / f"video{suffix}", tmp_path / f"again{suffix}"
+        assert drawn.read_bytes() == again.read_bytes()
 
 
 def test_scenario_and_command_of_a_folder_repeat_its_run(tmp_path):
@@ -116,10 +120,11 @@ def test_scenario_and_command_of_a_folder_repeat_its_run(tmp_path):
 
 
 def test_the_runs_of_a_sweep_in_processes_of_their_own_are_single_runs(tmp_path):
-    seeds = ["--seeds", "3:5", "--workers", "2"]
-    assert entry(["sweep", "course", *seeds, *WORDS, "--out", str(tmp_path / "s")]) == 1
+    words = ["--seeds", "3:5", "--workers", "2", *WORDS, "--duration", "1"]
+    assert entry(["sweep", "course", *words, "--out", str(tmp_path / "s")]) == 1
     for result in SweepFolder.read(tmp_path / "s").results():
-        assert result["state_hash"] == simulation(result["seed"]).run().state_hash
+        single = simulation(result["seed"], STAND_INS | {"duration": 1.0}).run()
+        assert result["state_hash"] == single.state_hash
 
 
 def in_turn(simulations):
@@ -149,7 +154,9 @@ def test_simulations_in_one_process_do_not_affect_each_other(together):
     """Robots are shared, parameters of their walks differ."""
 
     def simulations():
-        return [simulation(3, STAND_INS | changes, "quick") for changes in DIFFERENT]
+        return [
+            simulation(3, STAND_INS | {"duration": 1.2} | changes, "quick") for changes in DIFFERENT
+        ]
 
     separate = [one.run().state_hash for one in simulations()]
     assert len(set(separate)) == 2

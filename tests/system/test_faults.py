@@ -9,19 +9,14 @@ from hsr8.cli.main import entry
 from hsr8.recording.run import open_run
 
 START, LASTS = 0.7, 0.4  # of the faults that the robot recovers from [s]
-RECOVERY = {  # magnitudes that a walking robot recovers from within a second
+RECOVERY = {  # magnitudes that a walking robot recovers from within a second; see NO_FALL
     "attitude-bias": "magnitude=0.03",
     "gyro-bias": "magnitude=0.05",
-    "imu-frozen": "",
     "encoder-offset": 'magnitude=0.02,joint="l_ankle_pitch"',
-    "encoder-frozen": 'joint="l_shoulder_pitch"',
-    "foot-sensor-dropout": 'foot="left"',
     "foot-gain": 'magnitude=0.6,foot="right"',
     "servo-weak": "magnitude=0.7",
     "servo-stuck": 'joint="head_pan"',
-    "servo-delay": "magnitude=0.005",
     "push": "magnitude=0.5",
-    "low-friction": "magnitude=0.3",
     "bump": "magnitude=0.003,position=[0.1,0.0],radius=0.2",
 }
 FALL = {  # magnitudes that make it fall

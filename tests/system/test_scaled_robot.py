@@ -38,6 +38,12 @@ class Body:
         return np.arccos(1.0 - 2.0 * (x * x + y * y))
 
 
+@pytest.fixture(scope="module")
+def folder(tmp_path_factory):
+    """Folder with the files of the robots, each of which is loaded once."""
+    return tmp_path_factory.mktemp("robots")
+
+
 def walk(size, folder, command, seconds, change=lambda parameters: parameters):
     """Walk with lengths in units of the size, and times in units of its square root."""
     body = Body(size, folder)
@@ -57,29 +63,29 @@ def walk(size, folder, command, seconds, change=lambda parameters: parameters):
         (1.3, CommandState(forward=0.05, direction=0.1)),
     ],
 )
-def test_the_walk_is_the_same_in_longer_steps_and_slower_time(tmp_path, size, command):
-    position, _, steps = walk(1.0, tmp_path, command, 3.0)
-    scaled_position, tilt, scaled_steps = walk(size, tmp_path, command, 3.0)
-    assert np.hypot(*position) > 0.3
+def test_the_walk_is_the_same_in_longer_steps_and_slower_time(folder, size, command):
+    position, _, steps = walk(1.0, folder, command, 2.4)
+    scaled_position, tilt, scaled_steps = walk(size, folder, command, 2.4)
+    assert np.hypot(*position) > 0.2
     np.testing.assert_allclose(scaled_position, position, atol=0.01)
     assert abs(scaled_steps - steps) <= 1
     assert tilt < np.radians(3.0)
 
 
 @pytest.mark.parametrize("generator", ["preview", "mwpg"])
-def test_every_generator_walks_a_robot_of_half_the_size(tmp_path, generator):
+def test_every_generator_walks_a_robot_of_half_the_size(folder, generator):
     def change(parameters):
         return replace(parameters, pattern=replace(parameters.pattern, generator=generator))
 
-    position, tilt, steps = walk(0.5, tmp_path, VelocityCommand(0.2), 2.4, change)
+    position, tilt, steps = walk(0.5, folder, VelocityCommand(0.2), 2.4, change)
     assert tilt < np.radians(3.0)
     assert steps > 3
     assert position[0] > 0.2
 
 
-def test_a_small_robot_needs_parameters_of_its_own(tmp_path):
+def test_a_small_robot_needs_parameters_of_its_own(folder):
     # Everything is chosen, nothing derived: the walk of the reference with legs too short for it.
-    body = Body(0.5, tmp_path)
+    body = Body(0.5, folder)
     engine = WalkingEngine(body.robot, WalkingParameters())
     tilt = 0.0
     for _ in range(400):

@@ -174,8 +174,10 @@ class Observer:
         )
 
 
-@pytest.mark.parametrize("generator", ["preview", "mwpg"])
-@pytest.mark.parametrize("every", [(0.005, 0.1), (0.2, 2.5)])
+@pytest.mark.parametrize(
+    ("generator", "every"),
+    [("preview", (0.005, 0.1)), ("preview", (0.2, 2.5)), ("mwpg", (0.2, 2.5))],
+)
 def test_limited_is_reported_if_and_only_if_the_footsteps_differ_from_the_command(
     robot, make_model, ideal_body, generator, every
 ):

@@ -39,11 +39,12 @@ def bench(tmp_path, monkeypatch):
     return ["bench", "--suite", "tiny.toml", "--quiet"]
 
 
+@pytest.mark.usefixtures("sweeps_in_process")
 def test_the_same_command_gives_the_same_file(bench, capsys):
-    """Real processes; also the planner of a user, and the comparison."""
+    """Also with the planner of a user, and the comparison."""
     mine = ["--name", "mine", "--set", "plugin.planner=mine.py:Still"]
     for more in (["--out", "a"], ["--out", "b"], mine):
-        assert entry([*bench, "--quick", "--workers", "2", *more]) == 0
+        assert entry([*bench, "--quick", *more]) == 0
     assert Path("a/bench.json").read_bytes() == Path("b/bench.json").read_bytes()
     default, still = read_entry(Path("a")), read_entry(Path("bench/tiny/mine"))
     assert {f: [r["seed"] for r in runs] for f, runs in default.runs.items()} == {

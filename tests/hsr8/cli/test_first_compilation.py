@@ -62,8 +62,8 @@ def test_code_that_cannot_be_kept_is_announced_with_the_remedy(helper, monkeypat
 def test_a_run_compiles_nothing_afterwards(capsys):
     compile_all(quiet=True)
     with CompilationWatch() as watch:
-        hsr8.run("quick", settings={"duration": 2.0})
-        hsr8.run("paper", settings={"duration": 2.0})
+        hsr8.run("quick", settings={"duration": 1.2})
+        hsr8.run("paper", settings={"duration": 1.2})
     assert watch.count == 0
 
 

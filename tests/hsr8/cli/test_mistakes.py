@@ -20,6 +20,8 @@ LINES = [
     ("run quick --duration -1e3", "--duration: duration: wrong value, got -1000.0; expected more"),
     ("run quick --robot nobody", "--robot: robot.model: unknown robot 'nobody'"),
     ("run quick --out /dev/null", "cannot write the run folder /dev/null/quick"),
+    ("run quick --ros-drive", "--ros-drive"),
+    ("run quick --pace -1", "--pace"),
     ("run quick --set n_moving=3", "'world.n_moving'"),
     ("run yrad.toml", "did you mean 'yard.toml'"),
     ("run typo.toml", "typo.toml:2"),

@@ -7,6 +7,7 @@ import pytest
 from hsr8.cli.main import entry
 from hsr8.robots.file.description import read_description
 from tests.hsr8.robots.small_humanoid import SmallHumanoid
+from tests.hsr8.robots.unrehearsed import unrehearsed_robots
 
 FEET = ["l_ankle_roll_link", "r_ankle_roll_link"]
 
@@ -14,7 +15,8 @@ FEET = ["l_ankle_roll_link", "r_ankle_roll_link"]
 @pytest.fixture
 def folder(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
-    return tmp_path
+    with unrehearsed_robots():
+        yield tmp_path
 
 
 def write(folder, robot=None, name="small.xml"):
@@ -35,20 +37,13 @@ def test_roles_and_numbers_are_printed(folder, capsys):
     assert [file.name for file in folder.iterdir()] == ["small.xml"]
 
 
-def test_json_holds_findings_and_numbers(folder, capsys):
-    assert inspect(write(folder), "--json") == 0
-    result = json.loads(capsys.readouterr().out)
-    roles = {finding["role"]: finding for finding in result["findings"]}
-    assert roles["feet"]["part"] == ", ".join(FEET)
-    assert roles["feet"]["sureness"] == "certain"
-    assert result["robot"]["mass_kg"] == pytest.approx(9.3)
-    assert result["refusal"] is None
-
-
 def test_the_written_description_gives_the_inspected_robot(folder, capsys):
     file, target = write(folder), folder / "robot.toml"
     assert inspect(file, "--json", "--write", target) == 0
-    guessed = json.loads(capsys.readouterr().out)["robot"]
+    result = json.loads(capsys.readouterr().out)
+    guessed, roles = result["robot"], {row["role"]: row for row in result["findings"]}
+    assert (roles["feet"]["part"], roles["feet"]["sureness"]) == (", ".join(FEET), "certain")
+    assert (result["refusal"], guessed["mass_kg"]) == (None, pytest.approx(9.3))
     text = target.read_text("utf-8")
     assert tomllib.loads(text)["model"] == "small.xml"
     assert tomllib.loads(text)["feet"] == FEET

@@ -107,7 +107,7 @@ def test_the_checker_has_no_complaint_about_images(make):
 @pytest.mark.parametrize(
     "settings",
     [
-        pytest.param([*FAST, "duration=5.0", "camera.latency_ms=30"], id="latency"),
+        pytest.param([*FAST, "duration=2.5", "camera.latency_ms=30"], id="latency"),
     ],
 )
 def test_the_same_decisions_are_the_same_run(make, settings):
@@ -117,7 +117,7 @@ def test_the_same_decisions_are_the_same_run(make, settings):
 
 
 def test_the_velocity_of_an_action_counts_at_footsteps(make):
-    settings = [*FAST, "duration=6.0"]
+    settings = [*FAST, "duration=3.0"]
     native = hsr8.run("quick", seed=4, settings=settings, planner=Clock(), gaze=Clock())
     look, motion = Clock(), Clock()
     last = np.zeros(3)
@@ -144,7 +144,7 @@ def test_zero_is_standing_and_the_middle_of_the_neck(make):
 
 def test_observations_are_within_the_space_and_fresh(make):
     env = make(
-        "GazeAndNavigate", settings=[*FAST, "duration=4.0"], scenario="crowd", observe=["local_map"]
+        "GazeAndNavigate", settings=[*FAST, "duration=2.0"], scenario="crowd", observe=["local_map"]
     )
     env.action_space.seed(1)
     observations, rewards, *_ = play(env, lambda *_: env.action_space.sample())
@@ -156,7 +156,7 @@ def test_observations_are_within_the_space_and_fresh(make):
 
 
 def test_tracks_are_in_the_frame_of_the_robot_nearest_first(make):
-    env = make(scenario="crowd", settings=[*FAST, "duration=3.0"], max_tracks=3)
+    env = make(scenario="crowd", settings=[*FAST, "duration=2.0"], max_tracks=3)
     observations, _, _, info = play(env, lambda *_: np.zeros(2, np.float32))
     assert observations[-1]["tracks"].shape == (3, 9)
     tracks = observations[-1]["tracks"][observations[-1]["track_mask"] == 1]
@@ -172,14 +172,14 @@ def test_tracks_are_in_the_frame_of_the_robot_nearest_first(make):
 
 def test_a_seed_is_that_of_a_run_and_layouts_differ_reproducibly(make):
     def robots(env, first):
-        infos = [env.reset(seed=first)[1], *(env.reset()[1] for _ in range(4))]
+        infos = [env.reset(seed=first)[1], *(env.reset()[1] for _ in range(2))]
         return [info["seed"] for info in infos], [
             tuple(info["truth"]["obstacle_positions"].ravel().tolist()) for info in infos
         ]
 
     seeds, layouts = robots(make(), 7)
     assert seeds[0] == 7
-    assert len(set(layouts)) == len(set(seeds)) == 5
+    assert len(set(layouts)) == len(set(seeds)) == 3
     assert robots(make(), 7) == (seeds, layouts)
     assert robots(make(), 8)[1][1:] != layouts[1:]
 
@@ -202,7 +202,7 @@ def test_a_contact_is_a_failure_unless_runs_go_on(make):
     assert info["metrics"]["collisions"] == 1
     assert info["reward_terms"]["outcome"] == -5.0
     time = info["time"]
-    env = make("Navigate", "dense", [*FAST, f"duration={time + 3.0}"], end_on_contact=False)
+    env = make("Navigate", "dense", [*FAST, f"duration={time + 0.5}"], end_on_contact=False)
     _, _, ends, info = play(env, lambda *_: ahead, seed=1)
     assert ends == [False, True]
     assert info["exit_reason"] == "timeout"
@@ -220,7 +220,7 @@ def test_a_fall_is_a_failure(make):
 
 def test_weights_of_the_reward(make):
     weights = {"progress": 2.0, "time": 0.0, "tracking": 0.0}
-    settings = [*FAST, "duration=3.0"]
+    settings = [*FAST, "duration=1.5"]
     _, default, *_ = play(make(settings=settings), lambda *_: np.zeros(2, np.float32))
     _, given, _, info = play(
         make(settings=settings, reward=weights), lambda *_: np.zeros(2, np.float32)
@@ -243,7 +243,7 @@ def test_invalid_arguments_are_refused(make, options, error, message):
 
 
 def test_actions_are_clipped_to_the_space(make):
-    settings = [*FAST, "duration=2.0"]
+    settings = [*FAST, "duration=1.2"]
     for name, size in (("Gaze", 2), ("Navigate", 3)):
         runs = [
             play(make(name, settings=settings), lambda *_, k=k, n=size: np.full(n, k))[3]

@@ -9,7 +9,7 @@ from hsr8.cli.main import entry
 from hsr8.errors import UsageError
 from hsr8.gym import as_gaze, as_planner
 
-SETTINGS = ["robot.body=kinematic", "camera.source=analytic", "duration=6.0"]
+SETTINGS = ["robot.body=kinematic", "camera.source=analytic", "duration=3.0"]
 WEIGHTS = np.random.default_rng(1).normal(size=(8, 5))
 
 

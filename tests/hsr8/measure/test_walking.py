@@ -21,7 +21,7 @@ def integrated(start, velocity, time):
     """Pose after a constant velocity in the robot frame, in small steps."""
     x, y, yaw = start
     vx, vy, wz = velocity
-    n = 20000
+    n = 500
     yaws = yaw + wz * time * (np.arange(n) + 0.5) / n
     x += time / n * np.sum(np.cos(yaws) * vx - np.sin(yaws) * vy)
     y += time / n * np.sum(np.sin(yaws) * vx + np.cos(yaws) * vy)

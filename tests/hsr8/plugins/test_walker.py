@@ -214,7 +214,7 @@ def test_the_head_moves_to_its_target_within_its_limits(robot):
 
 
 def test_the_engine_of_hsr8_as_a_custom_walker_navigates_by_the_estimates_of_the_observer():
-    settings = {"camera.source": "analytic", "duration": 8.0}
+    settings = {"camera.source": "analytic", "duration": 4.0}
     usual = hsr8.run("quick", seed=4, settings=settings).metrics
     custom = hsr8.run("quick", seed=4, settings=settings, walker=BuiltIn()).metrics
     assert custom["falls"] == custom["collisions"] == 0

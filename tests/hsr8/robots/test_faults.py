@@ -9,7 +9,7 @@ import pytest
 
 from hsr8.errors import ModelError
 from hsr8.robots.file.description import read_description
-from hsr8.robots.inspection import description_text, inspect, load_inspected, touching_parts
+from hsr8.robots.inspection import description_text, inspect, load_inspected
 from hsr8.robots.loaded import load_robot
 from hsr8.trials.walk import Trial
 from tests.hsr8.robots.robot_parts import adding, part, setting
@@ -67,16 +67,15 @@ def test_a_repaired_robot_has_a_description_with_the_reason(inspected, tmp_path)
     assert load_robot(str(file)).model.mass == robot.model.mass
 
 
-@pytest.mark.parametrize("degrees", [30.0])
-def test_hips_may_pitch_about_canted_axes(inspected, degrees):
+def test_hips_may_pitch_about_canted_axes(inspected):
     def cant(root):
+        angle = np.radians(30.0)
         for side, sign in (("l", 1.0), ("r", -1.0)):
-            angle = np.radians(degrees)
             axis = f"0 {np.cos(angle)} {-sign * np.sin(angle)}"
             part(root, "joint", f"{side}_hip_pitch").set("axis", axis)
 
     _, robot = inspected(cant, robot=SmallHumanoid(hip="pry"))
-    walk = Trial(robot).walk(VelocityCommand(vx=0.5 * robot.parameters.limits.vx), 4.0)
+    walk = Trial(robot).walk(VelocityCommand(vx=0.5 * robot.parameters.limits.vx), 3.0)
     assert not walk.falls
     assert walk.tilt.max() < 5.0
 
@@ -247,18 +246,3 @@ def test_an_inertia_may_be_turned_by_any_kind_of_angles(written, tmp_path):
             axes = np.array([[0.0, -1.0, 0.0], [1.0, 0.0, 0.0], [0.0, 0.0, 1.0]]) @ axes
         moments.append(axes @ np.diag(body.inertia) @ axes.T)
     np.testing.assert_allclose(moments[0], moments[1], atol=1e-12)
-
-
-def test_arms_that_touch_the_legs_while_walking_are_moved(inspected):
-    def close(root):
-        for side, sign in (("l", 1.0), ("r", -1.0)):
-            hand = part(root, "body", f"{side}_elbow2_pitch_link").find("geom")
-            hand.attrib.update(contype="1", conaffinity="1")
-            thigh = part(root, "body", f"{side}_hip_pitch_link").find("geom")
-            thigh.attrib.update(contype="1", conaffinity="1")
-            part(root, "body", f"{side}_shoulder_pitch_link").set("pos", f"0 {sign * 0.104} 0.04")
-
-    inspection, robot = inspected(close)
-    (finding,) = (f for f in inspection.findings if f.role == "posture")
-    assert finding.reason == "the arms touch the legs while walking"
-    assert not touching_parts(robot)

@@ -2,7 +2,7 @@ from xml.etree import ElementTree
 
 import pytest
 
-from hsr8.robots.inspection import inspect, load_inspected
+from hsr8.robots.inspection import inspect, load_inspected, touching_parts
 from tests.hsr8.robots.robot_parts import part
 from tests.hsr8.robots.small_humanoid import SmallHumanoid
 
@@ -63,3 +63,19 @@ def test_soft_servos_are_replaced_by_the_rule(loaded):
     (finding,) = findings(inspection, "servo")
     assert "of the stiffness that holds it upright" in finding.reason
     assert robot.model.stiffening == 1.0
+
+
+def test_arms_that_touch_the_legs_while_walking_are_moved(loaded, monkeypatch):
+    def close(root):
+        for side, sign in (("l", 1.0), ("r", -1.0)):
+            hand = part(root, "body", f"{side}_elbow3_pitch_link").find("geom")
+            hand.attrib.update(contype="1", conaffinity="1")
+            thigh = part(root, "body", f"{side}_hip_pitch_link").find("geom")
+            thigh.attrib.update(contype="1", conaffinity="1")
+            part(root, "body", f"{side}_shoulder_pitch_link").set("pos", f"0 {sign * 0.104} 0.04")
+
+    monkeypatch.setattr("hsr8.robots.inspection.touching_parts", touching_parts)
+    inspection, robot = loaded(close)
+    (finding,) = (f for f in inspection.findings if f.role == "posture")
+    assert finding.reason == "the arms touch the legs while walking"
+    assert not touching_parts(robot)

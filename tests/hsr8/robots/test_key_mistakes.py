@@ -14,28 +14,21 @@ from tests.hsr8.robots.small_urdf import FEET, SmallUrdf, write
 SMALL = SmallHumanoid()
 ANYWHERE = [  # also of a model that does not exist
     ("feet = 3", "feet: wrong value, got 3; expected a list"),
-    ('feet = ["l", "l"]', "feet: equal names, got ['l', 'l']; expected two parts"),
     ('feets = ["l", "r"]', "feets: unknown key; did you mean 'feet'?"),
-    ('sole = "x"', 'sole: wrong type, got "x"; expected a list of two names or a table'),
     (
         "sole = {front = -1, back = 1, left = 1, right = -1, height = 0}",
         "sole: front edge not beyond the back edge, got front = -1, back = 1; expected front",
     ),
     ("servo.lag = 0", "servo.lag: wrong value, got 0; expected at least 0.001 and at most 1 s"),
-    ("zero" + "={a" * 300 + "=1" + "}" * 300, "nested too deeply"),
     ("range = {l_knee = [2, 1]}", "range.l_knee: empty range, got [2.0, 1.0]; expected lower < up"),
     ('srdf = "a.srdf"', "state: missing, got srdf alone; expected both"),
     ('head = ["a", "b"]\nrigid = ["b"]', "rigid: joint 'b' is also in head; expected one key"),
-    ("zero = {a = 1}\nposture = {a = 2}", "posture.a: also in zero; expected one key"),
     ('[posture]\nservo = "rule"', "'servo' is a key of the whole file: move it above the first ["),
 ]
 IN_THE_MODEL = [
-    ('head = ["head_yaw", "nod"]', "head: the model has no hinge joint 'nod'"),
     ("zero = {l_kne = 0.1}", "zero: the model has no hinge joint 'l_kne'; did you mean 'l_knee'?"),
     ("posture = {l_knee = 0.5}", "posture.l_knee: a joint of the leg, which moves while walking"),
     ("posture = {head_yaw = 7.0}", "posture.head_yaw: outside the range of the joint, got 7 rad"),
-    ('rigid = ["l_kne"]', "rigid: the model has no hinge joint 'l_kne'; did you mean 'l_knee'?"),
-    ('camera = "x"', "camera: "),
     (
         "range = {l_hip_yaw = [1.2, 1.4], r_hip_yaw = [1.2, 1.4]}",
         "range.l_hip_yaw: the mirrored ranges of 'l_hip_yaw' and 'r_hip_yaw' have nothing in c",
@@ -45,10 +38,6 @@ IN_THE_MODEL = [
         "range.l_hip_roll: the ready posture is outside, got 0.0",
     ),
     ("effort = {l_knee = 0.1}", "effort.l_knee: too weak to carry the robot on one leg"),
-    (
-        "sole = {front = 0.1, back = -0.1, left = 0.05, right = -0.05, height = 0.1}",
-        "sole: that of foot ",
-    ),
 ]
 
 
@@ -135,11 +124,8 @@ def test_joints_whose_range_excludes_zero_are_held_inside_it(described):
     assert f"posture: {joint!r} 0.000 -> 1.020 rad, within its range" in robot.notes
 
 
-def test_a_limit_of_the_model_is_not_blamed_on_a_key(described, tmp_path, monkeypatch):
+def test_a_limit_of_the_model_is_not_blamed_on_a_key(described, tmp_path):
     """The number of the message is enough, although it is rounded."""
-    monkeypatch.setattr(
-        "hsr8.robots.walk.fitting.within_joints", lambda _robot, fitted, _: (fitted, [])
-    )
     file = described("", urdf)
     model = tmp_path / "small.urdf"
     root = ElementTree.fromstring(model.read_text())

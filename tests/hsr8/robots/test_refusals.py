@@ -68,16 +68,6 @@ EXCHANGED = {"feet": ("r_ankle_roll_link", "l_ankle_roll_link")}
         ),
         (
             {},
-            [setting("joint", "r_hip_roll", axis="1 0.1 0")],
-            ["joint 'r_hip_roll': not the mirror image", "axes differ by 5.7 deg"],
-        ),
-        (
-            {},
-            [setting("joint", "r_hip_yaw", range="0.9 1.5")],
-            ["joint 'r_hip_yaw': the mirrored ranges of 'l_hip_yaw' and 'r_hip_yaw' have nothing"],
-        ),
-        (
-            {},
             [setting("joint", f"{side}_hip_yaw", axis="1 0 0.01") for side in "lr"],
             ["cannot move its foot in all directions"],
         ),
@@ -93,11 +83,6 @@ EXCHANGED = {"feet": ("r_ankle_roll_link", "l_ankle_roll_link")}
             ["shoulders: joints 'r_shoulder_pitch' and 'l_shoulder_pitch' do not", "exchanged"],
         ),
         (
-            {"head": ("head_yaw", "l_shoulder_pitch")},
-            [],
-            ["head: joints 'head_yaw' and 'l_shoulder_pitch' move different parts; expected"],
-        ),
-        (
             {"head": ("head_yaw", "head_pitch")},
             [setting("joint", "head_pitch", range="0.2 1")],
             ["joint 'head_pitch': the head cannot look ahead, got a range of 0.2 to 1 rad"],
@@ -107,42 +92,11 @@ EXCHANGED = {"feet": ("r_ankle_roll_link", "l_ankle_roll_link")}
             [],
             ["camera: body 'l_knee_link' moves with joint 'l_hip_yaw' of a leg or an arm"],
         ),
-        (
-            {"camera": {"body": "torso", "position": (0.0, 0.0, 1.0)}},
-            [],
-            ["camera.position: far from the body, got 1.00 m; expected at most 0.80"],
-        ),
-        (
-            {"shoulders": ("l_hip_pitch", "r_hip_pitch")},
-            [],
-            ["shoulders: joint 'l_hip_pitch' belongs to a leg; expected a joint above the legs"],
-        ),
         # closed chains and couplings
         (
             {},
             [adding('<equality><weld name="rod" body1="l_knee_link" body2="torso"/></equality>')],
             ["equality 'rod': closed chain, a weld ties 'l_knee_link' and 'torso'", "remove it"],
-        ),
-        (
-            {},
-            [
-                adding(
-                    '<equality><joint name="rod" joint1="l_knee" joint2="l_hip_roll"/></equality>'
-                )
-            ],
-            ["equality 'rod': couples joint 'l_knee' to 'l_hip_roll' in a leg"],
-        ),
-        (
-            RULE,
-            [
-                adding(
-                    '<tendon><fixed name="belt"><joint joint="l_knee" coef="1"/></fixed></tendon>'
-                ),
-                lambda root: root.find("actuator").append(
-                    root.makeelement("motor", {"tendon": "belt"})
-                ),
-            ],
-            ["tendon 'belt': drives joint 'l_knee' of a leg", 'servo = "rule"'],
         ),
         # actuators
         (
@@ -154,11 +108,6 @@ EXCHANGED = {"feet": ("r_ankle_roll_link", "l_ankle_roll_link")}
             {},
             [setting("position", "l_knee", gear="50")],
             ["actuator 'l_knee' of joint 'l_knee': gear, got 50; expected 1", 'linkage = "serial"'],
-        ),
-        (
-            {},
-            [setting("position", "l_knee", forcerange="1 60")],
-            ["actuator 'l_knee': forcerange, got 1 60; expected 0 in it"],
         ),
         (
             {},

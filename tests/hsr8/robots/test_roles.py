@@ -8,7 +8,6 @@ from tests.hsr8.robots.robot_parts import (
     checked_roles,
     described,
     raw,
-    setting,
     shipped,
 )
 from tests.hsr8.robots.small_humanoid import SmallHumanoid
@@ -73,39 +72,6 @@ def test_the_trunk_carries_shoulders_or_head(keys, trunk):
 def test_head_and_arms_are_optional(parts):
     robot = SmallHumanoid(**parts)
     checked_roles(raw(robot, described(robot)), described(robot))
-
-
-@pytest.mark.parametrize(
-    ("keys", "reason"),
-    [
-        ({"feet": ("l_ankle_rol_link", "r_ankle_roll_link")}, "did you mean 'l_ankle_roll_link'?"),
-        ({"base": "head_yaw_link"}, "got 'head_yaw_link'; expected 'base' or one fixed to it"),
-        ({"feet": ("l_ankle_roll_link", "torso")}, "above foot 'torso' has 0 hinge joints"),
-    ],
-)
-def test_an_unknown_part_is_refused(keys, reason):
-    robot = SmallHumanoid()
-    keyed = described(robot, **keys)
-    with pytest.raises(ModelError) as caught:
-        checked_roles(raw(robot, keyed), keyed)
-    assert reason in str(caught.value)
-
-
-@pytest.mark.parametrize(
-    ("robot", "changes", "reason"),
-    [
-        (SmallHumanoid(ankle="p"), (), "has 5 hinge joints, got l_hip_yaw, l_hip_roll"),
-        (
-            SmallHumanoid(actuator=""),
-            (setting("joint", "l_hip_roll", type="slide"),),
-            "'l_hip_roll' between foot 'l_ankle_roll_link' and base is a slide or ball joint",
-        ),
-    ],
-)
-def test_legs_without_six_hinges_are_refused(robot, changes, reason):
-    with pytest.raises(ModelError) as caught:
-        checked_roles(raw(robot, described(robot), *changes), described(robot))
-    assert reason in str(caught.value)
 
 
 def test_six_joints_of_which_one_is_a_common_waist_are_refused():

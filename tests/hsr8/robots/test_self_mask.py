@@ -39,7 +39,7 @@ def camera_pose(data, robot):
 @pytest.mark.parametrize("robot", ["hsr8", *(("op3",) if INSTALLED else ())])
 def test_the_self_mask_covers_the_swinging_arms(robot):
     scenario = load_scenario(
-        "walk", ['camera.source="analytic"', f'robot.model="{robot}"', "duration=4.0"]
+        "walk", ['camera.source="analytic"', f'robot.model="{robot}"', "duration=2.0"]
     )
     rng, camera, masked, outside = np.random.default_rng(1), scenario.camera.pinhole, 0, 0
     with Simulation(scenario, 1) as simulation:
@@ -51,7 +51,7 @@ def test_the_self_mask_covers_the_swinging_arms(robot):
         with mujoco.Renderer(model, camera.height, camera.width) as renderer:
             renderer.enable_segmentation_rendering()
             for tick in simulation:
-                if tick.record is None or tick.number % 40:
+                if tick.record is None or tick.number % 20:
                     continue
                 pan, tilt = rng.uniform((0.7, -1.0), (1.6, -0.2)) * (rng.choice((-1, 1)), 1)
                 data.qpos[: len(tick.record.truth.qpos)] = tick.record.truth.qpos

@@ -7,6 +7,7 @@ from hsr8.robots.loaded import load_robot
 from hsr8.scenario.layers import Layer
 from hsr8.scenario.loader import load_scenario
 from tests.hsr8.robots.mesh_humanoid import write_robot
+from tests.hsr8.robots.unrehearsed import unrehearsed_robots
 
 
 @pytest.fixture
@@ -61,7 +62,8 @@ RANDOM = 'disturbance.random.body="{}"'
 
 @pytest.fixture(scope="module")
 def file(tmp_path_factory):
-    return write_robot(tmp_path_factory.mktemp("robot"))
+    with unrehearsed_robots():
+        yield write_robot(tmp_path_factory.mktemp("robot"))
 
 
 def load(file, *settings):

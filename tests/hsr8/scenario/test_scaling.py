@@ -50,7 +50,7 @@ def table_of(scenario):
     return json.loads(scenario.model_dump_json(exclude_none=True))
 
 
-@pytest.mark.parametrize("name", built_in_names())
+@pytest.mark.parametrize("name", ["course", "corridor", "behind", "push", "fig4c"])
 @settings(max_examples=2, deadline=None)
 @given(scales)
 def test_a_scale_and_its_inverse_cancel(name, scale):
@@ -70,8 +70,9 @@ def test_the_scale_of_hsr_viii_changes_nothing(name):
     assert is_complete(table)
 
 
-@pytest.mark.parametrize("profile", ["extended", "paper"])
-@pytest.mark.parametrize("name", built_in_names())
+@pytest.mark.parametrize(
+    ("name", "profile"), [*((name, "extended") for name in built_in_names()), ("course", "paper")]
+)
 def test_a_built_in_scenario_with_all_its_defaults_is_scaled(monkeypatch, name, profile):
     monkeypatch.setattr(loader, "robot_defaults", lambda _: RobotDefaults(SCALE))
     words = [f"navigation.profile={profile}"]
@@ -153,7 +154,7 @@ def test_the_camera_of_a_robot_takes_precedence_over_a_preset(monkeypatch):
     assert (ideal.vertical_fov_deg, ideal.blind_above) == (50.0, 10_000.0)
 
 
-@pytest.mark.parametrize("name", ["course", "fig4b", "corridor", "push", "paper"])
+@pytest.mark.parametrize("name", ["fig4b", "push"])
 @pytest.mark.parametrize("more", [[], ["navigation.profile=paper", "world.scale=1.0"]])
 def test_a_dump_is_complete_and_never_scaled_again(defaults, monkeypatch, name, more):
     scenario = load_scenario(name, [*BIG, *more, "navigation.evaluation.omega_o=20.0"])

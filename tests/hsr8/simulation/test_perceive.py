@@ -11,7 +11,7 @@ from hsr8.scenario.loader import load_scenario
 from hsr8.simulation.loop import Simulation
 from navigation.decision import GazeDecision, MotionDecision
 
-FAST = ['robot.body="kinematic"', 'camera.source="analytic"', "duration=3.0"]
+FAST = ['robot.body="kinematic"', 'camera.source="analytic"', "duration=1.5"]
 
 
 class Scripted:

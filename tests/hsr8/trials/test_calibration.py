@@ -8,7 +8,7 @@ import pytest
 from hsr8.errors import ModelError
 from hsr8.robots.file.description import MIN_SPEED, Calibration
 from hsr8.robots.loaded import load_robot
-from hsr8.trials import calibration
+from hsr8.trials import calibration, robot_check
 from hsr8.trials.commands import random_commands
 from hsr8.trials.robot_check import WalkResult, check_robot
 
@@ -34,13 +34,14 @@ def test_a_short_calibration_of_the_default_robot(monkeypatch):
     """The envelope is within the limits, and close to them; the robot passes its check."""
     for name, value in (
         ("STEADY_TIME", 3.9),
-        ("RANDOM_TIME", 3.0),
+        ("RANDOM_TIME", 2.0),
         ("INTERVAL", 1.0),
         ("MAX_ERROR", 0.2),
         ("RANDOM_SEEDS", range(1)),
-        ("check_robot", partial(check_robot, duration=1.5)),
+        ("check_robot", partial(check_robot, duration=1.0)),
     ):
         monkeypatch.setattr(calibration, name, value)
+    monkeypatch.setattr(robot_check, "RANDOM_SEEDS", range(1))
     lines = []
     robot = load_robot("hsr8")
     measured, warnings = calibration.calibrate(robot, lines.append)
@@ -60,11 +61,11 @@ def test_a_short_calibration_of_the_default_robot(monkeypatch):
 
 def test_a_speed_far_below_the_rehearsed_one_is_a_warning(quick):
     """Half of the speed falls short: no walk is exact enough for the limits."""
-    quick.setattr(calibration, "MAX_TILT", 0.0)
-    quick.setattr(calibration, "SMALLEST", 0.3)
+    for name, value in (("MAX_TILT", 0.0), ("SMALLEST", 0.5), ("SHRINK", 0.4)):
+        quick.setattr(calibration, name, value)
     _, warnings = calibration.calibrate(load_robot("hsr8"))
     assert [warning.split(":")[0] for warning in warnings] == list(calibration.AXES)
-    assert warnings[0].startswith("vx: 27% of the rehearsed 0.55: ")
+    assert warnings[0].startswith("vx: 40% of the rehearsed 0.55: ")
 
 
 def checked_up_to(limit, robot):
@@ -77,9 +78,10 @@ def checked_up_to(limit, robot):
 def test_the_speeds_are_reduced_until_the_robot_passes_its_check(quick):
     """First their combination is; the lateral reach is narrowed for each."""
     quick.setattr(calibration, "check_robot", partial(checked_up_to, 0.4))
+    quick.setattr(calibration, "SHRINK", 0.8)
     lines = []
     measured, warnings = calibration.calibrate(load_robot("hsr8"), lines.append)
-    assert measured.speed["vx"] == pytest.approx(0.85**2 * 0.55, abs=1e-3)
+    assert measured.speed["vx"] == pytest.approx(0.8**2 * 0.55, abs=1e-3)
     checks = [line.rsplit(": ", 1)[1] for line in lines if line.startswith("check in ")]
     assert checks == [*["fell, l_knee at a limit"] * 5, "passed"]
     assert measured.speed["combined"] == 1.0
@@ -90,7 +92,7 @@ def test_the_speeds_are_reduced_until_the_robot_passes_its_check(quick):
 def test_a_robot_too_slow_for_navigation_is_refused(quick):
     """No description may state such speeds."""
     quick.setattr(calibration, "check_robot", partial(checked_up_to, 0.0))
-    quick.setattr(calibration, "SHRINK", 0.5)
+    quick.setattr(calibration, "SHRINK", 0.05)
     message = f"expected at least {MIN_SPEED}: l_knee at a limit"
     with pytest.raises(ModelError, match=message):
         calibration.calibrate(load_robot("hsr8"))

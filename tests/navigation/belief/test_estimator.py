@@ -81,11 +81,10 @@ def test_kidnapped_the_robot_finds_itself_and_its_obstacles_again(view, observe,
     assert np.hypot(*(red[0].position - STATIC)) < 0.08
 
 
-@pytest.mark.parametrize("seed", range(3))
-def test_nonsense_in_frames_does_no_lasting_harm(view, observe, frame, seed):
+def test_nonsense_in_frames_does_no_lasting_harm(view, observe, frame):
     """Random blobs of all kinds: no exception, no NaN, covariances stay positive."""
-    rng = np.random.default_rng(seed)
-    e = estimator(seed)
+    rng = np.random.default_rng(0)
+    e = estimator()
     time, odometry = 0.0, np.zeros(3)
     for _ in range(150):
         time += float(rng.choice([0.005, 0.06, 0.06, 3.0]))
@@ -112,7 +111,7 @@ def test_nonsense_in_frames_does_no_lasting_harm(view, observe, frame, seed):
             assert np.isfinite(t.velocity).all()
             assert np.linalg.eigvalsh(t.covariance)[0] > -1e-9
             assert t.particles is None or t.particles.weights.sum() == pytest.approx(1.0)
-    for f in frames(view, observe, frame, 6.0, seed):
+    for f in frames(view, observe, frame, 6.0):
         good = frame(time + f.time, odometry + f.odometry * [1, 1, 1], f.observations, f.view)
         belief = e.update(good)
     assert np.hypot(*belief.pose[:2]) < 0.15

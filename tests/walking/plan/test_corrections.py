@@ -113,7 +113,7 @@ def changing(tick):
     return tuple(np.random.default_rng(tick // 50).uniform(-0.3, 0.3, 3).tolist())
 
 
-@settings(max_examples=8)
+@settings(max_examples=4)
 @given(st.floats(-0.4, 0.4), st.floats(-0.15, 0.15), st.floats(-1.5, 1.5), slips, slips)
 def test_a_walk_on_any_arc_gets_its_velocity(vx, vy, wz, ahead, aside):
     result = walk(always(vx, vy, wz), (ahead, aside))
@@ -124,14 +124,14 @@ def test_a_walk_whose_command_changes_all_the_time_gets_its_velocity():
     assert walk(changing, (0.01, -0.008))[-1] == pytest.approx((-0.01, 0.008), abs=1e-4)
 
 
-@settings(max_examples=8)
+@settings(max_examples=4)
 @given(st.floats(-0.4, 0.4), st.floats(-1.5, 1.5), st.floats(-0.2, 0.2))
 def test_sway_of_the_heading_is_not_an_error(forward, turn, sway):
     result = walk(always(forward, 0.0, turn), (0.0, 0.0), cycles=4, sway=sway)
     assert result[-1] == pytest.approx((0.0, 0.0), abs=1e-9)
 
 
-@settings(max_examples=8)
+@settings(max_examples=4)
 @given(st.floats(-0.4, 0.4), st.floats(-1.5, 1.5), st.floats(-0.01, 0.01))
 def test_shifts_of_the_landings_by_balance_do_not_change_the_speed(forward, turn, shift):
     result = walk(always(forward, 0.0, turn), (0.0, 0.0), shift=shift)
@@ -168,7 +168,7 @@ def offsets(off, *, cycles=30, sway=0.02, disturbed=lambda tick: False, pressed=
     return result
 
 
-@settings(max_examples=8)
+@settings(max_examples=4)
 @given(offs, offs)
 def test_the_mean_centre_of_pressure_is_moved_under_the_plan(ahead, aside):
     assert offsets((ahead, aside))[-1] == pytest.approx((-ahead, -aside), abs=2e-4)

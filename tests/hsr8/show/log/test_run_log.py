@@ -183,7 +183,7 @@ def test_without_an_index_the_log_holds_the_same(tmp_path, model, layout, walk):
 @pytest.mark.skipif(not Path("/proc/self/task").exists(), reason="threads are counted on Linux")
 def test_logs_one_after_the_other_leave_no_threads(folder, model, layout, walk):
     counts = []
-    for _ in range(4):
+    for _ in range(3):
         _logged(folder, model, layout, walk(0.1))
         gc.collect()
         counts.append(len(list(Path("/proc/self/task").iterdir())))

@@ -4,7 +4,6 @@ import numpy as np
 import pytest
 
 from hsr8.recording import palette
-from hsr8.show.video import camera_overlay
 from hsr8.show.video.camera_overlay import CameraOverlay
 from vision.camera import PinholeCamera
 
@@ -76,44 +75,3 @@ def test_a_wider_image_shows_more_at_both_sides(summary):
     """The image of vision fills the height and is centred."""
     wide = _drawn(summary(**AWAY), (480, 240))
     assert np.array_equal(wide[100:, 80:400], _drawn(summary(**AWAY))[100:])
-
-
-def _tags(frame, size=(640, 480)):
-    """Rectangles of the dark plates of the tags, whatever is written on them."""
-    plates = []
-
-    def noted(image, corner, text, color, letters):
-        plates.append((text, corner[0], corner[1] - letters, corner[0] + 60, corner[1]))
-
-    with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(camera_overlay, "draw_text", noted)
-        _drawn(frame, size)
-    return plates
-
-
-@pytest.mark.parametrize("seed", range(8))
-def test_distances_do_not_overlap(summary, seed):
-    rng = np.random.default_rng(seed)
-    blobs = []
-    for number in range(14):
-        left, top = rng.integers(0, (280, 200))
-        width, height = rng.integers(6, (40, 60))
-        box = (int(left), int(top), int(left + width), int(top + height))
-        blobs.append(SimpleNamespace(label="red", box=box, distance=0.5 + 0.25 * number))
-    tags = _tags(summary(detections=tuple(blobs), **AWAY))
-    assert 1 <= len(tags) <= len(blobs)
-    for k, (_, left, top, right, bottom) in enumerate(tags):
-        assert 0 <= top < bottom <= 480
-        for _, *other in tags[:k]:
-            assert not (
-                left < other[2] and other[0] < right and top < other[3] and other[1] < bottom
-            )
-
-
-def test_the_nearest_detections_show_their_distance(summary):
-    box = (100, 80, 140, 160)
-    same = [SimpleNamespace(label="red", box=box, distance=d) for d in (3.0, 0.7, 2.0, 1.5)]
-    assert [text for text, *_ in _tags(summary(detections=tuple(same), **AWAY))] == [
-        "0.70 m",
-        "1.50 m",
-    ]

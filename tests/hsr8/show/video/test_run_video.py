@@ -64,10 +64,10 @@ def run(quick_run):
 @pytest.mark.parametrize("camera", ["dashboard", "follow", "head", "top", "corner", "front"])
 def test_every_camera_draws(run, camera, tmp_path):
     done = []
-    options = VideoOptions(camera=camera, size=(192, 108), fps=5)
+    options = VideoOptions(camera=camera, size=(192, 108), fps=2)
     made = render_run(run, options, tmp_path / "v.mp4", lambda n, total: done.append((n, total)))
-    assert made.frames == 5
-    assert done == [(k, 5) for k in range(1, 6)]
+    assert made.frames == 2
+    assert done == [(k, 2) for k in (1, 2)]
     assert made.video.stat().st_size > 1000
     assert made.thumbnail.read_bytes().startswith(b"\x89PNG")
 
@@ -84,7 +84,7 @@ def test_an_interrupted_video_leaves_no_file(run, tmp_path):
 
 
 @pytest.mark.gl
-@pytest.mark.parametrize("size", [(64, 64), (1280, 64), (64, 720), (640, 480)])
+@pytest.mark.parametrize("size", [(1280, 64), (64, 720)])
 def test_the_dashboard_fits_every_size(run, size, tmp_path):
     out = tmp_path / "p.png"
     made = render_run(run, VideoOptions(size=size, start=0.5), out, lambda n, total: None)
@@ -98,8 +98,6 @@ def test_an_unknown_camera_is_answered_with_known_ones(run, tmp_path):
     with pytest.raises(UsageError, match="dashboard, follow, head, top, corner, front, egocentric"):
         render_run(run, VideoOptions(camera="side"), tmp_path / "v.mp4", lambda n, total: None)
     assert list(tmp_path.glob("*v*")) == []
-    with pytest.raises(UsageError, match="did you mean 'follow'"):
-        render_run(run, VideoOptions(camera="fllow"), tmp_path / "v.mp4", lambda n, total: None)
 
 
 @pytest.mark.gl

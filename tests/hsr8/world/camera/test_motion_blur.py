@@ -73,7 +73,7 @@ def test_a_pan_leaves_level_edges_sharp_on_the_horizon():
 def test_vision_is_as_far_off_in_smeared_images_as_it_says(rate):
     rng = np.random.default_rng(4)
     detector, known, unknown = Detector(CAMERA, VisionParameters(), (), SHUTTER), [], []
-    for _ in range(40):
+    for _ in range(24):
         cylinder = at(
             rng.uniform(0.7, 2.5), rng.uniform(-20.0, 20.0), "red", rng.uniform(0.06, 0.11)
         )
@@ -90,7 +90,7 @@ def test_vision_is_as_far_off_in_smeared_images_as_it_says(rate):
 def test_an_obstacle_is_found_if_it_looks_about_as_wide_as_the_smear(ratio, detected):
     """And whatever makes it so: its size, its distance, the head's speed or the exposure."""
     rng = np.random.default_rng(6)
-    for _ in range(12):
+    for _ in range(6):
         distance, rate = rng.uniform(0.7, 1.4), rng.uniform(4.0, 6.0)
         radius = rng.uniform(0.06, 0.11)
         shutter = 2.0 * radius / distance / ratio / rate

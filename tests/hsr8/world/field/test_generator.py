@@ -116,7 +116,7 @@ def test_encounters_meet_a_robot_that_walks_straight(name):
     encounters = scenario.world.encounters
     low, high = encounters.bearing_deg
     waits = []
-    for seed in range(3):
+    for seed in range(2):
         layout = drawn(scenario, seed)
         assert {type(o.motion) for o in layout.movers} == {Passage}
         points = [layout.start[:2], *map(tuple, layout.waypoints.tolist())]

@@ -24,11 +24,15 @@ TIMES = {"time_scale", "depart", "times", "begin", "linger", "first", "period"}
 SPEEDS = {"speed", "rate", "rates"}
 
 
-@pytest.fixture(params=[(0.5, 0.25), (2.9, 1.7)], ids=str)
-def scale(request, monkeypatch):
-    length, speed = request.param
-    scale = RobotScale(length, speed, speed / length)
-    monkeypatch.setattr(loader, "robot_defaults", lambda _: RobotDefaults(scale, FAST))
+@pytest.fixture
+def scale_of(monkeypatch):
+    """Let the robot "big" have a ratio of lengths and one of speeds."""
+
+    def scale(length, speed):
+        scale = RobotScale(length, speed, speed / length)
+        monkeypatch.setattr(loader, "robot_defaults", lambda _: RobotDefaults(scale, FAST))
+        return scale
+
     return scale
 
 
@@ -60,8 +64,15 @@ def assert_similar(big, small, scale, ratio=1.0):
         assert big == small
 
 
-@pytest.mark.parametrize("name", built_in_names())
-def test_the_world_of_another_robot_is_similar(name, scale):
+@pytest.mark.parametrize(
+    ("length", "speed", "name"),
+    [
+        *((0.5, 0.25, name) for name in built_in_names()),
+        *((2.9, 1.7, name) for name in ("course", "crowd", "behind", "corridor")),
+    ],
+)
+def test_the_world_of_another_robot_is_similar(name, length, speed, scale_of):
+    scale = scale_of(length, speed)
     big = load_scenario(name, ["robot.model=big"])
     one, other = draw_world(big, 1000), default_world(name, 1000)
     assert_similar(one.layout, other.layout, scale)
@@ -79,7 +90,8 @@ def test_the_world_of_another_robot_is_similar(name, scale):
     )
 
 
-def test_clearances_are_similar(scale):
+def test_clearances_are_similar(scale_of):
+    scale = scale_of(0.5, 0.25)
     small, big = load_scenario("course"), load_scenario("course", ["robot.model=big"])
     gaps = [
         min_clearance(world.layout, world.certificate.path, scenario.robot.radius)

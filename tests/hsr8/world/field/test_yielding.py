@@ -58,7 +58,7 @@ def gaps(field, radii, seconds, robot=lambda _: ROBOT):
 
 
 def test_no_mover_drives_into_a_standing_robot():
-    """200 encounters, of which most would end in a contact without yielding."""
+    """200 encounters, of which half would end in a contact without yielding."""
     rng = np.random.default_rng(0)
     motions, radii = [], []
     while len(motions) < 200:
@@ -67,8 +67,8 @@ def test_no_mover_drives_into_a_standing_robot():
             motions.append(motion)
             radii.append(radius)
     radii = np.array(radii)
-    assert (gaps(field_of(motions, radii, yields=False), radii, 60.0) < 0.0).sum() > 100
-    assert (gaps(field_of(motions, radii), radii, 60.0) > 0.0).all()
+    assert (gaps(field_of(motions, radii, yields=False), radii, 30.0) < 0.0).sum() > 90
+    assert (gaps(field_of(motions, radii), radii, 30.0) > 0.0).all()
 
 
 SHUTTLE = Shuttle((-1.0, 0.0), (1.0, 0.0), 0.2)
@@ -119,16 +119,13 @@ def test_a_far_robot_changes_nothing():
         assert field.positions(time) == pytest.approx(nominal.positions(time), abs=1e-9)
 
 
-@pytest.mark.parametrize(("fraction", "low", "high"), [(0.0, 0, 0), (0.5, 15, 65), (1.0, 80, 80)])
-def test_the_seed_draws_who_yields_and_the_world_stays(fraction, low, high):
+def test_the_seed_draws_who_yields_and_the_world_stays():
     settings = ["world.beacons=true"]
-    plain = load_scenario("quick", settings)
-    yielding = load_scenario("quick", [*settings, f"world.yield_fraction={fraction}"])
-    count = total = 0
-    for seed in range(20):
-        one, other = draw_layout(plain, seed), draw_layout(yielding, seed)
-        assert [replace(o, yields=False) for o in other.obstacles] == list(one.obstacles)
-        count += sum(mover.yields for mover in other.movers)
-        total += len(other.movers)
-        assert other.movers == draw_layout(yielding, seed).movers
-    assert low * total <= 80 * count <= high * total
+    plain = [draw_layout(load_scenario("quick", settings), seed) for seed in range(10)]
+    for fraction, low, high in ((0.0, 0.0, 0.0), (0.5, 0.2, 0.8), (1.0, 1.0, 1.0)):
+        scenario = load_scenario("quick", [*settings, f"world.yield_fraction={fraction}"])
+        drawn = [draw_layout(scenario, seed) for seed in range(10)]
+        for one, other in zip(plain, drawn, strict=True):
+            assert [replace(o, yields=False) for o in other.obstacles] == list(one.obstacles)
+        movers = [mover.yields for layout in drawn for mover in layout.movers]
+        assert low <= np.mean(movers) <= high
