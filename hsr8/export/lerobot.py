@@ -61,9 +61,13 @@ class _Episode:
     size: tuple[int, int]
 
     @property
-    def format(self) -> tuple[Any, ...]:
-        """Properties that are equal in all episodes of a dataset."""
-        return self.joints, str(self.period), self.images is not None, self.size
+    def format(self) -> dict[str, Any]:
+        """Properties that are equal in all episodes of a dataset, by name."""
+        return {
+            "joints": ", ".join(self.joints),
+            "images": "none" if self.images is None else f"{self.size[1]} x {self.size[0]}",
+            "sample period": f"{float(self.period):g} s",
+        }
 
 
 def write_lerobot(runs: Sequence[Run], folder: Path) -> int:
@@ -79,12 +83,12 @@ def write_lerobot(runs: Sequence[Run], folder: Path) -> int:
     """
     episodes = [_episode(run) for run in runs]
     for episode in episodes[1:]:
-        if episode.format != episodes[0].format:
-            raise UsageError(
-                f"--lerobot: {episode.run.folder}: joints, sample period, images or their size "
-                f"differ, got {episode.format[1:]}; expected {episodes[0].format[1:]} as in "
-                f"{episodes[0].run.folder}"
-            )
+        for name, expected in episodes[0].format.items():
+            if (got := episode.format[name]) != expected:
+                raise UsageError(
+                    f"--lerobot: {episode.run.folder}: other {name}, got {got}; expected "
+                    f"{expected} as in {episodes[0].run.folder}"
+                )
     tasks = sorted({episode.task for episode in episodes})
     for part in ("meta/episodes", "data"):
         (folder / part / FIRST).parent.mkdir(parents=True)
