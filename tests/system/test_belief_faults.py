@@ -18,7 +18,7 @@ def errors(recorded):
 
 
 def test_a_beacon_moved_by_half_a_metre_is_ignored(simulate):
-    _, recorded, _ = simulate("quick", "world.beacon_displacement=0.5", camera=AROUND, duration=5.0)
+    _, recorded, _ = simulate("quick", "world.beacon_displacement=0.5", camera=AROUND, duration=3.0)
     position, heading, lost = errors(recorded)
     assert any("yellow/cyan" in f.belief.seen_beacons for f in recorded.frames)
     assert not lost[-1]
@@ -46,10 +46,10 @@ def test_without_beacons_no_fault_of_the_camera_makes_it_believe_that_it_is_lost
     faults = (
         '{kind="missed-detections",magnitude=0.2}',
         '{kind="false-detections",magnitude=0.5}',
-        '{kind="camera-black",start=4.0,duration=1.0}',
+        '{kind="camera-black",start=2.0,duration=1.0}',
     )
     _, recorded, _ = simulate(
-        "quick", "world.beacons=false", f"fault=[{','.join(faults)}]", seed=1, duration=7.0
+        "quick", "world.beacons=false", f"fault=[{','.join(faults)}]", seed=1, duration=4.0
     )
     position, heading, lost = errors(recorded)
     assert not lost.any()

@@ -32,7 +32,7 @@ def assert_located(detection: Detection, obstacle: Cylinder, sigmas: float = 4.0
     assert abs(detection.radius - obstacle.radius) < sigmas * detection.radius_sigma
 
 
-@settings(max_examples=60)
+@settings(max_examples=40)
 @given(
     distance=st.floats(0.45, 2.5),
     bearing=st.floats(-30.0, 30.0),
@@ -233,7 +233,7 @@ PAINTS = np.array([(0.0, 0.0, 0.0), *(c.rgb for c in COLOR_CLASSES.values())])
 LEVEL_OR_NOT = [pose(), pose(0.5, -0.6), pose(0.0, -np.pi / 2), pose(0.1, -0.3, 1.5), pose(0, 1.2)]
 
 
-@settings(max_examples=80)
+@settings(max_examples=50)
 @given(
     size=st.sampled_from([(1, 1), (1, 7), (5, 3), (32, 24), (64, 48)]),
     view=st.sampled_from(LEVEL_OR_NOT),
@@ -256,7 +256,7 @@ def test_every_detection_in_an_arbitrary_image_is_valid(size, view, boxes, small
         assert 0 <= result.box[1] < result.box[3] <= height
 
 
-@settings(max_examples=60)
+@settings(max_examples=40)
 @given(
     distance=st.floats(0.4, 2.5),
     bearing=st.floats(-30.0, 30.0),

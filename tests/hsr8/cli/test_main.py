@@ -53,9 +53,9 @@ def test_help_imports_nothing_heavy_and_has_every_command_in_one_group():
     assert sorted(shown) == sorted(COMMANDS)
 
 
-def test_a_missing_plugin_is_refused_before_mujoco_is_imported():
+def test_a_scenario_is_read_and_a_missing_plugin_refused_before_mujoco_is_imported():
     words = ["run", "quick", "--set", "plugin.planner=none.py:Mine"]
-    code, imported, said = imported_by(words, ["mujoco"])
+    code, imported, said = imported_by(words, ["mujoco", "rerun", "cv2", "pinocchio"])
     assert (code, imported) == (2, [])
     assert "none.py:Mine: cannot read none.py" in said
 

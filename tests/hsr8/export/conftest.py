@@ -8,9 +8,9 @@ from hsr8.recording.run import open_run
 
 @pytest.fixture(scope="package")
 def run(tmp_path_factory):
-    """Two seconds of `quick` without images."""
+    """A second of `quick` without images."""
     out = tmp_path_factory.mktemp("runs")
-    options = ["--duration", "2", "--camera", "analytic", "--quiet"]
+    options = ["--duration", "1", "--camera", "analytic", "--quiet"]
     entry(["run", "quick", "--out", str(out), *options])
     return open_run(out)
 

@@ -97,10 +97,9 @@ def test_numpy_and_openblas_follow_the_choice():
 
 
 @needs_level_3
-@pytest.mark.parametrize("first", ["numpy", "gymnasium"])
-def test_after_an_import_of_numpy_the_arithmetic_is_that_in_use(first):
+def test_after_an_import_of_numpy_the_arithmetic_is_that_in_use():
     """Where it differs, one warning at the import of the user shows the remedy, which works."""
-    code = f"import {first}{PROBE}"
+    code = f"import numpy{PROBE}"
     (in_force, core, used), text = probe(code)
     assert (in_force == PORTABLE) == is_portable(core, used)
     assert text.count("NumPy was imported before hsr8") == (in_force == NATIVE)

@@ -55,7 +55,7 @@ def rotation(pose):
     )
 
 
-@settings(max_examples=60)
+@settings(max_examples=40)
 @given(SEEDS)
 def test_forward_kinematics_agree_with_pinocchio(seed):
     leg = Leg.of(random_chain(seed), np.zeros(6))
@@ -65,7 +65,7 @@ def test_forward_kinematics_agree_with_pinocchio(seed):
     np.testing.assert_allclose([pose.x, pose.y, pose.z], p, atol=1e-12)
 
 
-@settings(max_examples=100)
+@settings(max_examples=50)
 @given(SEEDS)
 def test_inverse_kinematics_find_the_joints_of_any_leg(seed):
     leg = Leg.of(random_chain(seed), np.zeros(6))

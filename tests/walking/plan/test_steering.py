@@ -75,7 +75,7 @@ def test_limits_are_idempotent_and_mirror(vx, vy, wz):
     assert mirrored == pytest.approx((once[0], -once[1], -once[2]))
 
 
-@settings(max_examples=40)
+@settings(max_examples=25)
 @given(st.floats(-0.2, 0.2), st.floats(-0.05, 0.05), st.floats(-0.3, 0.3), generators)
 def test_a_command_within_the_limits_is_followed_exactly(steer, vx, vy, wz, generator):
     steering = steer(generator)
@@ -89,7 +89,7 @@ def test_a_command_within_the_limits_is_followed_exactly(steer, vx, vy, wz, gene
         assert made == pytest.approx((vx, vy, wz), abs=1e-9)
 
 
-@settings(max_examples=40)
+@settings(max_examples=25)
 @given(walks, generators)
 def test_a_command_is_reported_as_limited_if_and_only_if_it_is(steer, walk, generator):
     steering, state = steer(generator), np.zeros(1, Data)[0]
@@ -108,7 +108,7 @@ def test_a_command_is_reported_as_limited_if_and_only_if_it_is(steer, walk, gene
                 assert tuple(published.applied[:3]) == pytest.approx(steering.velocity, abs=1e-9)
 
 
-@settings(max_examples=40)
+@settings(max_examples=25)
 @given(walks)
 def test_the_velocity_rises_no_faster_than_the_limits(steer, walk):
     steering = steer()
@@ -123,7 +123,7 @@ def test_the_velocity_rises_no_faster_than_the_limits(steer, walk):
                 assert abs(new) - abs(old) <= rate * CONTROL_PERIOD + 1e-12
 
 
-@settings(max_examples=40)
+@settings(max_examples=25)
 @given(velocities, generators)
 def test_a_stop_is_followed_at_once_if_the_generator_limits_it_and_in_the_braking_time_else(
     steer, velocity, generator

@@ -31,7 +31,7 @@ def drawn(shown, layout):
     return draw
 
 
-@pytest.mark.parametrize("size", [(64, 64), (192, 108), (960, 540), (1280, 720), (400, 1000)])
+@pytest.mark.parametrize("size", [(64, 64), (1280, 720), (400, 1000)])
 def test_scene_and_camera_are_shown_at_any_size(drawn, size):
     image, board = drawn(size)
     assert image.shape == (size[1], size[0], 3)
@@ -50,11 +50,7 @@ def test_collisions_are_shown(drawn):
     assert columns.max() - columns.min() < 60
 
 
-def test_images_are_independent(drawn):
-    assert np.array_equal(drawn((640, 360))[0], drawn((640, 360))[0])
-
-
-@pytest.mark.parametrize("size", [VideoOptions().size, (1280, 720), (1920, 1080)])
+@pytest.mark.parametrize("size", [VideoOptions().size, (1920, 1080)])
 def test_values_have_names_from_the_default_size_on(drawn, size):
     image, board = drawn(size)
     width, height = board.scene_size
