@@ -8,7 +8,7 @@ from hsr8.scenario.loader import load_scenario
 from hsr8.world.field.generator import draw_layout
 from hsr8.world.field.layout import Layout, Obstacle, Reactions
 from hsr8.world.field.motion import Circle, Line, Passage, Shuttle
-from hsr8.world.field.moving_field import moving_field
+from hsr8.world.field.moving_field import SLOWING, YIELD_MARGIN, moving_field
 from hsr8.world.field.wander import draw_wander
 
 PERIOD, RADIUS, ROBOT = 0.02, 0.12, (0.0, 0.0)
@@ -85,6 +85,16 @@ def test_the_lane_stays_and_the_clock_goes_slower():
         assert clock <= now <= time + 1e-9
         clock = now
     assert clock < 8.0
+
+
+def test_a_mover_slows_down_before_its_margin_and_waits_there():
+    field = field_of([SHUTTLE])
+    for k in range(700):
+        field.react(k * PERIOD, (0.6, 0.0))
+        ((x, _),), ((vx, _),) = field.positions(k * PERIOD), field.velocities(k * PERIOD)
+        free = 0.6 - x - RADIUS - 0.08 - YIELD_MARGIN
+        assert vx == pytest.approx(min(free / SLOWING, SHUTTLE.speed), abs=0.025)
+    assert free == pytest.approx(0.0, abs=0.025)
 
 
 def test_the_velocity_is_the_derivative_of_the_position():
