@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
 
-from walking.body.tree import HEAD
+from walking.body.tree import HEAD_JOINTS, JOINT_NAMES
 from walking.command import VelocityCommand
 from walking.data import Body, DeadReckoning
 from walking.estimate.body import base_height
@@ -15,6 +15,7 @@ from walking.plan.reference import plan_walk
 from walking.published import CameraRecord, Published, publish_camera, publish_plan, walking_state
 from walking.state import Phase
 
+HEAD = [JOINT_NAMES.index(name) for name in HEAD_JOINTS]
 FEET = ((0.01, 0.042, -0.22, 0.1), (-0.01, -0.042, -0.21, -0.05))  # x, y, z, yaw
 
 
