@@ -16,7 +16,7 @@ from hsr8.plugins.method import number
 from hsr8.plugins.walker import CustomWalker
 from hsr8.robots.loaded import load_robot
 from hsr8.scenario.schema import Scenario
-from hsr8.simulation.controller import Robot, SensorFrame
+from hsr8.simulation.controller import SensorFrame
 from hsr8.simulation.decisions import FrameRecord, Situation
 from hsr8.simulation.drive import Drive
 from hsr8.simulation.record import Event, EventWatch, RunOutcome, Second, Tick, TickRecord
@@ -61,6 +61,18 @@ class _BegunTick:
     situation: Situation | None
     motion: MotionDecision | None = None
     gaze: GazeDecision | None = None
+
+
+@contextmanager
+def _building(scenario: Scenario) -> Iterator[None]:
+    """Convert errors of parameters that do not fit together into a `ScenarioError`."""
+    try:
+        yield
+    except (ValueError, ArithmeticError, MemoryError) as error:
+        raise ScenarioError(
+            f"scenario {scenario.name!r}: invalid parameters in walking, vision, belief or "
+            f"navigation: {error}"
+        ) from error
 
 
 class Simulation:
@@ -121,7 +133,16 @@ class Simulation:
         self._begun: _BegunTick | None = None
         self._body = build_body(scenario, self.seed, self.layout, self.model)
         self._drive = drive
-        self._robot = self._build_robot(planner, gaze, walker)
+        with _building(scenario):
+            self._robot = build_robot(
+                scenario,
+                self.layout,
+                self.seed,
+                planner=planner,
+                gaze=gaze,
+                walker=walker,
+                drive=drive,
+            )
         self._watch = EventWatch(scenario.fault)
         names = self.humanoid.model.names
         self._sensor_faults = SensorFaults(scenario.fault, names)
@@ -129,36 +150,12 @@ class Simulation:
         self._camera = HeadCamera(
             scenario, self.model, self.layout, camera_model(scenario, self.layout.sizes), self.seed
         )
-        self._interrupted = False
-        self._open = False
+        self._interrupted = self._open = False
         self._record_ticks = round(scenario.recorder.period_ms / 1000 / CONTROL_PERIOD)
         self._ticks = round(scenario.duration / CONTROL_PERIOD) + 1
         self._end: tuple[int, str] | None = None
         self._published: FrameRecord | None = None
         self._not_sent = np.full(len(names), np.nan)
-
-    def _build_robot(
-        self,
-        planner: PlannerPlugin | None,
-        gaze: GazePlugin | None,
-        walker: CustomWalker | None,
-    ) -> Robot:
-        scenario = self.scenario
-        try:
-            return build_robot(
-                scenario,
-                self.layout,
-                self.seed,
-                planner=planner,
-                gaze=gaze,
-                walker=walker,
-                drive=self._drive,
-            )
-        except (ValueError, ArithmeticError, MemoryError) as error:
-            raise ScenarioError(
-                f"scenario {scenario.name!r}: invalid parameters in walking, vision, belief or "
-                f"navigation: {error}"
-            ) from error
 
     @property
     def time(self) -> float:
@@ -303,26 +300,25 @@ class Simulation:
         return Second(self.tick, self._body.time, digest, state.digest(), self._body.saturation())
 
     def _begin(self) -> _BegunTick:
-        number, robot = self.tick, self._robot
-        seconds = [self._mark()] if number % TICKS_PER_SECOND == 0 else []
-        sensed = self._sense(number)
+        seconds = [self._mark()] if self.tick % TICKS_PER_SECOND == 0 else []
+        sensed = self._sense(self.tick)
         started = perf_counter()
-        targets = robot.walk(sensed)
+        targets = self._robot.walk(sensed)
         walking_time = perf_counter() - started
-        situation = robot.perceive(sensed)
-        if number % self._record_ticks == 0:
+        situation = self._robot.perceive(sensed)
+        if self.tick % self._record_ticks == 0:
             self.truth = self._body.truth()
         return _BegunTick(seconds, sensed, targets, walking_time, situation)
 
     def _complete(self, begun: _BegunTick) -> Tick:
-        number, seconds, targets = self.tick, begun.seconds, begun.targets
+        number, seconds = self.tick, begun.seconds
         if begun.situation is not None:
             self._robot.decide(begun.situation, begun.motion, begun.gaze)
         walker, setpoint = self._robot.walking, self._not_sent
         record, events = self._record(number)
         reason = self._reason(number)
         if not reason:
-            targets = self._servo_faults.apply_fault(targets, number)
+            targets = self._servo_faults.apply_fault(begun.targets, number)
             setpoint = self._body.setpoints(targets).copy()
             reason, diverged = self._apply(targets)
             events += diverged
@@ -400,6 +396,5 @@ class Simulation:
 
     def _stays_down(self) -> bool:
         """Return whether a fallen robot does not try to get up, or has given up."""
-        if not self.scenario.walking.get_up.enabled:
-            return True
-        return self._robot.walking_state().phase is Phase.FALLEN
+        gets_up = self.scenario.walking.get_up.enabled
+        return not gets_up or self._robot.walking_state().phase is Phase.FALLEN
