@@ -81,9 +81,7 @@ def test_other_endings_are_errors(job, monkeypatch, place, error, outcome, word,
 
 
 def test_the_traceback_of_a_simulation_that_cannot_be_built_is_in_the_folder(job, monkeypatch):
-    monkeypatch.setattr(
-        "hsr8.simulation.loop.Simulation._build_robot", raising(RuntimeError("no robot"))
-    )
+    monkeypatch.setattr("hsr8.simulation.loop.build_robot", raising(RuntimeError("no robot")))
     assert result_of(job)["outcome"] == "crashed"
     assert "no robot" in (job.path / "crash.txt").read_text()
 
