@@ -52,7 +52,7 @@ def test_a_missed_goal_is_a_failure(job):
 
 
 def raising(error):
-    def method(self, *_):
+    def method(*_, **__):
         raise error
 
     return method
