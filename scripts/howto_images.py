@@ -17,6 +17,7 @@ from hsr8.recording.derived import ellipse_axes
 from hsr8.recording.run import Run
 from hsr8.scenario.loader import load_scenario
 from hsr8.show.plan_view import PlanView
+from hsr8.show.video.run_video import VideoOptions, render_run
 from hsr8.sweep.bench.suite import SHIPPED, read_suite
 from hsr8.sweep.seeds import parse_seeds
 from hsr8.world.field.generator import draw_layout, draw_world
@@ -50,6 +51,7 @@ FAST = {"robot.body": "kinematic", "camera.source": "analytic"}
 BLACK = 8.0, 6.0  # start and duration of the fault [s]
 WINDOW = 6.0, 6.4  # shown messages [s]
 GYM_SEED, GYM_STEPS = 3, 12
+CLIP_SEED, CLIP = 2, (6.0, 18.0)  # shown part of a course [s]
 WORLDS = (
     *("course", "crowd", "dense", "fast", "conflict", "behind", "corridor", "crossing"),
     *("blind-corner", "pedestrians"),
@@ -276,7 +278,16 @@ def worlds(folder: Path) -> None:
         Image.fromarray(plan.draw()).save(plans / f"{name}.webp", quality=85)
 
 
+def dashboard(out: Path) -> None:
+    """Draw the video of a course, in full physics, as an animation."""
+    run = hsr8.run("course", seed=CLIP_SEED, settings={"duration": CLIP[1]})
+    start, stop = CLIP
+    options = VideoOptions(fps=6, speed=1.0, start=start, stop=stop, size=(800, 450), fine=True)
+    render_run(run, options, out / "dashboard.webp", lambda done, of: None)
+
+
 WRITTEN: dict[str, Callable[[Path], None]] = {
+    "dashboard": dashboard,
     "terminal": terminal,
     "comparison": comparison,
     "worlds": worlds,
