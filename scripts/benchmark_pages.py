@@ -220,7 +220,7 @@ def _markdown(table: Table) -> list[str]:
 
 
 def _counted(runs: Sequence[Run]) -> str:
-    return f"{sum(run['success'] for run in runs)} of {len(runs)}"
+    return f"{sum(run['success'] for run in runs)} of {len(runs)}" if runs else ""
 
 
 def _seeds(runs: Sequence[Run]) -> str:
