@@ -9,6 +9,7 @@ from types import SimpleNamespace
 from hsr8.recording.derived import walk_of
 from hsr8.recording.run import Run, open_run
 from hsr8.recording.table import Table
+from hsr8.recording.verdict import counted
 from hsr8.robots.loaded import load_robot
 from hsr8.scenario.loader import load_scenario
 from hsr8.scenario.schema import Scenario
@@ -102,9 +103,9 @@ def title(scenario: Scenario, run: Run) -> str:
         name += f", {navigation.planner.paper.weights} weights"
     kinds = run.events["kind"]
     counts = [
-        f"{int(run.frames['via_points'][-1])} via points",
-        f"{int(np.count_nonzero(kinds == 'collision'))} collisions",
-        f"{int(np.count_nonzero(kinds == 'fall'))} falls",
+        counted(int(run.frames["via_points"][-1]), "via point"),
+        counted(int(np.count_nonzero(kinds == "collision")), "collision"),
+        counted(int(np.count_nonzero(kinds == "fall")), "fall"),
         f"{float(run.records['time'][-1]):.1f} s",
     ]
     return "\n".join((name, f"{camera} camera", ", ".join(counts)))
@@ -203,14 +204,16 @@ def _snapshot(axes: Axes, shown: Tour, frame: SimpleNamespace) -> None:
         )
     axes.plot(*records["qpos"][first : row + 1 : 10, :2].T, color=ROBOT, linewidth=0.8, alpha=0.6)
     _footprints(axes, shown, frame.time)
-    _way_points(axes, shown, frame)
+    _via_points(axes, shown, frame)
     robot(axes, frame.truth, facecolor=ROBOT)
     half = 0.5 * np.array(shown.layout.field_size)
     square(axes, (-half[0], half[0]), (-half[1], half[1]))
     axes.grid(False)
     hits = np.sum(shown.collisions <= frame.time)
     axes.set_title(
-        f"{frame.time:.1f} s, {frame.via_points} via points, {hits} contacts", fontsize=8
+        f"{frame.time:.1f} s, {counted(frame.via_points, 'via point')}, "
+        f"{counted(int(hits), 'contact')}",
+        fontsize=8,
     )
 
 
@@ -223,7 +226,7 @@ def _footprints(axes: Axes, shown: Tour, time: float) -> None:
         )
 
 
-def _way_points(axes: Axes, shown: Tour, frame: SimpleNamespace) -> None:
+def _via_points(axes: Axes, shown: Tour, frame: SimpleNamespace) -> None:
     points = np.reshape(shown.layout.waypoints, (-1, 2))
     here, ahead = (
         points[frame.via_points % len(points)],
