@@ -1,4 +1,7 @@
-"""Images of the pages on how to do something: each from a short run, with a kinematic body."""
+"""Images of the pages on how to do something: each from a short run.
+
+The body is kinematic, but in the animation of the dashboard.
+"""
 
 import io
 import re
@@ -278,12 +281,12 @@ def worlds(folder: Path) -> None:
         Image.fromarray(plan.draw()).save(plans / f"{name}.webp", quality=85)
 
 
-def dashboard(out: Path) -> None:
+def dashboard(folder: Path) -> None:
     """Draw the video of a course, in full physics, as an animation."""
     run = hsr8.run("course", seed=CLIP_SEED, settings={"duration": CLIP[1]})
     start, stop = CLIP
     options = VideoOptions(fps=6, speed=1.0, start=start, stop=stop, size=(800, 450), fine=True)
-    render_run(run, options, out / "dashboard.webp", lambda done, of: None)
+    render_run(run, options, folder / "dashboard.webp", lambda done, of: None)
 
 
 WRITTEN: dict[str, Callable[[Path], None]] = {
