@@ -185,7 +185,7 @@ class EkfSlam:
         landmarks, discs = self._x[3:].reshape(-1, 2), (detections.positions, detections.radii)
         expected = clear_points(landmarks, *viewpoint, *discs, p.occlusion_margin)
         for i in np.flatnonzero(expected).tolist():
-            if i not in matched:
+            if i not in matched and not self._is_seen(i, frame.observations):
                 _, count = self._missing.get(self._ids[i], (0.0, 0))
                 self._missing[self._ids[i]] = self._seen_at[i], count + 1
         misses = sum(count for _, count in self._missing.values())
@@ -250,6 +250,19 @@ class EkfSlam:
             if len(gated) == 1 and gated[0][0] < matched.get(gated[0][1], (inf,))[0]:
                 matched[gated[0][1]] = (gated[0][0], o)
         return {i: o for i, (_, o) in matched.items()}
+
+    def _is_seen(self, i: int, observations: Sequence[Observation]) -> bool:
+        """Return whether an obstacle of its colour is detected at landmark `i`.
+
+        A cut or occluded one is too inexact to correct the pose, but shows that it is right.
+        """
+        landmark = self._x[3 + 2 * i : 5 + 2 * i]
+        return any(
+            o.kind == "obstacle"
+            and o.label == self._labels[i]
+            and self._distance(o, landmark) < self._mapping.match_distance
+            for o in observations
+        )
 
     def _innovation(self, i: int, o: Observation) -> tuple[Array, Array]:
         """Return the innovation (2,) and its Jacobian by the pose and landmark `i` (2, 5)."""

@@ -157,8 +157,13 @@ PLACES = [  # no two arrangements of these are alike
 ]
 
 
-def look_around(slam, observe, frame, track, rng, times, *, where=(0.0, 0.0, 0.0), hidden=()):
-    """The robot turns about on the spot of its odometry, which stands at `where` in truth."""
+def look_around(
+    slam, observe, frame, track, rng, times, *, where=(0.0, 0.0, 0.0), hidden=(), **flags
+):
+    """The robot turns about on the spot of its odometry, which stands at `where` in truth.
+
+    `flags` are those of all detections.
+    """
     for k in times:
         turn = 0.05 * k
         x, y, heading = where
@@ -167,9 +172,10 @@ def look_around(slam, observe, frame, track, rng, times, *, where=(0.0, 0.0, 0.0
         for i, (px, py, label) in enumerate(PLACES):
             distance, bearing = range_bearing(pose, (px, py))
             if abs(bearing) < 0.7 and distance < 2.5 and i not in hidden:
-                observed.append(
-                    observe(pose, (px, py), label=label, noise=rng.normal(0, SIGMA), sigma=SIGMA)
+                seen = observe(
+                    pose, (px, py), label=label, noise=rng.normal(0, SIGMA), sigma=SIGMA
                 )
+                observed.append(replace(seen, **flags))
                 numbers.append(i)
         f = frame(DT * k, (0.0, 0.0, turn), observed)
         slam.update(f)
@@ -213,5 +219,13 @@ def test_kidnapped_it_detects_the_failure_and_relocalizes(mapped):
 def test_one_missing_landmark_is_not_a_failure(mapped):
     slam, go_on = mapped
     go_on(130, hidden=(3,))
+    assert not slam.lost
+    assert slam.recoveries == 0
+
+
+@pytest.mark.parametrize("flag", ["cut", "occluded"])
+def test_landmarks_that_are_partly_visible_are_not_missing(mapped, flag):
+    slam, go_on = mapped
+    go_on(30, **{flag: True})
     assert not slam.lost
     assert slam.recoveries == 0
