@@ -172,9 +172,7 @@ def look_around(
         for i, (px, py, label) in enumerate(PLACES):
             distance, bearing = range_bearing(pose, (px, py))
             if abs(bearing) < 0.7 and distance < 2.5 and i not in hidden:
-                seen = observe(
-                    pose, (px, py), label=label, noise=rng.normal(0, SIGMA), sigma=SIGMA
-                )
+                seen = observe(pose, (px, py), label=label, noise=rng.normal(0, SIGMA), sigma=SIGMA)
                 observed.append(replace(seen, **flags))
                 numbers.append(i)
         f = frame(DT * k, (0.0, 0.0, turn), observed)
