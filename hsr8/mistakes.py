@@ -137,7 +137,8 @@ def _text(details: ErrorDetails, path: Path, kind: Any, data: Any, more_keys: It
     if what in _UNKNOWN:
         return _unknown(path, kind, data, more_keys)
     if what == "missing" and isinstance(details["loc"][-1], int):
-        return f"too short, got {shown(_at(path, data))}; expected more elements"
+        elements = get_args(chosen(annotation_at(path, kind, data), _at(path, data))[0])
+        return f"too short, got {shown(_at(path, data))}; expected {len(elements)} elements"
     if what == "missing":
         return "missing; expected a value" + (f": {meaning}" if meaning else "")
     if what == "json_invalid":

@@ -9,7 +9,6 @@ from hsr8.cli.sweep import folder_name, report_lost_runs, require_no_seed
 from hsr8.errors import INTERRUPTED, Hsr8Error, UsageError
 from hsr8.files import atomic
 from hsr8.files.text import shell_line
-from hsr8.process.signals import like_ctrl_c
 from hsr8.sweep.bench.entry import FILE, Entry, entry_page, row
 from hsr8.sweep.bench.suite import (
     SHIPPED,
@@ -49,8 +48,7 @@ def main(options: Bench) -> int:
         family: command_words(Run(path, set=((*suite.settings, *words),)))
         for family, path in suite.paths(file).items()
     }
-    with like_ctrl_c():
-        runs = run_sweeps(out, scenarios, commands, execution)
+    runs = run_sweeps(out, scenarios, commands, execution)
     if runs.interrupted:
         return INTERRUPTED
     results = {

@@ -25,7 +25,7 @@ from walking.command import VelocityCommand
 from walking.observer import BodyEstimate
 from walking.state import BodySensors
 
-TEXT = "compiling the inner loops, once per installation: half a minute"
+TEXT = "compiling the inner loops, once per installation: up to half a minute"
 NOT_KEPT = (
     "compiling the inner loops, a minute in every run because no folder can be written; "
     "NUMBA_CACHE_DIR=DIR keeps them"

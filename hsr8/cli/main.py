@@ -16,6 +16,7 @@ import tyro
 from hsr8.cli.options import BenchCompare, Command
 from hsr8.cli.robot_options import Robot, RobotAction
 from hsr8.errors import INTERRUPTED, Hsr8Error, UsageError
+from hsr8.process.signals import like_ctrl_c
 from hsr8.recording.crash import crash_report
 from hsr8.suggestion import suggestion
 from hsr8.version import VERSION
@@ -85,7 +86,7 @@ def entry(arguments: Sequence[str] | None = None) -> int:
         if isinstance(error, BrokenPipeError):
             return SIGPIPE_EXIT
         with suppress(OSError):
-            print(f"hsr8: cannot write: {error.strerror}", file=sys.stderr)
+            print(f"hsr8: cannot write {error.filename or 'standard output'}: {error.strerror}", file=sys.stderr)
         return Hsr8Error.exit_code
     return code
 
@@ -101,7 +102,8 @@ def _run(words: list[str]) -> int:
             options = command.action if isinstance(command, Robot) else command
             name = "compare" if type(options) is BenchCompare else _words(type(options), "_")
             module = importlib.import_module(f"hsr8.cli.{name}")
-            code: int = module.main(options)
+            with like_ctrl_c():
+                code: int = module.main(options)
     except Hsr8Error as error:
         notes = getattr(error, "__notes__", [])
         print(", ".join([f"hsr8: {error}", *notes]), file=sys.stderr)

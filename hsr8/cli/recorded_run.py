@@ -2,7 +2,7 @@
 
 import sys
 from collections.abc import Callable, Iterator, Sequence
-from contextlib import ExitStack, contextmanager
+from contextlib import ExitStack, contextmanager, redirect_stdout
 from typing import TYPE_CHECKING
 
 from rich.console import Console
@@ -17,7 +17,6 @@ from hsr8.files import atomic
 from hsr8.files.atomic import require_temporary
 from hsr8.files.text import shell_word
 from hsr8.process.gl import require_gl
-from hsr8.process.signals import like_ctrl_c
 from hsr8.recording.crash import crash_report
 from hsr8.recording.run import Run as RecordedRun
 from hsr8.recording.run_folder import VIDEO, new_run_folder
@@ -65,6 +64,8 @@ def _start(options: Run, scenario: Scenario, command: Sequence[str]) -> int:
     new = new_run_folder(options.out, scenario.name, scenario.seed)  # before any compilation
     with new as path, _view(options) as view:
         with crash_report(path), ExitStack() as opened:
+            if options.json:  # standard output is the result alone, without what a plugin prints
+                opened.enter_context(redirect_stdout(sys.stderr))
             drive = Drive() if options.ros_drive else None
             receivers: list[Callable[[Tick], None]] = []
             if options.ros:
@@ -157,7 +158,7 @@ def _view(options: Run) -> "Iterator[LiveView | None]":
         return
     from hsr8.show.viewer import live_view  # noqa: PLC0415
 
-    with like_ctrl_c(), live_view(options.view) as view:
+    with live_view(options.view) as view:
         if view.page:
             print(f"open in a browser on this machine:  {view.page}", file=sys.stderr)
         yield view

@@ -8,7 +8,6 @@ from hsr8.cli.output_file import parse_size, require_file_name, writing
 from hsr8.errors import UsageError
 from hsr8.files import atomic
 from hsr8.files.text import shell_word
-from hsr8.process.signals import like_ctrl_c
 from hsr8.recording.manifest import versions
 from hsr8.recording.run import Run, open_run
 from hsr8.show import viewer
@@ -33,7 +32,7 @@ def main(options: Replay) -> int:
             print(f"screenshot  {options.screenshot} (at {time:.1f} s)")
         return 0
     if options.view == "web":
-        with like_ctrl_c(), live_view("web", log) as view:
+        with live_view("web", log) as view:
             print(f"open in a browser on this machine:  {view.page}", flush=True)
             print("Ctrl-C ends the viewer", file=sys.stderr)
             view.wait()

@@ -49,7 +49,11 @@ def _counts(results: Mapping[str, Any]) -> str:
     counts = [counted(results[key], key.removesuffix("s")) for key in ("collisions", "falls")]
     total = results["via_points_total"]
     if total:
-        counts.append(f"{results['via_points_passed']} of {counted(total, 'via point')}")
+        passed = results["via_points_passed"]
+        # A tour without a goal has more via points than its time allows.
+        timed = results["exit_reason"] == "completed"
+        points = counted(passed if timed else total, "via point")
+        counts.append(points if timed else f"{passed} of {points}")
     if results["min_clearance_m"] is not None:
         counts.append(f"clearance {results['min_clearance_m']:.2f} m")
     return ", ".join(counts)

@@ -16,7 +16,7 @@ from hsr8.files import atomic
 from hsr8.files.text import shell_line
 from hsr8.robots.file.description import Calibration, read_description
 from hsr8.robots.file.description_file import moved, with_calibration
-from hsr8.robots.file.locate import find_description
+from hsr8.robots.file.locate import find_description, robot_names
 from hsr8.robots.loaded import build_robot
 from hsr8.trials.calibration import calibrate
 from hsr8.version import VERSION
@@ -76,12 +76,17 @@ def _target(options: RobotCalibrate, source: Path) -> Path:
     """Return the file to write.
 
     Raises:
-        UsageError: it cannot be written, or another description exists there.
+        UsageError: it cannot be written, is shipped, or another description exists there.
     """
     if options.out is not None:
         require_file_name("--out", options.out, (".toml",))
         require_new("--out", options.out)
         return options.out.absolute()
+    if options.robot in robot_names():
+        raise UsageError(
+            f"robot {options.robot} is shipped with hsr8; expected --out FILE with a new file, or "
+            f"{source} in place of the name"
+        )
     if not (os.access(source, os.W_OK) and os.access(source.parent, os.W_OK)):
         raise UsageError(f"{source}: cannot be written; expected --out FILE with a new file")
     return source

@@ -16,7 +16,6 @@ from hsr8.cli.options import Sweep
 from hsr8.errors import INTERRUPTED, Hsr8Error, UsageError
 from hsr8.files import atomic
 from hsr8.files.text import shell_line
-from hsr8.process.signals import like_ctrl_c
 from hsr8.scenario.loader import load_scenario
 from hsr8.scenario.schema import Scenario
 from hsr8.sweep.folder import REPORT
@@ -45,8 +44,7 @@ def main(options: Sweep) -> int:
     commands = {
         name: command_words(run_options(options, None, more)) for name, more in combinations.items()
     }
-    with like_ctrl_c():
-        runs = run_sweeps(out, scenarios, commands, execution)
+    runs = run_sweeps(out, scenarios, commands, execution)
     summaries = {name: summarize(results) for name, results in runs.results.items()}
     if options.vary:
         keys = ", ".join(parse_values(text)[0] for text in flat(options.vary))

@@ -1,6 +1,6 @@
 """Metrics of a run: the true motion compared with the belief, computed from the tables of the run.
 
-``success`` means: no collision, no fall, every via point passed and, with a goal, the goal reached,
+``success`` means: no collision, no fall, no via point missed and, with a goal, the goal reached,
 in a run that ended by ``goal`` or ``completed``. The criteria of a scenario are evaluated
 separately, see `hsr8.recording.verdict`.
 """

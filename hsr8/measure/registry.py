@@ -68,7 +68,7 @@ SECTIONS = {
     "Task": (
         Metric(
             "success",
-            "no collision, no fall, every via point passed, goal (if any) reached",
+            "no collision, no fall, no via point missed, goal (if any) reached",
             COMPARED | BENCH_COMPARED,
         ),
         Metric(

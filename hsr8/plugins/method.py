@@ -39,6 +39,7 @@ class PluginMethod(Generic[Result]):
         self.name = f"{kind} {type(plugin).__name__}"
         if not callable(method):
             raise UsageError(f"{self.name} has no method {form}")
+        _require_inputs(method, form, self.name)
         self._method, self._form, self._result = method, form, result
 
     def __call__(self, *inputs: object) -> Result:
@@ -63,6 +64,19 @@ class PluginMethod(Generic[Result]):
         return UsageError(
             f"{self.name}: {self._form} must return a {expected}, got {shown(result)}"
         )
+
+
+def _require_inputs(method: Callable[..., object], form: str, name: str) -> None:
+    """Require that a method can be called with the inputs of `form`."""
+    try:
+        parameters = signature(method)
+    except ValueError:  # a method that is not written in Python
+        return
+    try:
+        parameters.bind(*form.split(","))
+    except TypeError as error:
+        title = form.partition("(")[0]
+        raise UsageError(f"{name}: expected {form}, got {title}{parameters}") from error
 
 
 def takes_memory(plugin: object, method: str, names: tuple[str, ...]) -> bool:

@@ -44,7 +44,7 @@ class _Wheel:
         if package is None:
             return None
         folders = [Path(os.path.normpath(package / folder)) for folder in self.folders]
-        return next((folder for folder in folders if folder.is_dir()), folders[-1])
+        return next((folder for folder in folders if folder.is_dir()), None)
 
 
 MENAGERIE_WHEEL = _Wheel(

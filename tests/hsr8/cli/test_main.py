@@ -2,6 +2,7 @@ import importlib
 import io
 import os
 import shutil
+import signal
 import subprocess
 import sys
 from bdb import BdbQuit
@@ -156,6 +157,14 @@ def test_ctrl_c_during_the_import_of_a_compiled_module(failing, capsys):
     assert capsys.readouterr().err == "hsr8: interrupted\n"
 
 
+def test_sigterm_is_like_ctrl_c(monkeypatch, capsys):
+    before = signal.getsignal(signal.SIGTERM)
+    monkeypatch.setattr("hsr8.cli.list.main", lambda _: os.kill(os.getpid(), signal.SIGTERM))
+    assert entry(["list"]) == 130
+    assert capsys.readouterr().err == "hsr8: interrupted\n"
+    assert signal.getsignal(signal.SIGTERM) is before
+
+
 def test_quitting_the_debugger_is_an_interruption(failing, capsys):
     failing(BdbQuit())
     assert entry(["list"]) == 130
@@ -185,7 +194,7 @@ def test_a_full_disk_under_standard_output_is_one_message():
         done = subprocess.run(
             [*PROGRAM, "--help"], stdout=full, stderr=subprocess.PIPE, text=True, check=False
         )
-    message = "hsr8: cannot write: No space left on device\n"
+    message = "hsr8: cannot write standard output: No space left on device\n"
     assert (done.returncode, done.stderr) == (3, message)
 
 

@@ -32,6 +32,7 @@ LINES = [
     ("bench compare RUN RUN", "RUN/bench.json: not an entry of hsr8 bench"),
     ("robot check unknown.toml", "feets: unknown key; did you mean 'feet'?"),
     ("robot calibrate hsr8 --out yard.toml", "--out yard.toml: exists; expected a new name"),
+    ("robot calibrate hsr8", "robot hsr8 is shipped with hsr8; expected --out FILE"),
     ("info damaged", "manifest.json"),
     ("plot RUN", "nothing to plot from 0 s to 0 s"),
     ("export RUN RUN --csv tables", "--csv: got 2 runs; expected one"),

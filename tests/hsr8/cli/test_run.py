@@ -18,6 +18,22 @@ def _run(tmp_path, *more):
     return entry([*FAST, "--out", str(tmp_path), *more])
 
 
+def test_json_is_the_only_output_of_a_plugin_that_prints(tmp_path, capsys):
+    file = tmp_path / "talks.py"
+    file.write_text(
+        "import numpy as np\n"
+        "from navigation.decision import MotionDecision\n"
+        "class Talks:\n"
+        "    def plan(self, belief, task):\n"
+        "        print('hello')\n"
+        "        return MotionDecision(np.zeros(3))\n"
+    )
+    _run(tmp_path / "runs", "--json", "--set", f"plugin.planner={file}:Talks")
+    printed = capsys.readouterr()
+    assert json.loads(printed.out)["collisions"] == 0
+    assert "hello" in printed.err
+
+
 def test_json_is_the_only_output(tmp_path, capsys):
     code = _run(tmp_path, "--json")
     printed = capsys.readouterr().out

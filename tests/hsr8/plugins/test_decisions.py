@@ -281,9 +281,23 @@ def test_the_built_in_planner_and_gaze_decide_the_same_as_plugins():
     assert plugins.metrics["state_hash"] == hsr8.run(scenario, seed=seed).metrics["state_hash"]
 
 
+class WithoutInputs:
+    """Planner, gaze and walker whose methods take nothing."""
+
+    def plan(self):
+        raise AssertionError
+
+    choose = step = plan
+
+
 @pytest.mark.parametrize("kind", ["planner", "gaze", "walker"])
 def test_an_unsuitable_object_is_refused_before_the_run(kind, tmp_path):
-    for plugin, expected in ((Fixed, rf"{kind}=Fixed\(\)"), (object(), "has no method")):
+    unsuitable = (
+        (Fixed, rf"{kind}=Fixed\(\)"),
+        (object(), "has no method"),
+        (WithoutInputs(), rf"{kind} WithoutInputs: expected \w+\(\w+, .*\), got \w+\(\)"),
+    )
+    for plugin, expected in unsuitable:
         with pytest.raises(UsageError, match=expected):
             hsr8.run(quick(), out=tmp_path, **{kind: plugin})
     assert list(tmp_path.iterdir()) == []
