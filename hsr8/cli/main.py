@@ -86,7 +86,8 @@ def entry(arguments: Sequence[str] | None = None) -> int:
         if isinstance(error, BrokenPipeError):
             return SIGPIPE_EXIT
         with suppress(OSError):
-            print(f"hsr8: cannot write {error.filename or 'standard output'}: {error.strerror}", file=sys.stderr)
+            file = error.filename or "standard output"
+            print(f"hsr8: cannot write {file}: {error.strerror}", file=sys.stderr)
         return Hsr8Error.exit_code
     return code
 
