@@ -28,7 +28,6 @@ def row(cell: Any, result: Run) -> Run:
         cell: cell of the run, a `benchmark_runs.Cell`.
         result: metrics of the run.
     """
-    recognised = result.get("movers_recognised_after_s")
     error = (result.get("velocity_error_rms") or {}).get("applied") or {}
     return {
         "arm": cell.arm,
@@ -40,7 +39,6 @@ def row(cell: Any, result: Run) -> Run:
         "exit_reason": result.get("exit_reason") or "",
         "state_hash": (result.get("state_hash") or "")[:16],
         **{name: _number(result.get(name)) for name in NUMBERS},
-        "recognised_s": median(recognised) if recognised else None,
         "velocity_error_mps": hypot(error["vx"], error["vy"]) if error else None,
     }
 
@@ -154,7 +152,6 @@ COLUMNS: dict[str, tuple[str, Column]] = {
         "mover velocity RMSE, median",
         _median("mover_velocity_rmse_mps", 1e2, ".1f", " cm/s"),
     ),
-    "recognised": ("mover recognised after, median [s]", _median("recognised_s")),
     "tilt": ("max tilt, median [deg]", _median("max_tilt_deg", 1.0, ".1f")),
     "velocity_error": (
         "velocity error RMS, median [cm/s]",
