@@ -118,12 +118,7 @@ class EkfSlam:
         for k, track in static.items():
             if k in self._ids or not track.visible or self._reassigned(k, track):
                 continue
-            matches = [
-                o
-                for o in candidates
-                if o.label == track.label
-                and self._distance(o, track.position) < self._mapping.match_distance
-            ]
+            matches = self._detections_at(track.position, track.label, candidates)
             if len(matches) == 1:
                 self._add(k, matches[0], frame.time)
 
@@ -185,7 +180,10 @@ class EkfSlam:
         landmarks, discs = self._x[3:].reshape(-1, 2), (detections.positions, detections.radii)
         expected = clear_points(landmarks, *viewpoint, *discs, p.occlusion_margin)
         for i in np.flatnonzero(expected).tolist():
-            if i not in matched and not self._is_seen(i, frame.observations):
+            # A cut or occluded detection is too inexact to correct the pose, but shows that it is
+            # right.
+            present = self._detections_at(landmarks[i], self._labels[i], frame.observations)
+            if i not in matched and not present:
                 _, count = self._missing.get(self._ids[i], (0.0, 0))
                 self._missing[self._ids[i]] = self._seen_at[i], count + 1
         misses = sum(count for _, count in self._missing.values())
@@ -251,18 +249,17 @@ class EkfSlam:
                 matched[gated[0][1]] = (gated[0][0], o)
         return {i: o for i, (_, o) in matched.items()}
 
-    def _is_seen(self, i: int, observations: Sequence[Observation]) -> bool:
-        """Return whether an obstacle of its colour is detected at landmark `i`.
-
-        A cut or occluded one is too inexact to correct the pose, but shows that it is right.
-        """
-        landmark = self._x[3 + 2 * i : 5 + 2 * i]
-        return any(
-            o.kind == "obstacle"
-            and o.label == self._labels[i]
-            and self._distance(o, landmark) < self._mapping.match_distance
+    def _detections_at(
+        self, position: Array, label: str, observations: Sequence[Observation]
+    ) -> list[Observation]:
+        """Return the detections of an obstacle of a colour at a position in W (2,) [m]."""
+        return [
+            o
             for o in observations
-        )
+            if o.kind == "obstacle"
+            and o.label == label
+            and self._distance(o, position) < self._mapping.match_distance
+        ]
 
     def _innovation(self, i: int, o: Observation) -> tuple[Array, Array]:
         """Return the innovation (2,) and its Jacobian by the pose and landmark `i` (2, 5)."""
